@@ -1,0 +1,143 @@
+"""Resolve the dependencies into hashed lock files: ``python3 -m environment.lock [--upgrade]``.
+
+The three lock files in ``requirements/`` are one resolution, cut into the parts that a set-up installs separately:
+
+* ``course.lock``: the dependencies of pyproject.toml and the build tools;
+* ``ros.lock``: the ROS wheels and what only they need, left out where a Jazzy is sourced;
+* ``dev.lock``: what ``./course test`` needs besides.
+
+Without ``--upgrade`` a version that is locked stays as long as the inputs allow it. The locks name no package index:
+pip takes the one it is configured for, and the hashes make sure that it is the same file.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import re
+import subprocess
+import sys
+import tempfile
+import tomllib
+import venv
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+REQUIREMENTS = ROOT / "environment" / "requirements"
+LOCKS = ("course", "ros", "dev")
+
+# The resolver that writes the locks. It is needed for nothing else, so it is not locked itself.
+RESOLVER = "uv==0.13.8"
+# The oldest Python of the project; the resolution is universal, markers cover the newer ones.
+OLDEST_PYTHON = "3.11"
+
+_HEADER = """\
+# Written by `python3 -m environment.lock`, do not edit. {purpose}
+# inputs sha256:{digest}
+"""
+_PURPOSE = {
+    "course": "What the course and its autograder run on.",
+    "ros": "ROS 2 Jazzy as wheels, and what only they need.",
+    "dev": "What the checks and tests of the project need besides.",
+}
+_INPUTS_LINE = re.compile(r"^# inputs sha256:([0-9a-f]{64})$", re.MULTILINE)
+_BLOCK_START = re.compile(r"^([A-Za-z0-9][A-Za-z0-9._-]*)==")
+
+
+def inputs_digest(root: Path = ROOT) -> str:
+    """Return the SHA-256 (hexadecimal) of everything that a lock is made from.
+
+    Of pyproject.toml only the dependency lists count, so that other edits of it leave the locks valid.
+    """
+    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    lists = [sorted(project["dependencies"])]
+    lists += [[extra, *sorted(names)] for extra, names in sorted(project["optional-dependencies"].items())]
+    digest = hashlib.sha256(repr(lists).encode())
+    for name in ("ros.in", "tools.in"):
+        text = (root / "environment" / "requirements" / name).read_text(encoding="utf-8")
+        wanted = [line.strip() for line in text.splitlines() if line.strip() and not line.startswith("#")]
+        digest.update(repr(sorted(wanted)).encode())
+    return digest.hexdigest()
+
+
+def recorded_digest(lock: str) -> str | None:
+    """Return the digest that the text of a lock file says it was made from, or None if it says nothing."""
+    found = _INPUTS_LINE.search(lock)
+    return found.group(1) if found else None
+
+
+def split_blocks(lock: str) -> list[tuple[str, str]]:
+    """Cut the text of a lock file into (name, requirement with its hashes and comments), in order.
+
+    A name can come several times, with different markers.
+    """
+    blocks: list[tuple[str, list[str]]] = []
+    for line in lock.splitlines():
+        start = _BLOCK_START.match(line)
+        if start:
+            blocks.append((start.group(1), [line]))
+        elif line.startswith(" ") and blocks:
+            blocks[-1][1].append(line)
+    return [(name, "\n".join(lines)) for name, lines in blocks]
+
+
+def cut(everything: str, course: set[str], with_dev: set[str]) -> dict[str, str]:
+    """Cut one resolution into the bodies of the three locks, each requirement in exactly one of them.
+
+    Args:
+        everything: the text of the whole resolution.
+        course: the names that the course needs without ROS.
+        with_dev: the same with the ``dev`` extra.
+    """
+    bodies: dict[str, list[str]] = {name: [] for name in LOCKS}
+    for name, block in split_blocks(everything):
+        part = "course" if name in course else "dev" if name in with_dev else "ros"
+        bodies[part].append(block)
+    return {part: "\n".join(blocks) + "\n" for part, blocks in bodies.items()}
+
+
+def _resolve(resolver: Path, work: Path, inputs: list[Path], *options: str) -> str:
+    """Run the resolver on the inputs and return the lock it prints."""
+    command = [
+        *(str(resolver), "pip", "compile", "--quiet", "--universal", "--python-version", OLDEST_PYTHON),
+        *("--no-emit-index-url", "--no-header", "--output-file", str(work)),
+        *options,
+        *(str(path.relative_to(ROOT)) for path in inputs),
+    ]
+    subprocess.run(command, check=True, cwd=ROOT)
+    return work.read_text(encoding="utf-8")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Write the three lock files."""
+    parser = argparse.ArgumentParser(prog="python3 -m environment.lock", description=__doc__.splitlines()[0])
+    parser.add_argument("--upgrade", action="store_true", help="take the newest versions the inputs allow")
+    upgrade = ["--upgrade"] if parser.parse_args(arguments).upgrade else []
+    pyproject, tools, ros = ROOT / "pyproject.toml", REQUIREMENTS / "tools.in", REQUIREMENTS / "ros.in"
+    with tempfile.TemporaryDirectory() as folder:
+        work = Path(folder)
+        venv.create(work / "venv", with_pip=True)
+        subprocess.run([work / "venv/bin/python", "-m", "pip", "install", "--quiet", RESOLVER], check=True)
+        uv = work / "venv/bin/uv"
+        everything = work / "everything.txt"
+        # The resolver prefers the versions it finds in its output file.
+        locked = [REQUIREMENTS / f"{name}.lock" for name in LOCKS]
+        everything.write_text("".join(path.read_text(encoding="utf-8") for path in locked if path.exists()))
+        _resolve(uv, everything, [ros, tools, pyproject], "--generate-hashes", "--extra", "dev", *upgrade)
+        same = ("--constraint", str(everything), "--no-annotate")
+        course = _resolve(uv, work / "course.txt", [tools, pyproject], *same)
+        with_dev = _resolve(uv, work / "dev.txt", [tools, pyproject], "--extra", "dev", *same)
+        bodies = cut(
+            everything.read_text(encoding="utf-8"),
+            {name for name, _ in split_blocks(course)},
+            {name for name, _ in split_blocks(with_dev)},
+        )
+    for name, body in bodies.items():
+        header = _HEADER.format(purpose=_PURPOSE[name], digest=inputs_digest())
+        (REQUIREMENTS / f"{name}.lock").write_text(header + body, encoding="utf-8")
+        print(f"{name}.lock: {len(split_blocks(body))} requirements")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
