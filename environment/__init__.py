@@ -1,1 +1,1 @@
-"""What stands in for /opt/ros/jazzy: the wheels and their repair, the interface package, the set-up, the doctor."""
+"""What stands in for /opt/ros/jazzy: pinned wheels, the interface package, the set-up and the doctor."""

@@ -1,13 +1,14 @@
 """Resolve the dependencies into hashed lock files: ``python3 -m environment.lock [--upgrade]``.
 
-The three lock files in ``requirements/`` are one resolution, cut into the parts that a set-up installs separately:
+The three lock files in ``requirements/`` are one resolution, cut into the parts that a set-up installs
+separately:
 
 * ``course.lock``: the dependencies of pyproject.toml and the build tools;
 * ``ros.lock``: the ROS wheels and what only they need, left out where a Jazzy is sourced;
 * ``dev.lock``: what ``./course test`` needs besides.
 
-Without ``--upgrade`` a version that is locked stays as long as the inputs allow it. The locks name no package index:
-pip takes the one it is configured for, and the hashes make sure that it is the same file.
+Without ``--upgrade`` a version that is locked stays as long as the inputs allow it. The locks name no package
+index: pip takes the one it is configured for, and the hashes make sure that it is the same file.
 """
 
 from __future__ import annotations

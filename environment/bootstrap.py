@@ -1,0 +1,172 @@
+"""Set the course up in ``.venv``: ``python3 -m environment.bootstrap [--tests] [--token TEXT]``.
+
+Called by ``./course``, with any Python from 3.11 on and its standard library only. Each step is stamped with
+what it was made from (see steps.py), so running this again does what is left to do: nothing, as a rule.
+"""
+
+from __future__ import annotations
+
+import argparse
+import fcntl
+import os
+import shutil
+import subprocess
+import sys
+from collections import deque
+from pathlib import Path
+from typing import IO, TYPE_CHECKING
+
+from environment import ros_flavour, system_packages
+from environment.place import Place
+from environment.ros_flavour import Machine, NoRosError, Ros
+from environment.setup_steps import Setup, SetupError
+from environment.steps import run_steps
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+ROOT = Path(__file__).resolve().parent.parent
+# What the environment with everything takes, and some air for the build, in bytes.
+_SPACE_NEEDED = 1_600_000_000
+_LOG_LINES_SHOWN = 25
+
+
+def say(line: str) -> None:
+    """Print a line for the user, on standard error: standard output is the following command's."""
+    print(f"course: {line}", file=sys.stderr, flush=True)
+
+
+def choose_ros(place: Place, environ: Mapping[str, str]) -> tuple[Ros, dict[str, str]]:
+    """Decide which ROS to use; return it with the variables in which it is sourced.
+
+    Raises:
+        NoRosError: there is none to be used here.
+    """
+    sourced = ros_flavour.with_recorded(environ, ros_flavour.load(place.prefix))
+
+    def imports_rclpy() -> bool:
+        command = [str(place.base_python), "-c", "import rclpy"]
+        return subprocess.run(command, env=sourced, capture_output=True, check=False).returncode == 0
+
+    return ros_flavour.decide(sourced, Machine.here(), imports_rclpy), sourced
+
+
+def _find_base_python() -> Path:
+    # Run by the Python of an environment, this must not make the next one out of it.
+    return Path(os.path.realpath(getattr(sys, "_base_executable", sys.executable)))
+
+
+def _check_place(place: Place) -> None:
+    """Look for what would make the set-up fail later, or do harm.
+
+    Raises:
+        SetupError: something is in the way.
+    """
+    if ":" in str(place.root):
+        raise SetupError(f"a search path cannot hold a folder with a colon in its name: {place.root}")
+    if place.prefix.exists() and not (place.notes.exists() or (place.prefix / "pyvenv.cfg").exists()):
+        raise SetupError(f"{place.prefix} is there, but is no Python environment. Move it away.")
+    if not os.access(place.root, os.W_OK):
+        raise SetupError(f"the folder {place.root} cannot be written to.")
+
+
+def _check_space(place: Place) -> None:
+    """Raise a SetupError where a new environment does not fit on the disk."""
+    free = shutil.disk_usage(place.root).free
+    if not (place.notes / "stamps" / "packages").exists() and free < _SPACE_NEEDED:
+        raise SetupError(
+            f"the disk of {place.root} has {free / 1e9:.1f} GB left, "
+            f"the environment needs {_SPACE_NEEDED / 1e9:.1f} GB."
+        )
+
+
+def _explain_failure(log_path: Path) -> None:
+    """Show the end of the log, with a word about the usual causes."""
+    try:
+        with log_path.open(encoding="utf-8", errors="replace") as log:
+            lines = list(deque(log, _LOG_LINES_SHOWN))
+    except OSError:
+        return
+    text = "".join(lines)
+    print(text.rstrip(), file=sys.stderr)
+    if "No space left on device" in text:
+        say("the disk is full.")
+    elif "HASHES" in text:
+        say(
+            "a downloaded file is not the one that is locked. A proxy may have changed it: do not install it."
+        )
+    elif "No matching distribution" in text or "Retrying (" in text:
+        say("pip could not fetch a package. Is there a network, and is pip's package index the usual one?")
+    say(f"the whole log is {log_path}")
+
+
+def set_up(place: Place, environ: Mapping[str, str], with_tests: bool) -> None:
+    """Bring the environment up to date.
+
+    Raises:
+        SetupError, NoRosError, MissingPackagesError: it cannot be done; the text says what to do.
+    """
+    _check_place(place)
+    ros, sourced = choose_ros(place, environ)
+    if ros.notice:
+        say(ros.notice)
+    _check_space(place)
+    place.notes.mkdir(parents=True, exist_ok=True)
+    log_path = place.notes / "setup.log"
+    with log_path.open("a", encoding="utf-8") as log:
+        system_packages.require("setup", log, say)
+        steps = Setup(place, ros, sourced, log).steps(with_tests)
+        try:
+            done = run_steps(steps, place.notes / "stamps", place.root, say)
+        except SetupError:
+            _explain_failure(log_path)
+            raise
+        if with_tests:
+            _provide_for_tests(log)
+    if done:
+        say("set up.")
+
+
+def _provide_for_tests(log: IO[str]) -> None:
+    apt = system_packages.Apt.here()
+    for row in system_packages.provide("tests", log, say, apt):
+        command = system_packages.command_to_type([row], apt)
+        say(f"{row.title} is not there ({row.reason}), what needs it is skipped. Get it with: {command}")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Set up, one set-up at a time, and note the token of `./course` when all is done."""
+    parser = argparse.ArgumentParser(
+        prog="python3 -m environment.bootstrap", description=__doc__.splitlines()[0]
+    )
+    parser.add_argument("--tests", action="store_true", help="also what ./course test needs")
+    parser.add_argument("--token", help="what ./course compares to know that nothing changed since")
+    options = parser.parse_args(arguments)
+    place = Place(ROOT, _find_base_python())
+    # A lock on the folder of this package: it leaves no file behind, and ends with this process.
+    folder = os.open(place.environment, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            say("another set-up is running, waiting for it")
+            fcntl.flock(folder, fcntl.LOCK_EX)
+        set_up(place, os.environ, options.tests)
+        if options.token:
+            (place.notes / "token").write_text(f"{options.token}\n", encoding="utf-8")
+    except (SetupError, NoRosError, system_packages.MissingPackagesError) as error:
+        say(f"error: {error}")
+        return 2
+    except OSError as error:
+        say(f"error: {error.strerror}: {error.filename or place.prefix}")
+        return 2
+    except KeyboardInterrupt:
+        say("interrupted. Type the same command again: the set-up goes on where it stopped.")
+        return 130
+    finally:
+        os.close(folder)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,74 @@
+"""What the environment tells JupyterLab: the kernel's variables, its terminals, no questions about news.
+
+All of it lies inside the environment (``.venv/share/jupyter``, ``.venv/etc/jupyter``), so that it holds
+however JupyterLab is started and touches no setting of the user's own.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+# rclpy logs to standard error, and nbgrader gives no points to a graded cell that writes there. Colours are
+# escape sequences in a notebook's output.
+KERNEL_VARIABLES = {"RCUTILS_LOGGING_USE_STDOUT": "1", "RCUTILS_COLORIZED_OUTPUT": "0"}
+
+# The name that every notebook of the course asks for.
+KERNEL_NAME = "python3"
+
+
+def kernelspec(python: Path) -> dict[str, object]:
+    """Return the kernelspec of the course: this Python's ipykernel, with the variables of a graded cell."""
+    return {
+        "argv": [str(python), "-m", "ipykernel_launcher", "-f", "{connection_file}"],
+        "display_name": "Python 3 (ipykernel)",
+        "language": "python",
+        "metadata": {"debugger": True},
+        "env": KERNEL_VARIABLES,
+    }
+
+
+def lab_settings() -> dict[str, object]:
+    """Return the settings that differ from JupyterLab's own.
+
+    On its first start it asks whether it may fetch news: a student should meet the course, not a question.
+    """
+    return {
+        "@jupyterlab/apputils-extension:notification": {
+            "checkForUpdates": False,
+            "doNotDisturbMode": False,
+            "fetchNews": "false",
+        }
+    }
+
+
+def server_config(root: Path, bash: str | None) -> dict[str, object]:
+    """Return the server's configuration: its terminals start with ROS at hand.
+
+    Without it a login shell's profile puts the system's programs in front, and ``python talker.py`` finds no
+    rclpy.
+
+    Args:
+        root: the folder of the course.
+        bash: the path of bash, or None where there is none; then the terminals stay as they come.
+    """
+    if bash is None:
+        return {}
+    startup = root / "environment" / "terminal.bashrc"
+    return {"ServerApp": {"terminado_settings": {"shell_command": [bash, "--rcfile", str(startup)]}}}
+
+
+def write_jupyter_files(prefix: Path, root: Path) -> None:
+    """Write the files for the environment at `prefix` of the course at `root`."""
+    files = {
+        prefix / "share/jupyter/kernels" / KERNEL_NAME / "kernel.json": kernelspec(prefix / "bin/python"),
+        prefix / "share/jupyter/lab/settings/overrides.json": lab_settings(),
+        prefix / "etc/jupyter/jupyter_server_config.d/course.json": server_config(root, shutil.which("bash")),
+    }
+    for path, content in files.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")

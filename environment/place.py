@@ -1,0 +1,89 @@
+"""Where the parts of the course's environment are, and the variables that lead its processes there."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from environment.ros_flavour import DISTRO
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from environment.ros_flavour import Ros
+
+INTERFACES = "my_robot_interfaces"
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where everything is.
+
+    Attributes:
+        root: the folder of the course.
+        base_python: the interpreter that the environment is made with.
+    """
+
+    root: Path
+    base_python: Path
+
+    @property
+    def prefix(self) -> Path:
+        """The environment."""
+        return self.root / ".venv"
+
+    @property
+    def python(self) -> Path:
+        """The interpreter of the environment."""
+        return self.prefix / "bin" / "python"
+
+    @property
+    def site_packages(self) -> Path:
+        """The folder of the installed Python packages."""
+        major, minor = sys.version_info[:2]
+        return self.prefix / "lib" / f"python{major}.{minor}" / "site-packages"
+
+    @property
+    def notes(self) -> Path:
+        """The folder of the set-up's own files inside the environment."""
+        return self.prefix / "course"
+
+    @property
+    def environment(self) -> Path:
+        """The folder of this package."""
+        return self.root / "environment"
+
+    @property
+    def interfaces(self) -> Path:
+        """The source of the interface package."""
+        return self.environment / "ros2_ws" / "src" / INTERFACES
+
+    def lock(self, name: str) -> Path:
+        """Return a lock file."""
+        return self.environment / "requirements" / f"{name}.lock"
+
+
+def environment_paths(place: Place, ros: Ros) -> dict[str, list[str]]:
+    """Return, for each search path variable, what a process of the course must have in it, first to last."""
+    prefix = str(place.prefix)
+    libraries = [f"{prefix}/lib", *sorted(str(path) for path in place.site_packages.glob("ros_*.libs"))]
+    own: dict[str, list[str]] = {
+        "PATH": [f"{prefix}/bin"],
+        "AMENT_PREFIX_PATH": [prefix],
+        "CMAKE_PREFIX_PATH": [prefix],
+        "LD_LIBRARY_PATH": libraries,
+        "PYTHONPATH": [],
+    }
+    return {name: [*entries, *ros.paths.get(name, ())] for name, entries in own.items()}
+
+
+def environment_values(place: Place) -> dict[str, str]:
+    """Return the variables with one value that a process of the course has."""
+    return {
+        # CMake looks for Python there first; without it, it takes the newest one on the PATH.
+        "VIRTUAL_ENV": str(place.prefix),
+        "ROS_DISTRO": DISTRO,
+        "ROS_VERSION": "2",
+        "ROS_PYTHON_VERSION": "3",
+    }

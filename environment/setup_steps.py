@@ -1,0 +1,193 @@
+"""The steps that make the environment of the course: what each does, and what it is made from.
+
+Only the standard library is used: this runs before anything is installed.
+"""
+
+from __future__ import annotations
+
+import shlex
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from typing import IO, TYPE_CHECKING
+
+from environment import course_process, ros_flavour
+from environment.jupyter_files import write_jupyter_files
+from environment.lock import split_blocks
+from environment.place import INTERFACES, Place, environment_paths, environment_values
+from environment.steps import Step, files_below
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from environment.ros_flavour import Ros
+
+    # A program and its arguments.
+    Command = Sequence[str | Path]
+
+
+class SetupError(Exception):
+    """The set-up cannot go on. The text says what to do about it."""
+
+
+@dataclass(frozen=True)
+class Setup:
+    """One set-up.
+
+    Attributes:
+        place: where everything is.
+        ros: the ROS 2 to set up with.
+        environ: the variables in which that ROS is sourced, or those of the user for the wheels.
+        log: takes the output of every command.
+    """
+
+    place: Place
+    ros: Ros
+    environ: Mapping[str, str]
+    log: IO[str]
+
+    def steps(self, with_tests: bool) -> list[Step]:
+        """Return the steps in their order; those of the tests only when they are asked for."""
+        place = self.place
+        locks = [place.lock("course")] if self.ros.is_sourced else [place.lock("course"), place.lock("ros")]
+        kind = (str(place.root), str(place.base_python), sys.version, repr(self.ros))
+        interfaces = (place.environment / "repair_wheels.py", *files_below(place.interfaces))
+        start = (place.environment / "course_process.py", place.environment / "place.py")
+        jupyter = (place.environment / "jupyter_files.py",)
+        project = (place.root / "pyproject.toml",)
+        python = f"Python {sys.version.split()[0]}"
+        steps = [
+            Step("environment", f"making .venv with {python}", kind, self._make_environment),
+            Step("packages", self._what_is_installed(), tuple(locks), lambda: self._install(locks)),
+            Step("interfaces", f"building {INTERFACES} with colcon", interfaces, self._build_interfaces),
+            Step("start", "teaching its Python to find ROS", start, self._install_start),
+            Step("jupyter", "configuring JupyterLab", jupyter, self._configure_jupyter),
+            Step("project", "installing the autograder", project, self._install_project),
+        ]
+        if with_tests:
+            dev = [place.lock("dev")]
+            steps.append(
+                Step("dev", "installing what the tests need", tuple(dev), lambda: self._install(dev))
+            )
+        return steps
+
+    def _what_is_installed(self) -> str:
+        if self.ros.is_sourced:
+            return (
+                f"using the sourced ROS 2 Jazzy ({self.ros.flavour}), installing Jupyter and the build tools"
+            )
+        return "installing ROS 2 Jazzy, Jupyter and the build tools (a minute or two)"
+
+    def _run(self, what: str, command: Command, **more: str) -> None:
+        """Run a command with its output in the log.
+
+        Args:
+            what: what it is to do, for the message when it fails.
+            command: the program and its arguments.
+            more: variables that it gets besides.
+
+        Raises:
+            SetupError: it failed.
+        """
+        words = [str(word) for word in command]
+        print(f"\n$ {shlex.join(words)}", file=self.log, flush=True)
+        done = subprocess.run(
+            words,
+            env={**self._child_variables(), **more},
+            cwd=self.place.root,
+            stdin=subprocess.DEVNULL,
+            stdout=self.log,
+            stderr=subprocess.STDOUT,
+            check=False,
+        )
+        if done.returncode != 0:
+            raise SetupError(f"{what} failed")
+
+    def _child_variables(self) -> dict[str, str]:
+        """Return the variables for the commands: the chosen ROS and this environment, no other ones."""
+        paths = environment_paths(self.place, self.ros)
+        values = environment_values(self.place)
+        result = {**self.environ, **course_process.variables(paths, values, self.environ)}
+        for name in ("PYTHONHOME", "PYTHONSAFEPATH"):
+            result.pop(name, None)
+        return result
+
+    def _make_environment(self) -> None:
+        place = self.place
+        if place.prefix.exists():
+            _empty(place.prefix, keep=place.notes)
+            for name in ("build", "stamps"):
+                shutil.rmtree(place.notes / name, ignore_errors=True)
+        # A sourced ROS needs the system's Python packages (numpy, yaml, …) in the versions it was built with.
+        options = ["--system-site-packages"] if self.ros.is_sourced else []
+        self._run("making .venv", [place.base_python, "-m", "venv", *options, place.prefix])
+        ros_flavour.save(self.ros, place.prefix)
+
+    def _install(self, locks: Sequence[Path]) -> None:
+        # One requirement exists as source only. It is built by the setuptools of the lock, which is installed
+        # first for that: a build in isolation would fetch one that nobody pinned.
+        blocks = split_blocks(self.place.lock("course").read_text(encoding="utf-8"))
+        backend = self.place.notes / "build-backend.lock"
+        backend.write_text("\n".join(block for name, block in blocks if name == "setuptools") + "\n")
+        for chosen in ([backend], locks):
+            files = [word for lock in chosen for word in ("-r", str(lock))]
+            self._pip("--require-hashes", "--no-deps", "--only-binary=:all:", "--no-binary=empy", *files)
+
+    def _pip(self, *arguments: str) -> None:
+        command: list[str | Path] = [self.place.python, "-m", "pip", "install", "--disable-pip-version-check"]
+        command += ["--progress-bar=off", "--no-build-isolation", "--use-pep517", *arguments]
+        # A user's setting that installs into the home folder would be refused inside an environment.
+        self._run("installing packages", command, PIP_USER="0")
+
+    def _build_interfaces(self) -> None:
+        place = self.place
+        if not self.ros.is_sourced:
+            self._run("repairing the wheels", [place.python, "-m", "environment.repair_wheels"])
+        build, log = place.notes / "build", place.notes / "colcon-log"
+        # The cache of an interrupted build can name compilers that are gone.
+        shutil.rmtree(build, ignore_errors=True)
+        command: list[str | Path] = [place.prefix / "bin/colcon", "--log-base", log, "build"]
+        command += ["--base-paths", place.interfaces, "--build-base", build]
+        # Merged into the environment itself: its lib folder and its site-packages are searched already.
+        command += ["--merge-install", "--install-base", place.prefix, "--event-handlers", "console_direct+"]
+        command += ["--cmake-args", "-G", "Ninja", f"-DPython3_EXECUTABLE={place.python}"]
+        # Release defines NDEBUG. With asserts, a field of a wrong type would end a student's process.
+        command += ["-DCMAKE_BUILD_TYPE=Release", "-DBUILD_TESTING=OFF", "--no-warn-unused-cli"]
+        self._run(f"building {INTERFACES}", command)
+
+    def _install_start(self) -> None:
+        """Give every Python of the environment its start, see course_process.py."""
+        site_packages = self.place.site_packages
+        paths, values = environment_paths(self.place, self.ros), environment_values(self.place)
+        shutil.copyfile(self.place.environment / "course_process.py", site_packages / "course_process.py")
+        written = '"""Written by the set-up of the course."""\n'
+        (site_packages / "course_paths.py").write_text(f"{written}\nPATHS = {paths!r}\nVALUES = {values!r}\n")
+        # Its name comes before ros_wheels_bootstrapper.pth, and so does it.
+        (site_packages / "course_process.pth").write_text("import course_process; course_process.begin()\n")
+        wanted = course_process.variables(paths, {}, {})
+        names = [name for name in course_process.READ_AT_START if name in wanted]
+        exports = "".join(f"export {name}={shlex.quote(wanted[name])}\n" for name in names)
+        (self.place.notes / "libraries.sh").write_text(exports)
+        check = f"import rclpy, {INTERFACES}.action, {INTERFACES}.srv"
+        self._run("importing rclpy and the interfaces", [self.place.python, "-c", check])
+
+    def _configure_jupyter(self) -> None:
+        write_jupyter_files(self.place.prefix, self.place.root)
+
+    def _install_project(self) -> None:
+        # "compat" puts the folder itself on the path, so that `environment` can be imported too.
+        compat = ("--config-settings", "editable_mode=compat")
+        self._pip("--no-deps", "--no-index", *compat, "--editable", str(self.place.root))
+
+
+def _empty(folder: Path, keep: Path) -> None:
+    """Delete everything in a folder but one entry."""
+    for entry in folder.iterdir():
+        if entry == keep:
+            continue
+        if entry.is_dir() and not entry.is_symlink():
+            shutil.rmtree(entry)
+        else:
+            entry.unlink()

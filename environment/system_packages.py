@@ -1,0 +1,177 @@
+"""What the course needs of the operating system, and how to get it.
+
+As root on Debian or Ubuntu a missing package is installed with apt-get. Everyone else is told the one command
+to type.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sysconfig
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+# When a row is needed: by the set-up, or by the tests only (without it the tests that need it are skipped).
+Need = Literal["setup", "tests"]
+
+CHROMIUM_NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+
+
+@dataclass(frozen=True)
+class SystemPackage:
+    """One thing of the operating system.
+
+    Attributes:
+        title: what it is, as a reader of a message knows it.
+        reason: what the course does with it.
+        need: when it is needed.
+        debian: the packages that bring it on Debian and Ubuntu.
+        is_there: tells whether it is there.
+    """
+
+    title: str
+    reason: str
+    need: Need
+    debian: tuple[str, ...]
+    is_there: Callable[[], bool]
+
+
+class MissingPackagesError(Exception):
+    """Something that the set-up needs is not there and was not installed. The text says what to type."""
+
+
+def find_program(*names: str) -> str | None:
+    """Return the path of the first of these programs that is there, or None."""
+    return next((path for name in names if (path := shutil.which(name))), None)
+
+
+def find_compilers() -> tuple[str, str] | None:
+    """Return the C and the C++ compiler that CMake will take, or None if one of them is missing."""
+    c = find_program(*_named_in("CC"), "cc", "gcc", "clang")
+    cpp = find_program(*_named_in("CXX"), "c++", "g++", "clang++")
+    return (c, cpp) if c and cpp else None
+
+
+def _named_in(variable: str) -> list[str]:
+    return os.environ.get(variable, "").split()[:1]
+
+
+def _has_headers() -> bool:
+    return (Path(sysconfig.get_path("include")) / "Python.h").exists()
+
+
+TABLE = (
+    SystemPackage(
+        title="a C and C++ compiler",
+        reason="to build the interface package",
+        need="setup",
+        debian=("gcc", "g++", "libc6-dev"),
+        is_there=lambda: find_compilers() is not None,
+    ),
+    SystemPackage(
+        title="the header files of Python",
+        reason="to build the interface package",
+        need="setup",
+        debian=("python3-dev",),
+        is_there=_has_headers,
+    ),
+    SystemPackage(
+        title="Python's venv module",
+        reason="to make the course's own environment",
+        need="setup",
+        debian=("python3-venv",),
+        is_there=lambda: find_spec("ensurepip") is not None,
+    ),
+    SystemPackage(
+        title="Chromium",
+        reason="for the browser test",
+        need="tests",
+        debian=("chromium",),
+        is_there=lambda: find_program(*CHROMIUM_NAMES) is not None,
+    ),
+)
+
+
+@dataclass(frozen=True)
+class Apt:
+    """How packages can be installed here: `program` is apt-get or None, `as_root` whether we may run it."""
+
+    program: str | None
+    as_root: bool
+
+    @classmethod
+    def here(cls) -> Apt:
+        """Return what this machine and this user have."""
+        return cls(shutil.which("apt-get"), os.geteuid() == 0)
+
+
+def missing(need: Need, table: Sequence[SystemPackage] = TABLE) -> list[SystemPackage]:
+    """Return the rows of one need that are not there."""
+    return [row for row in table if row.need == need and not row.is_there()]
+
+
+def command_to_type(rows: Iterable[SystemPackage], apt: Apt) -> str:
+    """Return the command that brings these rows, for a user to type; a sentence where there is no apt-get."""
+    rows = list(rows)
+    if apt.program:
+        return "sudo apt-get install -y " + " ".join(name for row in rows for name in row.debian)
+    return "install with the package manager of your system: " + ", ".join(row.title for row in rows)
+
+
+def _apt_install(rows: Sequence[SystemPackage], apt: Apt, log: IO[str]) -> bool:
+    """Install the rows with apt-get and return whether both of its commands succeeded."""
+    environ: Mapping[str, str] = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
+    names = [name for row in rows for name in row.debian]
+    for arguments in (["update"], ["install", "-y", "--no-install-recommends", *names]):
+        command = [str(apt.program), *arguments]
+        done = subprocess.run(
+            command, env=environ, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT, check=False
+        )
+        if done.returncode != 0:
+            return False
+    return True
+
+
+def provide(
+    need: Need,
+    log: IO[str],
+    say: Callable[[str], None],
+    apt: Apt | None = None,
+    table: Sequence[SystemPackage] = TABLE,
+) -> list[SystemPackage]:
+    """Install what is missing for one need where that is possible, and return the rows that still are.
+
+    Args:
+        need: which rows to look at.
+        log: takes the output of apt-get.
+        say: prints a line for the user.
+        apt: how packages can be installed here; found out when it is None.
+        table: the rows.
+    """
+    apt = apt or Apt.here()
+    absent = missing(need, table)
+    if absent and apt.program and apt.as_root:
+        say(f"installing {', '.join(row.title for row in absent)} with apt-get")
+        _apt_install(absent, apt, log)
+        absent = missing(need, table)
+    return absent
+
+
+def require(need: Need, log: IO[str], say: Callable[[str], None], apt: Apt | None = None) -> None:
+    """Like `provide`, but what is still missing afterwards is an error.
+
+    Raises:
+        MissingPackagesError: with the one command to type.
+    """
+    apt = apt or Apt.here()
+    absent = provide(need, log, say, apt)
+    if absent:
+        wanted = ", ".join(f"{row.title} ({row.reason})" for row in absent)
+        raise MissingPackagesError(f"Missing: {wanted}. Get it with: {command_to_type(absent, apt)}")
