@@ -1,0 +1,161 @@
+"""Mistakes that several exercises share, told from the graph and from how the subject ended."""
+
+from __future__ import annotations
+
+import difflib
+
+from autograder.exercises.crashes import CRASHED, CRASHES, traceback_of
+from autograder.exercises.evidence import Evidence
+from autograder.exercises.model import Advice, Mistake
+
+__all__ = ["CRASHES", "NOTHING_THERE", "endpoint_name", "everything_twice", "message_type", "never_spun", "qos_mismatch"]
+
+_WORD = {
+    "publisher": ("publishes on", "topic"),
+    "subscription": ("subscribes to", "topic"),
+    "client": ("asks for the service", "service"),
+    "service": ("serves", "service"),
+    "action_client": ("asks for the action", "action"),
+    "action_server": ("serves the action", "action"),
+}
+_KEY = {"topic": "topic_name", "service": "service_name", "action": "action_name"}
+
+
+def endpoint_name(role: str) -> Mistake:
+    """The expected name is not on the graph, and another one of the same role is."""
+    verb, noun = _WORD[role]
+
+    def recognise(evidence: Evidence) -> Advice | None:
+        expected, _ = evidence.reference.only(role)
+        made: set[str] = set().union(*(part.endpoints(role) for part in evidence))
+        if not made or expected in made:
+            return None
+        near = difflib.get_close_matches(expected, made, n=1, cutoff=0.0) or sorted(made)
+        return Advice(
+            f"Your node {verb} {near[0]}; the {noun} is called {expected}.",
+            f"Correct the name. `ros2 {noun} list` shows what is on the graph: two nodes meet only where the names are "
+            "the same to the letter.",
+        )
+
+    return Mistake(_KEY[noun], recognise, certain=True)
+
+
+def message_type(role: str) -> Mistake:
+    """The name is right and the type is another one."""
+
+    def recognise(evidence: Evidence) -> Advice | None:
+        name, expected = evidence.reference.only(role)
+        made = evidence.main.endpoints(role).get(name)
+        if made is None or made == expected:
+            return None
+        return Advice(
+            f"On {name} your node uses {made}; the other side uses {expected}. Two types on one name never meet.",
+            f"Import and use {expected.split('/')[-1]} from {expected.split('/')[0]}.{expected.split('/')[1]}.",
+        )
+
+    return Mistake("message_type", recognise, certain=True)
+
+
+def qos_mismatch(role: str) -> Mistake:
+    """The two ends offer and ask for qualities that do not fit."""
+
+    def recognise(evidence: Evidence) -> Advice | None:
+        name, _ = evidence.reference.only(role)
+        mismatch = evidence.main.first("mismatch", name)
+        if mismatch is None or evidence.main.of("message", name):
+            return None
+        policy = mismatch.data["policy"]
+        return Advice(
+            f"Your node and the other side are both on {name}, but their {policy} does not fit, so nothing is "
+            "exchanged.",
+            "Use the queue depth 10 in place of the QoS profile: that is reliable and volatile, as the other side is.",
+        )
+
+    return Mistake("qos_mismatch", recognise, certain=True)
+
+
+def everything_twice(role: str) -> Mistake:
+    """Each message comes twice: two nodes do the same work."""
+
+    def recognise(evidence: Evidence) -> Advice | None:
+        name, _ = evidence.reference.only(role)
+        heard = [str(event.data["fields"]) for event in evidence.main.of("message", name)]
+        pairs = [heard.count(text) for text in heard[:-1]]
+        if len(heard) < 4 or sum(count == 2 for count in pairs) < len(pairs) * 0.7:
+            return None
+        return Advice(
+            "Every message arrives twice: two of your nodes (or two timers) do the same work.",
+            "Make the node once. In a notebook, an earlier run of the cell may have left a node of its own.",
+        )
+
+    return Mistake("everything_twice", recognise, certain=True)
+
+
+def never_spun(role: str) -> Mistake:
+    """The endpoint is there and nothing ever happens on it."""
+
+    def recognise(evidence: Evidence) -> Advice | None:
+        name, _ = evidence.reference.only(role)
+        part = evidence.main
+        if name not in part.endpoints(role) or part.of("message", name) or part.of("log", None)[1:]:
+            return None
+        return Advice(
+            "The node is on the graph, but none of its callbacks is ever called: nothing spins it.",
+            "Call rclpy.spin(node) at the end of main(). In a notebook, `with spinning(node):` does it.",
+        )
+
+    return Mistake("never_spun", recognise)
+
+
+def _main_guard(evidence: Evidence) -> Advice | None:
+    ending = evidence.main.ending
+    if ending is None or ending.name != "exited" or ending.data.get("code") != 0 or evidence.main.said():
+        return None
+    if any(evidence.main.endpoints(role) for role in _WORD):
+        return None
+    return Advice(
+        "The program ended at once, said nothing and made no node: nothing in it was called.",
+        "End the file with `if __name__ == '__main__':` and `main()` below it; count the underscores, two on each side.",
+    )
+
+
+def _ended_too_early(evidence: Evidence) -> Advice | None:
+    ending = evidence.main.ending
+    if ending is None or traceback_of(evidence):
+        return None
+    how = {"exited": f"ended with exit code {ending.data.get('code')}", "returned": "returned"}.get(ending.name, "ended")
+    return Advice(
+        f"The program {how} before its work was done.",
+        "Keep it alive while it has work to do, for example with rclpy.spin(node).",
+    )
+
+
+def _not_written(evidence: Evidence) -> Advice | None:
+    part = evidence.main
+    surveys = part.of("interface")
+    if not surveys or not surveys[-1].data.get("nodes") or any(part.endpoints(role) for role in _WORD):
+        return None
+    return Advice(
+        "The node is there, but it has no publisher, subscription, client or server yet.",
+        "Find the TODO in your solution cell and write that step; the hints above it open one at a time.",
+    )
+
+
+def _nothing_on_the_graph(evidence: Evidence) -> Advice | None:
+    surveys = evidence.main.of("interface")
+    if surveys and surveys[-1].data.get("nodes"):
+        return None
+    return Advice(
+        "No node of yours appeared on the graph.",
+        "Make the node (rclpy.init(), then your class or create_node) and keep the program running.",
+    )
+
+
+NOTHING_THERE = (
+    CRASHED,
+    Mistake("main_guard", _main_guard, certain=True),
+    Mistake("ended_too_early", _ended_too_early),
+    Mistake("not_written", _not_written),
+    Mistake("nothing_on_the_graph", _nothing_on_the_graph),
+)
+"""What is asked last, when nothing more exact fits."""

@@ -1,0 +1,202 @@
+"""Mistakes that a Python traceback gives away: pattern, cause, next step.
+
+The patterns are what rclpy 7.1 and Python say; each was reproduced. The order matters: the first that fits wins.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from autograder.exercises.evidence import Evidence
+from autograder.exercises.model import Advice, Mistake
+
+
+@dataclass(frozen=True)
+class Crash:
+    """A known traceback.
+
+    Attributes:
+        key: The mistake's name.
+        pattern: Found in the traceback (multi-line search); its groups may be named in ``text``.
+        text: What happened and why.
+        next_step: What to do now.
+    """
+
+    key: str
+    pattern: str
+    text: str
+    next_step: str
+
+
+KNOWN = (
+    Crash(
+        "syntax_error",
+        r"^\s*(?:SyntaxError|IndentationError|TabError): (?P<what>.*)$",
+        "Python could not read the program: {what}.",
+        "Go to the line that the message names; a bracket, a quote, a colon or the indentation is off there or just "
+        "before it.",
+    ),
+    Crash(
+        "init_twice",
+        r"Context\.init\(\) must only be called once",
+        "rclpy.init() was called although ROS was already started.",
+        "Call rclpy.init() once per process. In a notebook start_ros() has done it: leave rclpy.init() out.",
+    ),
+    Crash(
+        "not_initialized",
+        r"NotInitializedException|rclpy\.init has not been called|context (?:must be initialized|is not valid)",
+        "The node was made before ROS was started, or after it was shut down.",
+        "Call rclpy.init() first (in a notebook: start_ros()) and make nodes only after it.",
+    ),
+    Crash(
+        "super_init_missing",
+        r"no attribute '_(?:Node__|default_callback_group|parameter|context|logger|handle)",
+        "The class uses the Node before the Node was set up: super().__init__('a_name') is missing or comes too late.",
+        "Make super().__init__('your_node_name') the first line of __init__.",
+    ),
+    Crash(
+        "handle_overwritten",
+        r"'method' object does not support the context manager protocol|handle cannot be modified",
+        "A method or attribute of your node is called handle, a name that Node itself needs.",
+        "Rename it, for example to handle_message.",
+    ),
+    Crash(
+        "node_attribute_overwritten",
+        r"property '(?P<name>\w+)' of '\w+' object has no setter|can't set attribute '?(?P<other>\w*)",
+        "Your class assigns to a name that Node already uses for something else ({name}).",
+        "Give your attribute another name, for example my_{name} or {name}_.",
+    ),
+    Crash(
+        "qos_arguments_swapped",
+        r"Expected QoSProfile or int",
+        "The arguments of create_publisher or create_subscription are in the wrong order.",
+        "The order is create_publisher(Type, 'topic', 10) and create_subscription(Type, 'topic', callback, 10).",
+    ),
+    Crash(
+        "qos_depth_missing",
+        r"missing \d+ required positional arguments?: .*'?qos_profile",
+        "The queue size is missing.",
+        "Add it as the last argument: create_publisher(Type, 'topic', 10), create_subscription(Type, 'topic', "
+        "callback, 10).",
+    ),
+    Crash(
+        "builtin_callback",
+        r"no signature found for builtin",
+        "A builtin such as list.append or deque.append was given as a callback; rclpy cannot look at its arguments.",
+        "Wrap it: lambda msg: my_list.append(msg).",
+    ),
+    Crash(
+        "callback_signature",
+        r"Expected .* callback|[Cc]allback should be either|callback.*(?:takes|missing) .*positional argument"
+        r"|_callback\(\) takes \d+ positional",
+        "A callback has the wrong form: it was called on the spot (cb() instead of cb), or it takes the wrong number "
+        "of arguments.",
+        "Pass the function itself, without brackets, and give a subscription's callback exactly one argument besides "
+        "self: the message.",
+    ),
+    Crash(
+        "timer_callback_called",
+        r"'NoneType' object is not callable",
+        "The timer got what the callback returned (None) instead of the callback.",
+        "Write create_timer(0.5, self.timer_callback) without brackets after timer_callback.",
+    ),
+    Crash(
+        "request_not_instantiated",
+        r"(?:Service|Action|Interface)\w* classes can not be instantiated",
+        "A service or action type itself cannot be made: it is only the name for its parts.",
+        "Make its part: AddTwoInts.Request(), Fibonacci.Goal().",
+    ),
+    Crash(
+        "raw_value_published",
+        r"[Ee]xpected (?:<class )?'?[\w.]*(?:String|Int\d+|Message)\b.*got|TypeError: Expected [\w/.<>' ]+, got",
+        "A bare value was published where a message is expected.",
+        "Make the message first (msg = String()), fill it (msg.data = 'text') and publish msg.",
+    ),
+    Crash(
+        "field_type",
+        r"The '(?P<field>\w+)' (?:field|numpy\.ndarray) must|bad argument type for built-in operation"
+        r"|must be an integer in \[|AssertionError: The '",
+        "A field of a message got a value of the wrong type.",
+        "Convert it before you assign: int(...) for an int64, str(...) for a string. Command-line arguments are text.",
+    ),
+    Crash(
+        "field_typo",
+        r"AttributeError: '?(?:(?P<type>[\w.]+)(?:_Request|_Response|_Goal|_Result|_Feedback|_FeedbackMessage)?'?) "
+        r"object has no attribute '(?P<name>data?\w{0,2}|sequ\w*|part\w*|su\w*|dta|order\w*|feed\w*|a_|b_|c)'",
+        "The message has no field of the name {name}.",
+        "Look the fields up with `ros2 interface show` and spell the name exactly so. In an action's feedback "
+        "callback the fields are one level down: msg.feedback.partial_sequence.",
+    ),
+    Crash(
+        "callback_returned_none",
+        r"send_response|convert_to_py|isinstance\(response|srv_response|TypeError\s*$|TypeError: $",
+        "A service callback returned nothing.",
+        "End the callback with `return response`.",
+    ),
+    Crash(
+        "result_read_too_early",
+        r"'NoneType' object has no attribute '(?:sum|result|accepted|status|sequence|cancel_goal_async|"
+        r"get_result_async|goals_canceling)'",
+        "The answer was read before it was there: future.result() is None until the future is done.",
+        "Wait first: spin_until_future_complete(node, future), or go on in future.add_done_callback(...).",
+    ),
+    Crash(
+        "module_not_found",
+        r"ModuleNotFoundError: No module named '(?P<name>[\w.]+)'",
+        "Python does not find the module {name}.",
+        "Is the name right? The course's interfaces are in my_robot_interfaces (.srv, .action). Packages of your own "
+        "workspace need `colcon build` and `source install/setup.bash` first.",
+    ),
+    Crash(
+        "nested_spin",
+        r"[Ee]xecutor is already spinning|generator already executing",
+        "A callback spins although its own executor is spinning already.",
+        "Never call spin or spin_until_future_complete inside a callback; use add_done_callback or await.",
+    ),
+    Crash(
+        "not_written",
+        r"NotImplementedError",
+        "The part that you are to write is still open.",
+        "Find the TODO and write it; the hints below it open one at a time.",
+    ),
+)
+
+
+def traceback_of(evidence: Evidence) -> str:
+    """The last traceback of any part.
+
+    A TimeoutError is how a client is asked to say that nobody serves it, so it is no crash.
+    """
+    shown = (part.traceback for part in reversed(list(evidence)))
+    return next((text for text in shown if text and "\nTimeoutError" not in text), "")
+
+
+def _recogniser(crash: Crash) -> Mistake:
+    compiled = re.compile(crash.pattern, re.MULTILINE)
+
+    def recognise(evidence: Evidence) -> Advice | None:
+        found = compiled.search(traceback_of(evidence))
+        if found is None:
+            return None
+        words = {name: value or "it" for name, value in found.groupdict().items()}
+        return Advice(crash.text.format(**words), crash.next_step.format(**words))
+
+    return Mistake(crash.key, recognise, certain=True)
+
+
+def _crashed(evidence: Evidence) -> Advice | None:
+    traceback = traceback_of(evidence)
+    if not traceback:
+        return None
+    last = next((line for line in reversed(traceback.splitlines()) if line.strip()), "")
+    return Advice(
+        f"The program stopped with an exception: {last.strip()}",
+        "Read the traceback from the bottom: the last line says what, the lines above say where.",
+    )
+
+
+CRASHES: tuple[Mistake, ...] = tuple(map(_recogniser, KNOWN))
+"""The known tracebacks, most telling first."""
+CRASHED = Mistake("crashed", _crashed, certain=True)
+"""Any other traceback; to be asked last."""

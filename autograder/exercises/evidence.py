@@ -1,0 +1,166 @@
+"""What the judge wrote down, and the questions an exercise asks of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Event:
+    """One thing that happened.
+
+    Attributes:
+        t: Seconds of wall time since the part began.
+        kind: ``message``, ``sent``, ``request``, ``response``, ``goal``, ``feedback``, ``cancel``,
+            ``result_request``, ``result``, ``log``, ``output``, ``subject``, ``mismatch``, ``interface``.
+        name: The topic, service or action; the stream of an output line; what happened to the subject.
+        data: The rest, as JSON-able values.
+        sim: Simulated seconds where the judge stepped the clock, else None.
+    """
+
+    t: float
+    kind: str
+    name: str
+    data: Mapping[str, Any] = field(default_factory=dict)
+    sim: float | None = None
+
+
+@dataclass(frozen=True)
+class Part:
+    """One run of the subject: its inputs and the events in order."""
+
+    name: str
+    inputs: Mapping[str, Any] = field(default_factory=dict)
+    events: Sequence[Event] = ()
+
+    def of(self, kind: str, name: str | None = None) -> list[Event]:
+        """The events of a kind, in order; only those of ``name`` where one is given."""
+        return [e for e in self.events if e.kind == kind and (name is None or e.name == name)]
+
+    def first(self, kind: str, name: str | None = None) -> Event | None:
+        """The first event of a kind, or None."""
+        return next((e for e in self.events if e.kind == kind and (name is None or e.name == name)), None)
+
+    def said(self, *, after: Event | None = None) -> list[str]:
+        """What the subject said (log lines, printed lines, what a function returned), in order.
+
+        Args:
+            after: Only what was said later than this event.
+        """
+        start = self.events.index(after) + 1 if after is not None else 0
+        return [text for e in self.events[start:] if (text := _spoken(e)) is not None]
+
+    def endpoints(self, role: str) -> dict[str, str]:
+        """The subject's endpoints of a role that were on the graph at any time of this part: name -> type."""
+        found: dict[str, str] = {}
+        for survey in self.of("interface"):
+            found |= survey.data.get(role, {})
+        return found
+
+    @property
+    def ending(self) -> Event | None:
+        """How the subject ended by itself: an event named ``exited``, ``returned`` or ``raised``; or None."""
+        return next((e for e in self.events if e.kind == "subject" and e.name in _ENDINGS), None)
+
+    @property
+    def traceback(self) -> str:
+        """The last traceback that the subject showed, else an empty string.
+
+        One that comes from being stopped by the judge does not count: it means nothing.
+        """
+        for event in reversed(self.events):
+            if event.kind == "subject" and event.data.get("traceback"):
+                return str(event.data["traceback"])
+        return _traceback_in([e.data["text"] for e in self.of("output")])
+
+
+_ENDINGS = ("exited", "returned", "raised")
+
+
+def _spoken(event: Event) -> str | None:
+    if event.kind in ("log", "output"):
+        return str(event.data["text"])
+    if event.kind == "subject" and event.name == "returned" and event.data.get("value") is not None:
+        return str(event.data["value"])
+    return None
+
+
+def _traceback_in(lines: Sequence[str]) -> str:
+    """The last Python traceback among lines of output, the way a terminal shows it."""
+    starts = [i for i, line in enumerate(lines) if line.startswith("Traceback (most recent call last)")]
+    syntax = [i for i, line in enumerate(lines) if line.startswith("  File ") and i not in starts]
+    if not starts:
+        # A SyntaxError in the program itself is shown without the word "Traceback".
+        ends = [i for i, line in enumerate(lines) if line.startswith(("SyntaxError", "IndentationError", "TabError"))]
+        return "\n".join(lines[syntax[0] : ends[-1] + 1]) if ends and syntax else ""
+    taken = [lines[starts[-1]]]
+    for line in lines[starts[-1] + 1 :]:
+        taken.append(line)
+        if line and not line.startswith((" ", "\t")):
+            break
+    return "\n".join(taken)
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """All that a criterion or a mistake may look at.
+
+    Attributes:
+        parts: What was seen of the subject.
+        reference: What was recorded of the reference solution: the expected behaviour.
+        real_time: Whether this is the second look.
+    """
+
+    parts: Sequence[Part]
+    reference: Reference
+    real_time: bool = False
+
+    def part(self, name: str) -> Part:
+        """The part of that name; an empty one where the scenario did not get so far."""
+        return next((part for part in self.parts if part.name == name), Part(name))
+
+    @property
+    def main(self) -> Part:
+        """The first part."""
+        return self.parts[0] if self.parts else Part("nothing")
+
+    def __iter__(self) -> Iterator[Part]:
+        return iter(self.parts)
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A reference output: what the reference solution does on the wire.
+
+    Attributes:
+        exercise: The exercise's id.
+        interface: Role -> {name: type} of the reference solution's endpoints.
+        parts: What was seen of it, in the same parts as any subject's.
+    """
+
+    exercise: str
+    interface: Mapping[str, Mapping[str, str]]
+    parts: Sequence[Part] = ()
+
+    def part(self, name: str) -> Part:
+        """The part of that name.
+
+        Raises:
+            KeyError: The reference output has no such part: it must be recorded again.
+        """
+        for part in self.parts:
+            if part.name == name:
+                return part
+        raise KeyError(f"the reference output of {self.exercise} has no part {name!r}: run `autograder record`")
+
+    def only(self, role: str) -> tuple[str, str]:
+        """The name and type of the one endpoint of a role.
+
+        Raises:
+            KeyError: The reference solution has none of this role.
+        """
+        for name, type_name in sorted(self.interface.get(role, {}).items()):
+            return name, type_name
+        raise KeyError(f"the reference solution of {self.exercise} has no {role}: is the master right?")

@@ -1,0 +1,175 @@
+"""Lab 1.2, the listener: says what it hears, and nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from random import Random
+
+from autograder.exercises import common_mistakes as common
+from autograder.exercises.evidence import Event, Evidence, Part
+from autograder.exercises.model import Advice, Bench, Criterion, Exercise, Finding, Look, Mistake
+
+TEXTS = 6
+"""Texts that are sent, each once the one before was said."""
+PATIENCE = {Look.FAST: 1.0, Look.REAL_TIME: 4.0}
+"""Seconds of wall time in which a text that was sent must have been said."""
+
+_WORDS = (
+    "amber", "birch", "cedar", "delta", "ember", "fjord", "grove", "harbour", "islet", "juniper", "kelp", "lagoon",
+    "meadow", "north", "orchard", "pebble", "quarry", "river", "summit", "tundra",
+)  # fmt: skip
+
+
+def scenario(bench: Bench) -> None:
+    """Send texts that nobody can guess, one after the other, and wait until each is said."""
+    topic, type_name = bench.reference.only("subscription")
+    texts = random_texts(bench.random)
+    bench.part("listening", texts=texts)
+    speaker = bench.speak(topic, type_name)
+    bench.start()
+    if bench.await_endpoint("subscription", topic):
+        bench.release()
+        for text in texts:
+            speaker.send(data=text)
+            if not bench.wait_until(lambda evidence, text=text: _is_said(text, evidence.main), PATIENCE[bench.look]):
+                break
+    bench.stop()
+
+
+def random_texts(random: Random) -> list[str]:
+    """Texts of two words and a number; none is part of another."""
+    numbers = random.sample(range(1000, 10000), TEXTS)
+    return [f"{random.choice(_WORDS)} {random.choice(_WORDS)} {number}" for number in numbers]
+
+
+def _is_said(text: str, part: Part) -> bool:
+    return any(text in line for line in part.said())
+
+
+def _sent(part: Part, topic: str) -> list[Event]:
+    return part.of("sent", topic)
+
+
+def _said_after_sent(part: Part, event: Event) -> bool:
+    text = str(event.data["fields"]["data"])
+    return any(text in line for line in part.said(after=event))
+
+
+def invented(part: Part, sent: Sequence[str]) -> list[str]:
+    """What it claims to have heard although nobody sent it.
+
+    Its own way of saying is learnt from the lines that carry a sent text: what stands before and after the text. A
+    line with the same frame and another text in it was invented.
+    """
+    lines = part.said()
+    frames = {(line[: line.index(text)], line[line.index(text) + len(text) :]) for line in lines for text in sent if text in line}
+    return [
+        line
+        for line in lines
+        for before, after in frames
+        if len(before.strip()) > 3
+        and line.startswith(before)
+        and line.endswith(after)
+        and not any(text in line for text in sent)
+    ]
+
+
+def subscribes(evidence: Evidence) -> Finding:
+    """A subscription of the subject's is on the topic with the right type."""
+    topic, type_name = evidence.reference.only("subscription")
+    made = evidence.main.endpoints("subscription")
+    seen = ", ".join(f"{name} ({kind})" for name, kind in sorted(made.items())) or "no subscription"
+    return Finding(made.get(topic) == type_name, f"{topic} ({type_name})", seen)
+
+
+def says_every_text(evidence: Evidence) -> Finding:
+    """Each text that was sent is said afterwards."""
+    topic, _ = evidence.reference.only("subscription")
+    part = evidence.main
+    sent = _sent(part, topic)
+    said = [event for event in sent if _said_after_sent(part, event)]
+    missing = next((e for e in sent if e not in said), None)
+    seen = f"{len(said)} of {TEXTS} said"
+    if missing is not None:
+        seen += f"; not “{missing.data['fields']['data']}”"
+    return Finding(len(said) == TEXTS, f"all {TEXTS} texts in its log", seen)
+
+
+def says_nothing_else(evidence: Evidence) -> Finding:
+    """It claims no text that was never sent."""
+    topic, _ = evidence.reference.only("subscription")
+    sent = [str(event.data["fields"]["data"]) for event in _sent(evidence.main, topic)]
+    heard_any = any(_is_said(text, evidence.main) for text in sent)
+    made_up = invented(evidence.main, sent)
+    seen = f"“{made_up[0]}”" if made_up else "only what was sent" if heard_any else "it said none of the texts"
+    return Finding(heard_any and not made_up, "only what was sent", seen)
+
+
+def not_logged(evidence: Evidence) -> Advice | None:
+    """It is subscribed, was sent texts and says none of them."""
+    topic, _ = evidence.reference.only("subscription")
+    part = evidence.main
+    sent = _sent(part, topic)
+    if not sent or not subscribes(evidence).passed or _said_after_sent(part, sent[0]):
+        return None
+    if len(part.said(after=sent[0])) == 0:
+        return Advice(
+            f"Your node is subscribed to {topic}, but when a text arrives it says nothing.",
+            "In the callback, log the text: self.get_logger().info(f'I heard: \"{msg.data}\"'). Is the node spun?",
+        )
+    return Advice(
+        f"When “{sent[0].data['fields']['data']}” was sent, your node said “{part.said(after=sent[0])[0]}”: the text "
+        "that arrived is not in it.",
+        "Put msg.data into the line that you log.",
+    )
+
+
+def invented_text(evidence: Evidence) -> Advice | None:
+    """It says what nobody sent."""
+    topic, _ = evidence.reference.only("subscription")
+    sent = [str(event.data["fields"]["data"]) for event in _sent(evidence.main, topic)]
+    made_up = invented(evidence.main, sent)
+    if not made_up:
+        return None
+    return Advice(
+        f"Your node said “{made_up[0]}”, but nobody sent that.",
+        "Log only in the subscription's callback, and only the text of the message that it was given.",
+    )
+
+
+def never_spun(evidence: Evidence) -> Advice | None:
+    """Subscribed, sent to, silent, and its executor never turned."""
+    topic, _ = evidence.reference.only("subscription")
+    sent = _sent(evidence.main, topic)
+    if not sent or not subscribes(evidence).passed or evidence.main.said(after=sent[0]):
+        return None
+    if not evidence.main.of("unanswered"):
+        return None
+    return Advice(
+        "The node is on the graph, but none of its callbacks is ever called: nothing spins it.",
+        "Call rclpy.spin(node) at the end of main(). In a notebook, `with spinning(node):` does it.",
+    )
+
+
+EXERCISE = Exercise(
+    id="lab_1_2.listener",
+    title="Lab 1.2 · The listener",
+    task="Say every text that arrives on the topic.",
+    scenario=scenario,
+    criteria=(
+        Criterion("topic", "Subscribes to the right topic and type", 3, subscribes),
+        Criterion("says", "Says every text it hears", 5, says_every_text),
+        Criterion("honest", "Says only what it heard", 2, says_nothing_else),
+    ),
+    mistakes=(
+        *common.CRASHES,
+        common.endpoint_name("subscription"),
+        common.message_type("subscription"),
+        common.qos_mismatch("subscription"),
+        Mistake("invented_text", invented_text, certain=True),
+        Mistake("never_spun", never_spun),
+        Mistake("not_logged", not_logged),
+        *common.NOTHING_THERE,
+    ),
+    roles=("subscription",),
+)

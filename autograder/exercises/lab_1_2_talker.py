@@ -1,0 +1,206 @@
+"""Lab 1.2, the talker: a counted greeting on a topic, at a steady rate."""
+
+from __future__ import annotations
+
+import re
+from statistics import median
+
+from autograder.exercises import common_mistakes as common
+from autograder.exercises.evidence import Evidence, Event, Part, Reference
+from autograder.exercises.model import Advice, Bench, Criterion, Exercise, Finding, Look, Mistake
+
+MESSAGES = {Look.FAST: 10, Look.REAL_TIME: 7}
+"""Messages that are listened to; six intervals in real time, whose median one late message does not move."""
+USUAL_PERIOD = 0.5
+"""Seconds; stands in for the reference's period while that is being recorded."""
+RATE_TOLERANCE = 0.2
+"""How far the median interval may be from the reference's, as a part of it."""
+
+
+def scenario(bench: Bench) -> None:
+    """Listen to what it publishes until enough was heard or it has had twice the time it needs."""
+    topic, type_name = bench.reference.only("publisher")
+    enough = MESSAGES[bench.look]
+    bench.part("talking")
+    bench.listen(topic, type_name)
+    bench.start()
+    if bench.await_endpoint("publisher", topic):
+        bench.release()
+        bench.run_time(2 * enough * _reference_period(bench.reference), until=lambda: bench.heard(topic) >= enough)
+    bench.stop()
+
+
+def texts(part: Part, topic: str) -> list[str]:
+    """The texts heard on a topic."""
+    return [str(event.data["fields"].get("data")) for event in part.of("message", topic)]
+
+
+def intervals(messages: list[Event]) -> list[float]:
+    """Seconds between messages, simulated ones where there are any; the first interval is left out.
+
+    The clock may have been taken over within the first one, and a jump to simulated time distorts it.
+    """
+    times = [event.sim for event in messages if event.sim is not None] or [event.t for event in messages]
+    return [later - earlier for earlier, later in zip(times[1:], times[2:], strict=False)]
+
+
+def _reference_period(reference: Reference) -> float:
+    if not reference.parts:
+        return USUAL_PERIOD
+    topic, _ = reference.only("publisher")
+    return median(intervals(reference.part("talking").of("message", topic)))
+
+
+def _template(text: str) -> str:
+    return re.sub(r"-?\d+", "#", text)
+
+
+def _counters(heard: list[str]) -> list[int]:
+    return [int(numbers[-1]) for text in heard if (numbers := re.findall(r"-?\d+", text))]
+
+
+def _expected(evidence: Evidence) -> tuple[str, str, list[str]]:
+    topic, type_name = evidence.reference.only("publisher")
+    return topic, type_name, texts(evidence.reference.part("talking"), topic)
+
+
+def publishes_on_the_topic(evidence: Evidence) -> Finding:
+    """A publisher of the subject's is on the topic."""
+    topic, _, _ = _expected(evidence)
+    published = evidence.main.endpoints("publisher")
+    seen = f"publishes on {', '.join(sorted(published))}" if published else "no publisher"
+    return Finding(topic in published, f"a publisher on {topic}", seen)
+
+
+def has_the_type(evidence: Evidence) -> Finding:
+    """The publisher has the reference's message type."""
+    topic, type_name, _ = _expected(evidence)
+    seen = evidence.main.endpoints("publisher").get(topic)
+    return Finding(seen == type_name, type_name, seen or f"nothing on {topic}")
+
+
+def says_the_text(evidence: Evidence) -> Finding:
+    """Every text is the reference's, the number aside."""
+    topic, _, expected = _expected(evidence)
+    heard = texts(evidence.main, topic)
+    wanted = {_template(text) for text in expected}
+    odd = [text for text in heard if _template(text) not in wanted]
+    seen = f"“{(odd or heard)[0]}”" if heard else "no message arrived"
+    return Finding(bool(heard) and not odd, f"“{expected[0]}”, “{expected[1]}”, …", seen)
+
+
+def counts_from_zero(evidence: Evidence) -> Finding:
+    """The numbers are the reference's, from the first message on."""
+    topic, _, expected = _expected(evidence)
+    wanted = _counters(expected)
+    heard = _counters(texts(evidence.main, topic))
+    fits = len(heard) > 1 and heard == list(range(wanted[0], wanted[0] + len(heard)))
+    return Finding(fits, _row(wanted[:5]), _row(heard[:5]) if heard else "no number arrived")
+
+
+def keeps_the_rate(evidence: Evidence) -> Finding:
+    """The median interval is near the reference's."""
+    topic, _, _ = _expected(evidence)
+    wanted = _reference_period(evidence.reference)
+    gaps = intervals(evidence.main.of("message", topic))
+    if len(gaps) < 2:
+        return Finding(False, f"one every {wanted:g} s", f"{len(evidence.main.of('message', topic))} messages in all")
+    seen = median(gaps)
+    return Finding(abs(seen - wanted) <= RATE_TOLERANCE * wanted, f"one every {wanted:g} s", f"one every {seen:.2g} s")
+
+
+def _row(numbers: list[int]) -> str:
+    return ", ".join(map(str, numbers)) + ", …"
+
+
+def wrong_rate(evidence: Evidence) -> Advice | None:
+    """Everything but the rate is right."""
+    finding = keeps_the_rate(evidence)
+    if finding.passed or not says_the_text(evidence).passed or "every" not in finding.seen:
+        return None
+    return Advice(
+        f"Your talker publishes {finding.seen}; the task asks for {finding.expected}.",
+        "Look at the first argument of create_timer: it is the period in seconds (0.5), not a frequency.",
+    )
+
+
+def counter_start(evidence: Evidence) -> Advice | None:
+    """It counts by one, but from another number."""
+    topic, _, expected = _expected(evidence)
+    heard, wanted = _counters(texts(evidence.main, topic)), _counters(expected)
+    steady = len(heard) > 1 and all(b - a == 1 for a, b in zip(heard, heard[1:], strict=False))
+    if not steady or heard[0] == wanted[0]:
+        return None
+    return Advice(
+        f"The first message carries the number {heard[0]}; the counter must begin at {wanted[0]}.",
+        f"Set self.i = {wanted[0]} in __init__ and add 1 only after the message was published.",
+    )
+
+
+def counter_stuck(evidence: Evidence) -> Advice | None:
+    """The number never changes."""
+    heard = _counters(texts(evidence.main, _expected(evidence)[0]))
+    if len(heard) < 3 or len(set(heard)) > 1:
+        return None
+    return Advice(
+        f"Every message carries the number {heard[0]}: the counter is never counted up.",
+        "Add self.i += 1 at the end of the timer callback. A plain i = i + 1 counts a local variable.",
+    )
+
+
+def counter_step(evidence: Evidence) -> Advice | None:
+    """The numbers do not go up by one."""
+    heard = _counters(texts(evidence.main, _expected(evidence)[0]))
+    if len(heard) < 3 or all(b - a == 1 for a, b in zip(heard, heard[1:], strict=False)):
+        return None
+    if any(heard.count(number) > 1 for number in heard) and sorted(set(heard)) == list(
+        range(min(heard), max(heard) + 1)
+    ):
+        return None  # everything comes twice, which has a diagnosis of its own
+    return Advice(
+        f"The numbers come as {_row(heard[:6])} They must go up by one with each message.",
+        "Count once for each published message: one self.i += 1 at the end of the callback, and one timer.",
+    )
+
+
+def wrong_text(evidence: Evidence) -> Advice | None:
+    """Messages arrive, but with another text."""
+    topic, _, _ = _expected(evidence)
+    finding = says_the_text(evidence)
+    if finding.passed or not texts(evidence.main, topic):
+        return None
+    return Advice(
+        f"Your talker says {finding.seen}; the task asks for {finding.expected}",
+        "Compare the two letter by letter: capitals, the comma, the exclamation mark and the space before the "
+        "number all count, because other nodes read this text.",
+    )
+
+
+EXERCISE = Exercise(
+    id="lab_1_2.talker",
+    title="Lab 1.2 · The talker",
+    task="Publish a counted greeting on the topic every half second.",
+    scenario=scenario,
+    criteria=(
+        Criterion("topic", "Publishes on the right topic", 2, publishes_on_the_topic),
+        Criterion("type", "Publishes the right message type", 1, has_the_type),
+        Criterion("text", "Says the right text", 2, says_the_text),
+        Criterion("counter", "Counts up from the start", 2, counts_from_zero),
+        Criterion("rate", "Keeps the rate", 3, keeps_the_rate),
+    ),
+    mistakes=(
+        *common.CRASHES,
+        common.endpoint_name("publisher"),
+        common.message_type("publisher"),
+        common.qos_mismatch("publisher"),
+        common.everything_twice("publisher"),
+        Mistake("counter_stuck", counter_stuck, certain=True),
+        Mistake("wrong_text", wrong_text, certain=True),
+        Mistake("counter_start", counter_start),
+        Mistake("counter_step", counter_step),
+        Mistake("wrong_rate", wrong_rate),
+        common.never_spun("publisher"),
+        *common.NOTHING_THERE,
+    ),
+    roles=("publisher",),
+)

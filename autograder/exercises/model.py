@@ -1,0 +1,246 @@
+"""What an exercise is made of: plain data, and the words in which a scenario is written.
+
+An exercise module says what to stimulate (a scenario), what must hold (criteria) and which mistakes are known
+(mistakes). It drives the judge through the :class:`Bench` protocol and never imports it, so that an exercise
+reads like its specification and can be tested without ROS.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+from random import Random
+from typing import Any, Protocol
+
+from autograder.exercises.evidence import Evidence
+
+
+class Look(StrEnum):
+    """How time passes while the judge looks at a subject."""
+
+    FAST = "fast"
+    """Simulated time is stepped where the subject follows it; counterparts answer as fast as they can."""
+    REAL_TIME = "real time"
+    """Everything at the pace that the task names. What fails fast is looked at again so."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Whether a criterion holds, with the two halves of the sentence on the card."""
+
+    passed: bool
+    expected: str
+    seen: str
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """One thing that is asked for.
+
+    Attributes:
+        name: A stable key.
+        title: One line for a person.
+        points: Points it carries.
+        judge: Decides from the evidence; called once, after the scenario has ended.
+    """
+
+    name: str
+    title: str
+    points: float
+    judge: Callable[[Evidence], Finding]
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What a recognised mistake tells the student."""
+
+    text: str
+    next_step: str
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A known mistake and how to recognise it.
+
+    Attributes:
+        key: A stable name, listed in ``docs/mistakes.md``.
+        recognise: Gives the advice where the evidence shows this mistake, else None.
+        certain: The evidence proves the failure whatever the machine's load was, so a second look in real time
+            would only cost the student time.
+    """
+
+    key: str
+    recognise: Callable[[Evidence], Advice | None]
+    certain: bool = False
+
+
+class Endpoint(Protocol):
+    """A publisher, subscription, client or server of the subject's, as the graph names it."""
+
+    @property
+    def name(self) -> str:
+        """The full name of its topic, service or action."""
+        ...
+
+    @property
+    def type(self) -> str:
+        """Its interface type, such as ``std_msgs/msg/String``."""
+        ...
+
+
+class Speaker(Protocol):
+    """A publisher of the judge's."""
+
+    def send(self, **fields: Any) -> None:
+        """Publish one message with these fields."""
+        ...
+
+
+class Server(Protocol):
+    """A service server of the judge's."""
+
+    def close(self) -> None:
+        """Take the service away."""
+        ...
+
+
+class ActionCounterpart(Protocol):
+    """An action server of the judge's that does only what the scenario tells it to."""
+
+    def await_goal(self, within: float) -> bool:
+        """Wait until a goal arrived (it is accepted); False where none came in ``within`` seconds."""
+        ...
+
+    def send_feedback(self, **fields: Any) -> None:
+        """Send one feedback message for the current goal."""
+        ...
+
+    def await_cancel(self, within: float) -> bool:
+        """Wait until somebody asked to cancel the current goal; False where nobody did."""
+        ...
+
+    def await_result_request(self, within: float) -> bool:
+        """Wait until somebody asked for the result."""
+        ...
+
+    def finish(self, status: str, **fields: Any) -> None:
+        """End the goal with ``"succeeded"``, ``"canceled"`` or ``"aborted"`` and this result."""
+        ...
+
+
+class Bench(Protocol):
+    """What a scenario can do. Every wait ends at an event or at its limit, and says which."""
+
+    look: Look
+    random: Random
+    reference: Any
+
+    def part(self, name: str, **inputs: Any) -> None:
+        """Begin a part: a fresh run of the subject; ``inputs`` are written into the transcript."""
+        ...
+
+    def start(self, *arguments: Any, **options: Any) -> None:
+        """Start the subject; a class is made but not yet spun, a command or function runs at once.
+
+        ``options`` are keyword arguments that only a notebook's function understands (a command ignores them).
+        """
+        ...
+
+    def release(self) -> None:
+        """Let a held subject spin. Does nothing for a subject that runs already."""
+        ...
+
+    def await_endpoint(self, role: str, name: str) -> bool:
+        """Wait until the subject's endpoint is on the graph and matched.
+
+        Gives up at once when the subject has ended or is known to have made all it makes.
+
+        Args:
+            role: ``"publisher"``, ``"subscription"``, ``"client"``, ``"action_client"``, ``"service"`` or
+                ``"action_server"``.
+            name: The full name of the topic, service or action.
+        """
+        ...
+
+    def listen(self, topic: str, type_name: str) -> None:
+        """Subscribe as the course's listener does: reliable, so that a best-effort talker is found out."""
+        ...
+
+    def speak(self, topic: str, type_name: str) -> Speaker:
+        """Create a publisher with the default QoS of the course (reliable, depth 10)."""
+        ...
+
+    def serve(self, service: str, type_name: str, answer: Callable[[Mapping[str, Any]], Mapping[str, Any]]) -> Server:
+        """Serve; each request and response goes into the transcript."""
+        ...
+
+    def serve_action(self, action: str, type_name: str, *, accept_cancel: bool = True) -> ActionCounterpart:
+        """Serve an action whose every step the scenario decides."""
+        ...
+
+    def note_interface(self) -> None:
+        """Write down the subject's endpoints as they are now; this is done at the end of each part anyway."""
+        ...
+
+    def heard(self, topic: str) -> int:
+        """How many messages arrived on a topic so far in this part."""
+        ...
+
+    def run_time(self, seconds: float, *, until: Callable[[], bool] | None = None) -> None:
+        """Let ``seconds`` of the subject's time pass: simulated ones where it follows, else real ones."""
+        ...
+
+    def wait_until(self, condition: Callable[[Evidence], bool], within: float) -> bool:
+        """Wait for something in the evidence, at most ``within`` seconds of wall time."""
+        ...
+
+    def await_end(self, within: float, *, quiet: float | None = None) -> bool:
+        """Wait until the subject has ended by itself.
+
+        Args:
+            within: Seconds of wall time at most.
+            quiet: Give up earlier when nothing at all happened for so many seconds.
+        """
+        ...
+
+    def stop(self) -> None:
+        """End the subject and take away what the judge put up for this part."""
+        ...
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """One graded behaviour.
+
+    Attributes:
+        id: Such as ``"lab_1_2.talker"``.
+        title: Its name for a person.
+        task: One sentence: what is asked for.
+        scenario: Drives the bench through all parts.
+        criteria: What must hold, in the order of the card.
+        mistakes: Known mistakes, most telling first.
+        roles: The endpoints that make up the subject's public face, such as ``("publisher",)``; `record` waits
+            for one of them.
+        limit: Seconds of wall time after which the judge gives up on a check, all looks together.
+        arguments: What a command is called with, in words; empty where it takes none.
+        sample_arguments: Arguments with which ``record`` looks at the reference solution's interface.
+        second_look: Whether what fails fast is looked at again in real time.
+    """
+
+    id: str
+    title: str
+    task: str
+    scenario: Callable[[Bench], None]
+    criteria: Sequence[Criterion]
+    mistakes: Sequence[Mistake]
+    roles: tuple[str, ...]
+    limit: float = 60.0
+    arguments: str = ""
+    sample_arguments: tuple[Any, ...] = field(default=())
+    second_look: bool = True
+
+    @property
+    def points(self) -> float:
+        """The points of all criteria together."""
+        return sum(criterion.points for criterion in self.criteria)

@@ -1,0 +1,269 @@
+"""The bench: what a scenario's words do. One bench serves one look at one subject."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable, Mapping
+from random import Random
+from typing import Any
+
+from autograder.exercises.evidence import Evidence, Part, Reference
+from autograder.exercises.model import Look
+from autograder.judge import graph
+from autograder.judge.actions import ScriptedActionServer
+from autograder.judge.clock import SimulatedClock
+from autograder.judge.recorder import Recorder
+from autograder.judge.services import Answer, RecordedServer
+from autograder.judge.subjects import Subject
+from autograder.judge.topics import Ear, LogReader, Mouth
+from autograder.judge.wire import Wire
+
+APPEAR = 20.0
+"""Seconds of wall time in which a subject that runs must show up on the graph at all. Generous: starting slowly is
+not wrong."""
+SETTLED = {Look.FAST: 1.0, Look.REAL_TIME: 3.0}
+"""Seconds without a change of the graph after which a command is taken to have made all that it makes."""
+MATCH = 5.0
+"""Seconds in which two endpoints that fit must have met."""
+GRAPH_POLL = 0.004
+"""Seconds between two queries of the graph, which has no event to wait for."""
+
+
+class TestBench:
+    """Implements :class:`autograder.exercises.model.Bench` on real ROS.
+
+    Attributes:
+        parts: The finished parts.
+        doubtful: Something in a fast look must be confirmed in real time.
+    """
+
+    __test__ = False  # not a pytest class
+
+    def __init__(
+        self, subject: Subject, domain_id: int, reference: Reference, look: Look, random: Random
+    ) -> None:
+        self.look = look
+        self.random = random
+        self.reference = reference
+        self.parts: list[Part] = []
+        self.doubtful = False
+        self._subject = subject
+        self._domain_id = domain_id
+        self._recorder = Recorder()
+        self._wire: Wire | None = None
+        self._open = contextlib.ExitStack()
+        self._ears: dict[str, Ear] = {}
+        self._mouths: dict[str, Mouth] = {}
+        self._clock: SimulatedClock | None = None
+        self._clock_refused = False
+        self._clean = True
+        self._in_part = False
+
+    # --- parts ---------------------------------------------------------------------------------------------
+
+    def part(self, name: str, **inputs: Any) -> None:
+        """Begin a part: a fresh run of the subject."""
+        self.stop()
+        self._recorder.begin(name, inputs)
+        self._in_part = True
+        if self._wire is None or not (self._subject.shares_participant and self._clean):
+            self._close_wire()
+            self._wire = Wire(self._domain_id)
+        self._log = LogReader(self._wire, self._recorder)
+        self._open.callback(self._wire.node.destroy_subscription, self._log.subscription)
+
+    def stop(self) -> None:
+        """End the subject, keep what was seen and take away what the judge put up for this part."""
+        if not self._in_part:
+            return
+        self._in_part = False
+        self.note_interface()
+        self._clean = self._subject.ended
+        self.parts.append(self._recorder.part())
+        self._subject.stop()
+        self._open.close()
+        self._ears, self._mouths, self._clock, self._clock_refused = {}, {}, None, False
+
+    def close(self) -> None:
+        """End everything. Safe to call at any time."""
+        try:
+            self.stop()
+        finally:
+            self._close_wire()
+
+    def _close_wire(self) -> None:
+        if self._wire is not None:
+            self._wire.close()
+            self._wire = None
+
+    @property
+    def wire(self) -> Wire:
+        """The judge's participant in this part."""
+        if self._wire is None:
+            raise RuntimeError("a scenario begins with bench.part(...)")
+        return self._wire
+
+    # --- the subject ---------------------------------------------------------------------------------------
+
+    def start(self, *arguments: Any, **options: Any) -> None:
+        """Start the subject."""
+        self._subject.start(self._recorder, arguments, options)
+
+    def release(self) -> None:
+        """Let a held subject spin."""
+        self._subject.release()
+
+    def await_end(self, within: float, *, quiet: float | None = None) -> bool:
+        """Wait until the subject has ended by itself, or nothing happened for ``quiet`` seconds."""
+        self._recorder.wait(
+            lambda: self._subject.ended or (quiet is not None and self._recorder.idle > quiet), within
+        )
+        return self._subject.ended
+
+    def await_endpoint(self, role: str, name: str) -> bool:
+        """Wait until the subject's endpoint is on the graph and matched with the judge's, if it has one."""
+        self._await_graph(lambda: name in self._survey().get(role, {}))
+        if name not in self._survey().get(role, {}):
+            return False
+        counterpart = {"publisher": self._ears, "subscription": self._mouths}.get(role, {}).get(name)
+        if counterpart is None:
+            return True
+        return self._recorder.wait(
+            lambda: counterpart.matched > 0 or self._subject.ended or self._mismatched(name), MATCH
+        )
+
+    def await_any_endpoint(self, roles: tuple[str, ...]) -> graph.Interface:
+        """Wait until the subject has an endpoint of one of these roles; the whole interface as it is then."""
+        self._await_graph(lambda: any(self._survey()[role] for role in roles))
+        return self._survey()
+
+    def _await_graph(self, there: Callable[[], bool]) -> None:
+        """Wait for something on the graph, until the subject has ended or has surely made all that it makes."""
+        settled = _Settling(SETTLED[self.look])
+
+        def over() -> bool:
+            if there() or self._subject.ended:
+                return True
+            marker = self._subject.marker
+            if marker is not None:
+                return self.wire.node.count_publishers(marker) > 0
+            return settled.unchanged(self._survey(), len(graph.subject_nodes(self.wire.node)))
+
+        self._recorder.wait(over, APPEAR, poll=GRAPH_POLL)
+
+    def _survey(self) -> graph.Interface:
+        return graph.survey(self.wire.node)
+
+    def note_interface(self) -> None:
+        """Write down the subject's endpoints as they are now."""
+        interface = self._survey()
+        nodes = [node.full for node in graph.subject_nodes(self.wire.node)]
+        self._recorder.record("interface", "graph", nodes=nodes, **interface)
+
+    def _mismatched(self, name: str) -> bool:
+        return self._recorder.part().first("mismatch", name) is not None
+
+    # --- counterparts --------------------------------------------------------------------------------------
+
+    def listen(self, topic: str, type_name: str) -> None:
+        """Subscribe as the course's listener does: reliable, so that a best-effort talker is found out."""
+        ear = Ear(self.wire, self._recorder, topic, type_name)
+        self._ears[topic] = ear
+        self._open.callback(self.wire.node.destroy_subscription, ear.subscription)
+
+    def heard(self, topic: str) -> int:
+        """How many messages arrived on a topic so far in this part."""
+        return len(self._recorder.part().of("message", topic))
+
+    def speak(self, topic: str, type_name: str) -> Mouth:
+        """Create a publisher with the course's default QoS."""
+        mouth = Mouth(self.wire, self._recorder, topic, type_name)
+        self._mouths[topic] = mouth
+        self._open.callback(self.wire.node.destroy_publisher, mouth.publisher)
+        return mouth
+
+    def serve(self, service: str, type_name: str, answer: Answer) -> RecordedServer:
+        """Serve until the part ends."""
+        server = RecordedServer(self.wire, self._recorder, service, type_name, answer)
+        self._open.callback(server.close)
+        return server
+
+    def serve_action(self, action: str, type_name: str, *, accept_cancel: bool = True) -> ScriptedActionServer:
+        """Serve an action whose every step the scenario decides, until the part ends."""
+        server = ScriptedActionServer(self.wire, self._recorder, action, type_name, accept_cancel=accept_cancel)
+        self._open.callback(server.close)
+        return server
+
+    # --- time ----------------------------------------------------------------------------------------------
+
+    def run_time(self, seconds: float, *, until: Callable[[], bool] | None = None) -> None:
+        """Let ``seconds`` of the subject's time pass, or fewer where ``until`` holds before."""
+        over = until or (lambda: False)
+        if self.look is Look.FAST and self._follow_clock():
+            assert self._clock is not None
+            self._clock.run(seconds, lambda: over() or self._subject.ended)
+            self.doubtful = self.doubtful or self._clock.doubtful
+            return
+        self._recorder.wait(lambda: over() or self._subject.ended, seconds)
+
+    def _follow_clock(self) -> bool:
+        if self._clock is None and not self._clock_refused:
+            self._clock_refused = True
+            node = next((n for topic in self._ears if (n := self._publisher_node(topic))), None)
+            if node is not None:
+                clock = SimulatedClock(self.wire, self._recorder, node)
+                self._open.callback(clock.close)
+                if clock.take_over() and clock.stands_still(self._silence()):
+                    self._clock = clock
+                else:
+                    # It may yet obey later and then stop: only a fresh run in real time can tell.
+                    self._recorder.simulated_now = None
+                    self.doubtful = True
+        return self._clock is not None
+
+    def _silence(self) -> Callable[[], bool]:
+        def heard() -> int:
+            return sum(map(self.heard, self._ears))
+
+        before = heard()
+        # One message may still have been on its way when the clock stopped.
+        return lambda: heard() <= before + 1
+
+    def _publisher_node(self, topic: str) -> graph.NodeName | None:
+        found: list[graph.NodeName] = []
+
+        def named() -> bool:
+            found.extend(filter(None, [graph.node_of_publisher(self.wire.node, topic)]))
+            return bool(found) or self._subject.ended
+
+        self._recorder.wait(named, 1.0, poll=GRAPH_POLL)
+        return found[0] if found else None
+
+    def wait_until(self, condition: Callable[[Evidence], bool], within: float) -> bool:
+        """Wait for something in the evidence of this part; gives up when the subject has ended."""
+
+        def holds() -> bool:
+            return condition(Evidence([self._recorder.part()], self.reference, self.look is Look.REAL_TIME))
+
+        return self._recorder.wait(lambda: holds() or self._subject.ended, within) and holds()
+
+    def inputs(self) -> Mapping[str, Any]:
+        """The inputs of the part that is running."""
+        return self._recorder.part().inputs
+
+
+class _Settling:
+    """Tells when a command's graph has not changed for a while, once there is anything on it."""
+
+    def __init__(self, seconds: float) -> None:
+        self._now = time.monotonic
+        self._seconds = seconds
+        self._last: Any = None
+        self._since = self._now()
+
+    def unchanged(self, interface: graph.Interface, nodes: int) -> bool:
+        state = (nodes, interface)
+        if state != self._last:
+            self._last, self._since = state, self._now()
+        return nodes > 0 and self._now() - self._since > self._seconds

@@ -1,0 +1,56 @@
+"""Judge a command: ``autograder check EXERCISE -- COMMAND``."""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Sequence
+from pathlib import Path
+
+from autograder import exercises
+from autograder.exercises.model import Exercise
+from autograder.judge.fork import Child
+from autograder.verdict import Verdict, from_json, not_checked, to_json
+
+SPARE = 10.0
+"""Seconds beyond an exercise's own limit before its judge is taken to have died."""
+
+
+def check_command(
+    exercise_id: str, command: Sequence[str], *, seed: str | None = None, cwd: Path | None = None
+) -> Verdict:
+    """Run a command as the subject of an exercise.
+
+    Args:
+        exercise_id: Such as ``"lab_1_2.talker"``.
+        command: The program and its arguments; an exercise with inputs appends them.
+        seed: What random inputs are drawn from; a new one where none is given.
+        cwd: The folder to run it in.
+
+    Returns:
+        The verdict; its state is ``not_checked`` when the judge itself had trouble.
+
+    Raises:
+        UnknownExercise: No exercise has this id.
+    """
+    exercise = exercises.get(exercise_id)
+    chosen = seed or secrets.token_hex(8)
+    child = Child(lambda: to_json(_check(exercise, command, chosen, cwd)), exercise.limit + SPARE)
+    outcome = child.result()
+    if outcome.data is None:
+        return not_checked(exercise.id, exercise.title, exercise.points, outcome.trouble, "Run `autograder doctor`.")
+    return from_json(outcome.data)
+
+
+def _check(exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None) -> Verdict:
+    from autograder.judge import settings
+
+    settings.prepare_judge()
+    from autograder.judge import domain, reference, trial
+    from autograder.judge.command_subject import CommandSubject
+
+    try:
+        expected = reference.load(exercise.id)
+        with domain.lease() as domain_id:
+            return trial.check(exercise, CommandSubject(command, cwd), expected, seed=seed, domain_id=domain_id)
+    except (domain.NoFreeDomain, reference.NoReference) as error:
+        return not_checked(exercise.id, exercise.title, exercise.points, str(error))

@@ -1,0 +1,148 @@
+"""Any command as a subject: a script, a colcon executable, a C++ node, a launch."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import subprocess
+import threading
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import IO, Any
+
+from autograder.judge.recorder import Recorder
+from autograder.judge.settings import subject_environment
+from autograder.judge.subjects import CannotStart
+
+MAX_LINE = 4_000
+"""Characters of one line that are kept."""
+MAX_OUTPUT = 2_000_000
+"""Bytes of output that are kept of one run."""
+POLITE = 1.0
+"""Seconds that a command has to end after SIGINT, before it is killed."""
+
+_libc = ctypes.CDLL(None, use_errno=True)
+_PR_SET_PDEATHSIG = 1
+_PR_SET_CHILD_SUBREAPER = 36
+
+
+class CommandSubject:
+    """Runs a command in a session of its own, reads all it prints and ends it with everything it started."""
+
+    shares_participant = False
+    marker = None
+
+    def __init__(self, command: Sequence[str], cwd: Path | None = None) -> None:
+        self._command = list(command)
+        self._cwd = cwd
+        self._domain_id = 0
+        self._process: subprocess.Popen[bytes] | None = None
+        self._done = threading.Event()
+        # Whatever a subject leaves behind becomes this process's child and can be found and killed.
+        _libc.prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+
+    def begin(self, domain_id: int) -> None:
+        """Remember the domain that the command's environment will name."""
+        self._domain_id = domain_id
+
+    def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
+        """Start the command with the arguments appended.
+
+        Raises:
+            CannotStart: It does not exist or may not be executed.
+        """
+        del options  # only a notebook's function takes keyword arguments
+        command = [*self._command, *map(str, arguments)]
+        try:
+            self._process = subprocess.Popen(
+                command,
+                cwd=self._cwd,
+                env=subject_environment(self._domain_id),
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                start_new_session=True,
+                preexec_fn=_die_with_the_judge,
+            )
+        except (OSError, ValueError) as error:
+            raise CannotStart(f"cannot start {self._command[0]!r}: {error}") from error
+        self._done = threading.Event()
+        threading.Thread(target=self._follow, args=(recorder, self._process, self._done), daemon=True).start()
+
+    def release(self) -> None:
+        """A command runs from its start."""
+
+    @property
+    def ended(self) -> bool:
+        """Whether the command has exited and all it printed was read."""
+        return self._done.is_set()
+
+    def stop(self) -> None:
+        """SIGINT to its process group, then SIGKILL to whatever is left of it."""
+        if self._process is None:
+            return
+        if self._process.poll() is None:
+            _signal_group(self._process.pid, signal.SIGINT)
+            self._done.wait(POLITE)
+        _signal_group(self._process.pid, signal.SIGKILL)
+        kill_leftovers()
+        self._process.wait()
+        self._process = None
+
+    def _follow(self, recorder: Recorder, process: subprocess.Popen[bytes], done: threading.Event) -> None:
+        budget = _Budget(MAX_OUTPUT)
+        readers = [
+            threading.Thread(target=_read, args=(recorder, stream, name, budget), daemon=True)
+            for name, stream in (("stdout", process.stdout), ("stderr", process.stderr))
+        ]
+        for reader in readers:
+            reader.start()
+        code = process.wait()
+        for reader in readers:
+            # A grandchild may hold the pipe open: the exit of the command itself is what counts.
+            reader.join(timeout=0.2)
+        recorder.record("subject", "exited", code=code)
+        done.set()
+
+
+class _Budget:
+    def __init__(self, size: int) -> None:
+        self.left = size
+
+
+def _read(recorder: Recorder, stream: IO[bytes] | None, name: str, budget: _Budget) -> None:
+    assert stream is not None
+    with stream:
+        while line := stream.readline(MAX_LINE):
+            if budget.left > 0:
+                budget.left -= len(line)
+                recorder.record("output", name, text=line.decode("utf-8", "replace").rstrip("\r\n"))
+
+
+def _die_with_the_judge() -> None:
+    _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+
+
+def _signal_group(group: int, number: int) -> None:
+    try:
+        os.killpg(group, number)
+    except (ProcessLookupError, PermissionError):
+        pass
+
+
+def kill_leftovers(limit: float = 1.0) -> None:
+    """Kill every child of this process and wait for it, until none is left or ``limit`` seconds are over."""
+    deadline = time.monotonic() + limit
+    while time.monotonic() < deadline:
+        children = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
+        if not children:
+            return
+        for child in children:
+            try:
+                os.kill(int(child), signal.SIGKILL)
+                os.waitpid(int(child), os.WNOHANG)
+            except (ProcessLookupError, ChildProcessError):
+                pass
+        time.sleep(0.005)

@@ -1,0 +1,92 @@
+"""Run a piece of the judge in a child process, so that whatever happens to it the parent can say so."""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import sys
+import time
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a child ended.
+
+    Attributes:
+        data: What it returned; None where it returned nothing.
+        trouble: Why there is no data, in words; empty otherwise.
+    """
+
+    data: bytes | None
+    trouble: str = ""
+
+
+class Child:
+    """A forked child that computes some bytes. The parent must have no other threads."""
+
+    def __init__(self, work: Callable[[], bytes], limit: float) -> None:
+        """Fork and let the child begin.
+
+        Args:
+            work: Runs in the child.
+            limit: Seconds of wall time after which the child is killed.
+        """
+        sys.stdout.flush()
+        sys.stderr.flush()
+        self._deadline = time.monotonic() + limit
+        self._limit = limit
+        self._received = bytearray()
+        self.reading, writing = os.pipe()
+        self.pid = os.fork()
+        if self.pid == 0:
+            _run(work, writing)
+        os.close(writing)
+
+    def result(self) -> Outcome:
+        """Wait for the child's bytes, at most until its limit."""
+        while True:
+            remaining = self._deadline - time.monotonic()
+            ready, _, _ = select.select([self.reading], [], [], max(0.0, remaining))
+            if not ready:
+                self.kill()
+                return Outcome(None, f"the judge did not finish within {self._limit:g} s")
+            chunk = os.read(self.reading, 65536)
+            if not chunk:
+                break
+            self._received += chunk
+        os.close(self.reading)
+        _, status = os.waitpid(self.pid, 0)
+        if os.WIFEXITED(status) and os.WEXITSTATUS(status) == 0 and self._received:
+            return Outcome(bytes(self._received))
+        how = f"signal {os.WTERMSIG(status)}" if os.WIFSIGNALED(status) else f"code {os.WEXITSTATUS(status)}"
+        return Outcome(None, f"the judge's process ended with {how} before it had a verdict")
+
+    def kill(self) -> None:
+        """End the child at once; its subject dies with it."""
+        try:
+            os.kill(self.pid, signal.SIGKILL)
+            os.waitpid(self.pid, 0)
+            os.close(self.reading)
+        except (ProcessLookupError, ChildProcessError, OSError):
+            pass
+
+
+def _run(work: Callable[[], bytes], writing: int) -> None:
+    """The child's whole life. It leaves by os._exit: ROS threads make an orderly exit of the interpreter unsafe."""
+    code = 1
+    try:
+        data = work()
+        view = memoryview(data)
+        while view:
+            view = view[os.write(writing, view) :]
+        code = 0
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)

@@ -1,0 +1,101 @@
+"""Who is on the graph, besides the judge: the public face of a subject.
+
+rclpy has no event for changes of the graph, so these queries are polled; one costs well under a millisecond.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from rclpy.action.graph import (
+    get_action_client_names_and_types_by_node,
+    get_action_server_names_and_types_by_node,
+)
+from rclpy.node import Node, NodeNameNonExistentError
+
+ROLES = ("publisher", "subscription", "service", "client", "action_server", "action_client")
+
+_EVERY_NODE_HAS = frozenset({"/rosout", "/parameter_events", "/clock"})
+_EVERY_NODE_SERVES = (
+    "/describe_parameters",
+    "/get_parameter_types",
+    "/get_parameters",
+    "/list_parameters",
+    "/set_parameters",
+    "/set_parameters_atomically",
+    "/get_type_description",
+)
+
+
+@dataclass(frozen=True)
+class NodeName:
+    """A node of the subject's."""
+
+    name: str
+    namespace: str
+
+    @property
+    def full(self) -> str:
+        """Its full name, such as ``/robot/talker``."""
+        return f"{self.namespace.rstrip('/')}/{self.name}"
+
+
+Interface = dict[str, dict[str, str]]
+"""Role -> {name: type}; where a name has several types they are joined with a comma."""
+
+
+def subject_nodes(judge: Node) -> list[NodeName]:
+    """Every node on the domain but the judge's, once each name."""
+    own = judge.get_name()
+    seen = {(name, space) for name, space in judge.get_node_names_and_namespaces() if name != own}
+    return [NodeName(name, space) for name, space in sorted(seen) if not name.startswith("_NODE_")]
+
+
+def survey(judge: Node) -> Interface:
+    """The endpoints of all of the subject's nodes, without those that every node has."""
+    found: Interface = {role: {} for role in ROLES}
+    for node in subject_nodes(judge):
+        for role, query in _QUERIES.items():
+            for name, types in _ask(query, judge, node):
+                if _is_own_work(role, name):
+                    _add(found[role], name, types)
+    return found
+
+
+def node_of_publisher(judge: Node, topic: str) -> NodeName | None:
+    """The subject's node that publishes on a topic, once its real name is known."""
+    for info in judge.get_publishers_info_by_topic(topic):
+        if info.node_name and not info.node_name.startswith("_NODE_") and info.node_name != judge.get_name():
+            return NodeName(info.node_name, info.node_namespace)
+    return None
+
+
+_Query = Callable[[Node, str, str], list[tuple[str, list[str]]]]
+
+_QUERIES: dict[str, _Query] = {
+    "publisher": Node.get_publisher_names_and_types_by_node,
+    "subscription": Node.get_subscriber_names_and_types_by_node,
+    "service": Node.get_service_names_and_types_by_node,
+    "client": Node.get_client_names_and_types_by_node,
+    "action_server": get_action_server_names_and_types_by_node,
+    "action_client": get_action_client_names_and_types_by_node,
+}
+
+
+def _ask(query: _Query, judge: Node, node: NodeName) -> list[tuple[str, list[str]]]:
+    try:
+        return query(judge, node.name, node.namespace)
+    except NodeNameNonExistentError:
+        return []
+
+
+def _is_own_work(role: str, name: str) -> bool:
+    if name in _EVERY_NODE_HAS or "/_action/" in name or name.startswith("/_ready"):
+        return False
+    return not (role in ("service", "client") and name.endswith(_EVERY_NODE_SERVES))
+
+
+def _add(found: dict[str, str], name: str, types: list[str]) -> None:
+    known = set(filter(None, found.get(name, "").split(",")))
+    found[name] = ",".join(sorted(known | set(types)))

@@ -1,0 +1,45 @@
+"""Record a reference output: look at the reference solution with the same eyes as at anybody's."""
+
+from __future__ import annotations
+
+from random import Random
+
+from autograder.exercises.evidence import Reference
+from autograder.exercises.model import Exercise, Look
+from autograder.judge.bench import TestBench
+from autograder.judge.subjects import Subject
+from autograder.judge.trial import look
+
+SEED = "reference"
+"""Recording draws the same inputs each time."""
+
+
+class NotRecordable(RuntimeError):
+    """The reference solution did not show what the exercise is about."""
+
+
+def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference:
+    """Look at the reference solution's interface, then run the scenario on it.
+
+    Raises:
+        NotRecordable: It never had an endpoint of the exercise's roles, or it is not right by its own measure.
+    """
+    subject.begin(domain_id)
+    interface = _interface(exercise, subject, domain_id)
+    if not any(interface.get(role) for role in exercise.roles):
+        raise NotRecordable(f"{exercise.id}: the reference solution showed no {' or '.join(exercise.roles)}")
+    bare = Reference(exercise.id, interface)
+    seen = look(exercise, subject, bare, Look.FAST, seed=SEED, domain_id=domain_id)
+    if seen.doubtful:
+        raise NotRecordable(f"{exercise.id}: the reference solution did not follow the clock; is the machine busy?")
+    return Reference(exercise.id, interface, seen.evidence.parts)
+
+
+def _interface(exercise: Exercise, subject: Subject, domain_id: int) -> dict[str, dict[str, str]]:
+    bench = TestBench(subject, domain_id, Reference(exercise.id, {}), Look.FAST, Random(SEED))
+    try:
+        bench.part("interface")
+        bench.start(*exercise.sample_arguments)
+        return bench.await_any_endpoint(exercise.roles)
+    finally:
+        bench.close()

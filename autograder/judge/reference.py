@@ -1,0 +1,80 @@
+"""Reference outputs on disk: what the reference solutions do on the wire, as JSON that people review.
+
+Recording keeps what the task decides (what was published, asked, answered) and drops what the machine decides (wall
+times, node names made up by chance, the order of log lines between two channels).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from autograder import course
+from autograder.exercises.evidence import Event, Part, Reference
+
+_KEPT = ("message", "sent", "request", "response", "goal", "feedback", "cancel", "result")
+
+
+class NoReference(LookupError):
+    """There is no reference output for an exercise, or it cannot be read."""
+
+
+def path(exercise_id: str) -> Path:
+    """Where the reference output of an exercise is kept."""
+    return course.root() / "solutions" / "01_ros2_fundamentals" / "reference" / f"{exercise_id}.json"
+
+
+def load(exercise_id: str) -> Reference:
+    """Read a reference output.
+
+    Raises:
+        NoReference: It does not exist or is not what :func:`dump` writes.
+    """
+    file = path(exercise_id)
+    try:
+        return parse(json.loads(file.read_text(encoding="utf-8")))
+    except FileNotFoundError as error:
+        raise NoReference(f"{file} does not exist: run `autograder record {exercise_id}`") from error
+    except (ValueError, KeyError, TypeError) as error:
+        raise NoReference(f"{file} is not a reference output ({error}): run `autograder record {exercise_id}`") from error
+
+
+def parse(data: Mapping[str, Any]) -> Reference:
+    """A reference output from its JSON form."""
+    parts = [
+        Part(
+            part["name"],
+            part["inputs"],
+            [Event(e.get("t", 0.0), e["kind"], e["name"], e.get("data", {}), e.get("sim")) for e in part["events"]],
+        )
+        for part in data["parts"]
+    ]
+    return Reference(data["exercise"], data["interface"], parts)
+
+
+def dump(reference: Reference) -> str:
+    """The JSON form, the same for every recording of the same behaviour."""
+    parts = [
+        {"name": part.name, "inputs": dict(part.inputs), "events": _events(part)} for part in reference.parts
+    ]
+    data = {"exercise": reference.exercise, "interface": _sorted(reference.interface), "parts": parts}
+    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+
+
+def _sorted(interface: Mapping[str, Mapping[str, str]]) -> dict[str, dict[str, str]]:
+    return {role: dict(sorted(names.items())) for role, names in sorted(interface.items()) if names}
+
+
+def _events(part: Part) -> list[dict[str, Any]]:
+    kept = [event for event in part.events if event.kind in _KEPT]
+    start = next((event.sim for event in kept if event.sim is not None), None)
+    return [_event(event, start) for event in kept]
+
+
+def _event(event: Event, start: float | None) -> dict[str, Any]:
+    row: dict[str, Any] = {"kind": event.kind, "name": event.name}
+    if event.sim is not None and start is not None:
+        row["sim"] = round(event.sim - start, 3)
+    return row | {"data": dict(event.data)}

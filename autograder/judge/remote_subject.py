@@ -1,0 +1,107 @@
+"""A node class or a function in a notebook as a subject: the kernel runs it, at the judge's word."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+from autograder.judge.link import Link, LinkClosed
+from autograder.judge.recorder import Recorder
+
+MAX_TEXT = 4_000
+"""Characters that are kept of one thing that the notebook says."""
+STOP_LIMIT = 3.0
+"""Seconds of wall time in which the notebook must have stopped a run."""
+
+
+class RemoteSubject:
+    """Implements :class:`autograder.judge.subjects.Subject` over a link."""
+
+    shares_participant = True
+
+    def __init__(self, link: Link) -> None:
+        self._link = link
+        self._recorder: Recorder | None = None
+        self._run = 0
+        self._marker: str | None = None
+        self._ended = False
+        self._ready = threading.Event()
+        self._stopped = threading.Event()
+        self._gone = threading.Event()
+        self._thread = threading.Thread(target=self._listen, daemon=True)
+
+    def begin(self, domain_id: int) -> None:
+        """Let the notebook open a ROS context on the domain."""
+        self._thread.start()
+        self._link.send("begin", domain=domain_id)
+        self._ready.wait(STOP_LIMIT)
+
+    def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
+        """Let the notebook make the node (a class) or call the function."""
+        self._run += 1
+        self._recorder = recorder
+        self._marker, self._ended = None, False
+        self._stopped.clear()
+        self._tell("start", run=self._run, arguments=list(arguments), options=options)
+
+    def release(self) -> None:
+        """Let the made node spin."""
+        self._tell("release", run=self._run)
+
+    @property
+    def ended(self) -> bool:
+        """Whether the function has returned or something was raised, or the notebook is gone."""
+        return self._ended or self._gone.is_set()
+
+    @property
+    def marker(self) -> str | None:
+        """The topic that the notebook made after the subject's constructor had ended."""
+        return self._marker
+
+    def stop(self) -> None:
+        """Let the notebook end the run and destroy its nodes."""
+        self._tell("stop", run=self._run)
+        self._stopped.wait(STOP_LIMIT)
+        self._recorder = None
+
+    def _tell(self, say: str, **words: Any) -> None:
+        try:
+            self._link.send(say, **words)
+        except LinkClosed:
+            self._gone.set()
+
+    def _listen(self) -> None:
+        try:
+            while True:
+                self._take(self._link.receive())
+        except LinkClosed:
+            self._gone.set()
+            self._ready.set()
+            self._stopped.set()
+            if self._recorder is not None:
+                self._recorder.record("subject", "gone")
+
+    def _take(self, message: dict[str, Any]) -> None:
+        say, recorder = message["say"], self._recorder
+        if say == "ready":
+            self._ready.set()
+            return
+        if message.get("run") != self._run or recorder is None:
+            return  # an echo of an earlier run
+        if say == "stopped":
+            self._stopped.set()
+        elif say == "output":
+            recorder.record("output", "notebook", text=_text(message.get("text")))
+        elif say == "constructed":
+            self._marker = _text(message.get("marker"))[:200] or None
+            recorder.record("subject", "constructed")
+        elif say == "callback_raised":
+            recorder.record("subject", "callback_raised", traceback=_text(message.get("traceback")))
+        elif say in ("returned", "raised"):
+            self._ended = True
+            value, trace = message.get("value"), _text(message.get("traceback"))
+            recorder.record("subject", say, value=None if value is None else _text(value), traceback=trace)
+
+
+def _text(value: Any) -> str:
+    return str(value if value is not None else "")[:MAX_TEXT]

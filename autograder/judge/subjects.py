@@ -1,0 +1,48 @@
+"""The thing under test, seen from the judge: something that starts, speaks on the wire and perhaps ends."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+from autograder.judge.recorder import Recorder
+
+
+class Subject(Protocol):
+    """A node class or a function in a notebook, or a command.
+
+    Implementations write into the recorder: ``output`` events for each line it prints and ``subject`` events named
+    ``constructed``, ``returned``, ``raised``, ``callback_raised`` or ``exited``.
+    """
+
+    shares_participant: bool
+    """Whether one run after the other lives in the same ROS participant."""
+
+    def begin(self, domain_id: int) -> None:
+        """Called once, before the first run, with the domain of this check."""
+        ...
+
+    def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
+        """Start a run."""
+        ...
+
+    def release(self) -> None:
+        """Let a held run spin."""
+        ...
+
+    @property
+    def ended(self) -> bool:
+        """Whether this run has ended by itself."""
+        ...
+
+    @property
+    def marker(self) -> str | None:
+        """A topic that appears on the graph after everything the subject made; None where nobody can know."""
+        ...
+
+    def stop(self) -> None:
+        """End the run, whatever it takes. Afterwards nothing of it lives."""
+        ...
+
+
+class CannotStart(RuntimeError):
+    """The command does not exist or may not be executed."""

@@ -1,0 +1,99 @@
+"""One check from beginning to end: look, judge, look again where that is fair, say what is wrong."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from random import Random
+
+from autograder.exercises.crashes import traceback_of
+from autograder.exercises.evidence import Evidence, Reference
+from autograder.exercises.model import Exercise, Look
+from autograder.judge import timeline
+from autograder.judge.bench import TestBench
+from autograder.judge.subjects import Subject
+from autograder.verdict import Criterion, Diagnosis, State, Verdict
+
+MAX_DETAIL = 6_000
+"""Characters of a traceback that a card shows."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What one look brought.
+
+    Attributes:
+        evidence: What happened.
+        doubtful: Whether even a pass must be confirmed in real time.
+    """
+
+    evidence: Evidence
+    doubtful: bool
+
+
+def check(exercise: Exercise, subject: Subject, reference: Reference, *, seed: str, domain_id: int) -> Verdict:
+    """Judge a subject.
+
+    A fast pass counts; what fails fast is looked at again in real time, unless the evidence proves the failure
+    whatever the machine's load is.
+    """
+    began = time.monotonic()
+    subject.begin(domain_id)
+    seen = look(exercise, subject, reference, Look.FAST, seed=seed, domain_id=domain_id)
+    verdict = judge(exercise, seen.evidence, seed)
+    if exercise.second_look and (seen.doubtful or not verdict.passed) and not _is_certain(exercise, verdict):
+        seen = look(exercise, subject, reference, Look.REAL_TIME, seed=seed, domain_id=domain_id)
+        verdict = judge(exercise, seen.evidence, seed)
+    return replace(verdict, seconds=round(time.monotonic() - began, 3))
+
+
+def look(
+    exercise: Exercise, subject: Subject, reference: Reference, how: Look, *, seed: str, domain_id: int
+) -> Seen:
+    """Run the scenario once and hand over what was seen."""
+    bench = TestBench(subject, domain_id, reference, how, Random(seed))
+    try:
+        exercise.scenario(bench)
+    finally:
+        bench.close()
+    return Seen(Evidence(bench.parts, reference, how is Look.REAL_TIME), bench.doubtful)
+
+
+def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
+    """The verdict that follows from the evidence alone."""
+    criteria = tuple(
+        Criterion(c.name, c.title, c.points, finding.passed, finding.expected, finding.seen)
+        for c in exercise.criteria
+        for finding in [c.judge(evidence)]
+    )
+    passed = all(criterion.passed for criterion in criteria)
+    return Verdict(
+        exercise=exercise.id,
+        title=exercise.title,
+        state=State.PASSED if passed else State.FAILED,
+        score=float(sum(c.points for c in criteria if c.passed)),
+        max_score=float(exercise.points),
+        criteria=criteria,
+        diagnosis=None if passed else diagnose(exercise, evidence),
+        timeline=timeline.moments(evidence),
+        seed=seed,
+        detail="" if passed else traceback_of(evidence)[-MAX_DETAIL:],
+    )
+
+
+def diagnose(exercise: Exercise, evidence: Evidence) -> Diagnosis:
+    """The first known mistake that the evidence shows."""
+    for mistake in exercise.mistakes:
+        advice = mistake.recognise(evidence)
+        if advice is not None:
+            return Diagnosis(mistake.key, advice.text, advice.next_step)
+    return Diagnosis(
+        "unknown",
+        "This is none of the mistakes that the judge knows by name.",
+        "Compare what was expected with what was seen, criterion by criterion.",
+    )
+
+
+def _is_certain(exercise: Exercise, verdict: Verdict) -> bool:
+    key = verdict.diagnosis.key if verdict.diagnosis else None
+    return any(mistake.key == key and mistake.certain for mistake in exercise.mistakes)

@@ -1,0 +1,56 @@
+"""The judge's own node, in a ROS context of its own, spun by a thread of its own."""
+
+from __future__ import annotations
+
+import secrets
+import threading
+from typing import Any
+
+from rclpy.context import Context
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+
+
+class Wire:
+    """One participant on one domain. Made fresh for each part: a fresh participant is met at once.
+
+    Attributes:
+        node: The judge's node; it has no parameter services and no log topic, so that it adds next to nothing
+            to the graph.
+        executor: Spins the node in a thread of its own.
+    """
+
+    def __init__(self, domain_id: int) -> None:
+        self.context = Context()
+        self.context.init(args=["--ros-args", "--disable-external-lib-logs"], domain_id=domain_id)
+        self.node = Node(
+            f"judge_{secrets.token_hex(4)}",
+            context=self.context,
+            use_global_arguments=False,
+            enable_rosout=False,
+            start_parameter_services=False,
+        )
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+        self._thread = threading.Thread(target=self._spin, name="judge wire", daemon=True)
+        self._thread.start()
+
+    def _spin(self) -> None:
+        try:
+            self.executor.spin()
+        except ExternalShutdownException:
+            pass
+
+    def close(self) -> None:
+        """Stop spinning, join the thread and leave the domain. An unjoined thread aborts the interpreter."""
+        self.executor.shutdown(timeout_sec=1.0)
+        self._thread.join(timeout=2.0)
+        self.node.destroy_node()
+        self.context.try_shutdown()
+        self.context.destroy()
+
+    def __enter__(self) -> Wire:
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.close()
