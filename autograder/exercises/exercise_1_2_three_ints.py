@@ -65,7 +65,6 @@ def unserved(bench: Bench, numbers: tuple[int, int, int]) -> None:
     bench.start(*numbers, patience_sec=SHORT_PATIENCE)
     service, _ = bench.reference.only("client")
     bench.await_endpoint("client", service)
-    bench.note_interface()
     bench.await_end(GIVE_UP_LIMIT)
     bench.stop()
 

@@ -46,7 +46,6 @@ def run(bench: Bench, name: str, *, accept: bool) -> bool:
     server = bench.serve_action(action, type_name, accept_cancel=accept)
     bench.start()
     bench.await_endpoint("action_client", action)
-    bench.note_interface()
     bench.release()
     cancelled = False
     if server.await_goal(GOAL_LIMIT):
@@ -127,7 +126,7 @@ def cancels_in_the_window(evidence: Evidence) -> Finding:
 def cancels_once(evidence: Evidence) -> Finding:
     """No second cancel request before late feedback arrives."""
     cancels = _cancels(evidence.main)
-    return Finding(len(cancels) == 1, "one cancel request", f"{len(cancels)} cancel requests")
+    return Finding(len(cancels) == 1, "one cancel request", f"{len(cancels)} cancel request{'s' * (len(cancels) != 1)}")
 
 
 def ignores_late_feedback(evidence: Evidence) -> Finding:

@@ -179,10 +179,6 @@ class Bench(Protocol):
         """Serve an action whose every step the scenario decides."""
         ...
 
-    def note_interface(self) -> None:
-        """Write down the subject's endpoints as they are now; this is done at the end of each part anyway."""
-        ...
-
     def heard(self, topic: str) -> int:
         """How many messages arrived on a topic so far in this part."""
         ...

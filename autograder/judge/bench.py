@@ -124,7 +124,9 @@ class TestBench:
     def await_endpoint(self, role: str, name: str) -> bool:
         """Wait until the subject's endpoint is on the graph and matched with the judge's, if it has one."""
         self._await_graph(lambda: name in self._survey().get(role, {}))
-        if name not in self._survey().get(role, {}):
+        # Written down now, because a subject that ends takes its endpoints along.
+        self.note_interface()
+        if name not in self._recorder.part().endpoints(role):
             return False
         counterpart = {"publisher": self._ears, "subscription": self._mouths}.get(role, {}).get(name)
         if counterpart is None:
@@ -147,7 +149,7 @@ class TestBench:
                 return True
             marker = self._subject.marker
             if marker is not None:
-                return self.wire.node.count_publishers(marker) > 0
+                return graph.shows(self.wire.node, marker)
             return settled.unchanged(self._survey(), len(graph.subject_nodes(self.wire.node)))
 
         self._recorder.wait(over, APPEAR, poll=GRAPH_POLL)

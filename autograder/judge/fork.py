@@ -8,7 +8,7 @@ import signal
 import sys
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 
@@ -28,32 +28,40 @@ class Outcome:
 class Child:
     """A forked child that computes some bytes. The parent must have no other threads."""
 
-    def __init__(self, work: Callable[[], bytes], limit: float) -> None:
+    def __init__(self, work: Callable[[], bytes], limit: float, *, close: Sequence[int] = ()) -> None:
         """Fork and let the child begin.
 
         Args:
             work: Runs in the child.
             limit: Seconds of wall time after which the child is killed.
+            close: File descriptors that the child has no business with.
         """
         sys.stdout.flush()
         sys.stderr.flush()
         self._deadline = time.monotonic() + limit
-        self._limit = limit
         self._received = bytearray()
         self.reading, writing = os.pipe()
         self.pid = os.fork()
         if self.pid == 0:
+            for descriptor in close:
+                os.close(descriptor)
             _run(work, writing)
         os.close(writing)
 
-    def result(self) -> Outcome:
-        """Wait for the child's bytes, at most until its limit."""
+    def result(self, *, within: float | None = None) -> Outcome:
+        """Wait for the child's bytes, at most until its limit.
+
+        Args:
+            within: A shorter limit, in seconds from now.
+        """
+        if within is not None:
+            self._deadline = min(self._deadline, time.monotonic() + within)
         while True:
             remaining = self._deadline - time.monotonic()
             ready, _, _ = select.select([self.reading], [], [], max(0.0, remaining))
             if not ready:
                 self.kill()
-                return Outcome(None, f"the judge did not finish within {self._limit:g} s")
+                return Outcome(None, "the judge did not finish in time")
             chunk = os.read(self.reading, 65536)
             if not chunk:
                 break
@@ -64,6 +72,17 @@ class Child:
             return Outcome(bytes(self._received))
         how = f"signal {os.WTERMSIG(status)}" if os.WIFSIGNALED(status) else f"code {os.WEXITSTATUS(status)}"
         return Outcome(None, f"the judge's process ended with {how} before it had a verdict")
+
+    def done(self) -> bool:
+        """Whether the child has ended; frees it then, and kills it once its limit is over."""
+        ready, _, _ = select.select([self.reading], [], [], 0.0)
+        if ready:
+            self.result(within=1.0)
+            return True
+        if time.monotonic() > self._deadline:
+            self.kill()
+            return True
+        return False
 
     def kill(self) -> None:
         """End the child at once; its subject dies with it."""

@@ -71,6 +71,18 @@ def node_of_publisher(judge: Node, topic: str) -> NodeName | None:
     return None
 
 
+def shows(judge: Node, marker: str) -> bool:
+    """Whether a node is known to have both a publisher and a subscription of this name.
+
+    Made last, they are known last: each kind of endpoint is announced in order (DDSI-RTPS, 8.5.4).
+    """
+    return any(
+        marker in dict(_ask(Node.get_publisher_names_and_types_by_node, judge, node))
+        and marker in dict(_ask(Node.get_subscriber_names_and_types_by_node, judge, node))
+        for node in subject_nodes(judge)
+    )
+
+
 _Query = Callable[[Node, str, str], list[tuple[str, list[str]]]]
 
 _QUERIES: dict[str, _Query] = {

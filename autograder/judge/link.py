@@ -13,6 +13,8 @@ import json
 import socket
 from typing import Any
 
+import msgspec
+
 MAX_LINE = 1_000_000
 """Bytes of one message; a longer one ends the conversation."""
 VERSION = 1
@@ -35,7 +37,7 @@ class Link:
         Raises:
             LinkClosed: Nobody listens any more.
         """
-        line = json.dumps({"say": say, **words}, ensure_ascii=True, default=str).encode() + b"\n"
+        line = msgspec.json.encode({"say": say, **words}) + b"\n"
         try:
             self._socket.sendall(line)
         except OSError as error:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from random import Random
 
-from autograder.exercises.evidence import Reference
+from autograder.exercises.evidence import Evidence, Reference
 from autograder.exercises.model import Exercise, Look
 from autograder.judge.bench import TestBench
 from autograder.judge.subjects import Subject
@@ -33,6 +33,11 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
     if seen.doubtful:
         raise NotRecordable(f"{exercise.id}: the reference solution did not follow the clock; is the machine busy?")
     return Reference(exercise.id, interface, seen.evidence.parts)
+
+
+def as_evidence(recorded: Reference) -> Evidence:
+    """The recording, as the evidence of a subject that is its own reference."""
+    return Evidence(recorded.parts, recorded)
 
 
 def _interface(exercise: Exercise, subject: Subject, domain_id: int) -> dict[str, dict[str, str]]:

@@ -31,19 +31,26 @@ def moments(evidence: Evidence) -> tuple[Moment, ...]:
     """What was on the wire, in order."""
     found = [
         Moment(
-            t=round(event.t if event.sim is None else event.sim - start, 3),
+            t=_time(event, start),
             lane="log" if event.kind == "log" else "subject" if event.kind == "subject" else event.name,
             direction=_DIRECTION[event.kind],
             label=_label(event),
             part=part.name if len(evidence.parts) > 1 else "",
-            simulated=event.sim is not None,
+            simulated=start is not None,
         )
         for part in evidence
-        for start in [min((e.sim for e in part.events if e.sim is not None), default=0.0)]
+        for start in [next((e.sim for e in part.events if e.sim is not None), None)]
         for event in part.events
         if event.kind in _DIRECTION
     ]
     return tuple(found[:MAX_MOMENTS])
+
+
+def _time(event: Event, start: float | None) -> float:
+    """Seconds on the axis of the event's part: simulated ones from ``start`` on, where the clock was stepped."""
+    if start is None:
+        return round(event.t, 3)
+    return 0.0 if event.sim is None else round(event.sim - start, 3)
 
 
 def _fields(data: Mapping[str, Any]) -> str:

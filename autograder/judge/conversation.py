@@ -1,0 +1,59 @@
+"""One check that a notebook asked for, in the judge's forked child: from its first word to the verdict."""
+
+from __future__ import annotations
+
+import socket
+
+from autograder import exercises
+from autograder.exercises.model import Exercise
+from autograder.judge import domain, record, reference, trial
+from autograder.judge.link import Link
+from autograder.judge.protocol import Report
+from autograder.judge.remote_subject import RemoteSubject
+from autograder.verdict import Verdict, not_checked
+
+
+def converse(connection: socket.socket, *, seed: str, expected: str | None, recording: bool) -> Report:
+    """Hear which exercise is asked for, judge it and tell the notebook.
+
+    Args:
+        connection: The notebook's end.
+        seed: What random inputs are drawn from.
+        expected: The only exercise that may be asked for; None for any.
+        recording: Record a reference output instead of judging against the stored one.
+
+    Raises:
+        LinkClosed: The notebook hung up before it had asked.
+    """
+    link = Link(connection)
+    first = link.receive()
+    asked = str(first.get("exercise"))
+    try:
+        exercise = exercises.get(asked)
+    except exercises.UnknownExercise as error:
+        link.send("refused", why=str(error))
+        return Report(trouble=str(error))
+    if expected is not None and asked != expected:
+        why = f"the check cell of {expected} asked for {asked}"
+        link.send("refused", why=why)
+        return Report(trouble=why)
+    report = _report(exercise, RemoteSubject(link), seed, recording)
+    link.send("verdict", verdict=_shown(exercise, report))
+    return report
+
+
+def _report(exercise: Exercise, subject: RemoteSubject, seed: str, recording: bool) -> Report:
+    try:
+        with domain.lease() as domain_id:
+            if not recording:
+                stored = reference.load(exercise.id)
+                return Report(trial.check(exercise, subject, stored, seed=seed, domain_id=domain_id))
+            recorded = record.record(exercise, subject, domain_id=domain_id)
+            verdict = trial.judge(exercise, record.as_evidence(recorded), seed)
+            return Report(verdict, reference.dump(recorded))
+    except (domain.NoFreeDomain, reference.NoReference, record.NotRecordable) as error:
+        return Report(trouble=str(error))
+
+
+def _shown(exercise: Exercise, report: Report) -> Verdict:
+    return report.verdict or not_checked(exercise.id, exercise.title, exercise.points, report.trouble)

@@ -1,0 +1,125 @@
+"""The judge process of a notebook: warm, it forks a child for each check that is asked for on its socket.
+
+The parent has imported ROS and made no node and no thread, so that a fork is safe and each check begins with a fresh
+participant, which meets its subject at once.
+"""
+
+from __future__ import annotations
+
+import os
+import secrets
+import selectors
+import socket
+import sys
+from pathlib import Path
+from typing import BinaryIO
+
+import msgspec
+
+from autograder import exercises
+from autograder.judge import conversation
+from autograder.judge.command import SPARE
+from autograder.judge.fork import Child
+from autograder.judge.protocol import Close, Open, Order, Report
+
+CLOSE_LIMIT = 10.0
+"""Seconds that a check may still take after its cell has ended; its kernel is gone then or about to be."""
+
+
+class JudgeServer:
+    """Listens on a Unix socket. A controlled one answers only the check that its controller has opened, once."""
+
+    def __init__(self, path: Path, *, controlled: bool) -> None:
+        self._path = path
+        self._controlled = controlled
+        self._order: Open | None = None
+        self._child: Child | None = None
+        self._children: dict[int, Child] = {}
+        self._listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        path.unlink(missing_ok=True)
+        self._listener.bind(str(path))
+        path.chmod(0o600)
+        self._listener.listen(8)
+
+    def serve(self, control: BinaryIO, answers: BinaryIO) -> None:
+        """Serve until ``control`` ends: a judge does not outlive the one who started it."""
+        with selectors.DefaultSelector() as selector:
+            selector.register(self._listener, selectors.EVENT_READ, self._listener)
+            selector.register(control, selectors.EVENT_READ, control)
+            answers.write(b"ready\n")
+            answers.flush()
+            while True:
+                for key, _ in selector.select(timeout=1.0):
+                    if key.fileobj is self._listener:
+                        self._accept()
+                    elif not self._obey(control, answers):
+                        self._path.unlink(missing_ok=True)
+                        return
+                self._reap()
+
+    def _accept(self) -> None:
+        connection, _ = self._listener.accept()
+        with connection:
+            order = self._order
+            if self._controlled and (order is None or self._child is not None):
+                _refuse(connection, "no check is expected now: it counts once, while its cell is running")
+                return
+            seed = order.seed if order else secrets.token_hex(8)
+            expected, recording = (order.exercise, order.record) if order else (None, False)
+            limit = max(exercises.get(name).limit for name in ([expected] if expected else exercises.all_ids()))
+            child = Child(
+                lambda: msgspec.json.encode(
+                    conversation.converse(connection, seed=seed, expected=expected, recording=recording)
+                ),
+                limit + SPARE,
+                close=[self._listener.fileno()],
+            )
+            if self._controlled:
+                self._child = child
+            else:
+                self._children[child.pid] = child
+
+    def _obey(self, control: BinaryIO, answers: BinaryIO) -> bool:
+        """Take one order; False at the end of orders."""
+        line = control.readline()
+        if not line:
+            return False
+        order = msgspec.json.decode(line, type=Order)
+        if isinstance(order, Close):
+            answers.write(msgspec.json.encode(self._close()) + b"\n")
+        else:
+            self._close()
+            self._order = order
+            answers.write(b"{}\n")
+        answers.flush()
+        return True
+
+    def _close(self) -> Report:
+        child, self._child, self._order = self._child, None, None
+        if child is None:
+            return Report()
+        outcome = child.result(within=CLOSE_LIMIT)
+        if outcome.data is None:
+            return Report(trouble=outcome.trouble)
+        return msgspec.json.decode(outcome.data, type=Report)
+
+    def _reap(self) -> None:
+        """Free the children of an uncontrolled judge; their notebooks have their verdicts."""
+        for pid, child in list(self._children.items()):
+            if child.done():
+                del self._children[pid]
+
+
+def _refuse(connection: socket.socket, why: str) -> None:
+    try:
+        connection.sendall(msgspec.json.encode({"say": "refused", "why": why}) + b"\n")
+    except OSError:
+        pass
+
+
+def run(path: Path, *, controlled: bool) -> None:
+    """Serve on this process's stdin and stdout; what anything else prints goes to stderr."""
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
+    sys.stdout = sys.stderr
+    JudgeServer(path, controlled=controlled).serve(sys.stdin.buffer, answers)

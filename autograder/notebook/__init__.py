@@ -1,0 +1,19 @@
+"""What a notebook of the course imports: background executors and the check.
+
+Nothing here is a secret and nothing here decides a grade: the judge runs in a process of its own.
+"""
+
+from __future__ import annotations
+
+from autograder.notebook import executors, judge_link
+from autograder.notebook.check import check
+from autograder.notebook.executors import spin_in_background, spinning
+from autograder.notebook.ros_session import RosSession
+
+__all__ = ["RosSession", "check", "spin_in_background", "spinning", "start_ros"]
+
+
+def start_ros() -> RosSession:
+    """Start ROS in this kernel, once; harmless when the cell is run again. Its judge warms up meanwhile."""
+    judge_link.warm_up()
+    return executors.start_ros()

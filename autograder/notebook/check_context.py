@@ -1,0 +1,63 @@
+"""A ROS context for checks alone: fresh, on the judge's domain, and rclpy's default for as long as a check runs.
+
+A student's class says ``super().__init__("talker_node")`` and means the default context. While a check runs, that is
+this one, so that nodes of the notebook's demonstrations are neither heard nor disturbed.
+"""
+
+from __future__ import annotations
+
+from types import TracebackType
+from typing import Self
+
+import rclpy
+import rclpy.utilities
+from rclpy.context import Context
+from rclpy.signals import SignalHandlerOptions
+
+
+class CheckContext:
+    """Swaps rclpy's default context within a ``with`` block."""
+
+    def __init__(self, domain_id: int) -> None:
+        self._domain_id = domain_id
+        self._usual: Context | None = None
+        self.context = Context()
+
+    def __enter__(self) -> Self:
+        with rclpy.utilities.g_context_lock:
+            self._usual = rclpy.utilities.g_default_context
+        self.renew()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._end()
+        self._put(self._usual)
+
+    def ensure(self) -> None:
+        """Make a new context where the student's code has shut the last one down, as many programs do."""
+        if not self.context.ok():
+            self.renew()
+        else:
+            self._put(self.context)
+
+    def renew(self) -> None:
+        """Begin with a fresh participant."""
+        self._end()
+        self.context = Context()
+        rclpy.init(
+            args=["--ros-args", "--disable-external-lib-logs"],
+            context=self.context,
+            domain_id=self._domain_id,
+            signal_handler_options=SignalHandlerOptions.NO,
+        )
+        self._put(self.context)
+
+    def _end(self) -> None:
+        self.context.try_shutdown()
+
+    @staticmethod
+    def _put(context: Context | None) -> None:
+        with rclpy.utilities.g_context_lock:
+            rclpy.utilities.g_default_context = context

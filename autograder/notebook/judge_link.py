@@ -1,0 +1,141 @@
+"""The notebook's end of the conversation with the judge, and the judge process where nobody has given one.
+
+It speaks the words that ``autograder/judge/link.py`` lists, and shares no code with the judge on purpose: what runs
+here is in the student's hands.
+"""
+
+from __future__ import annotations
+
+import atexit
+import json
+import os
+import secrets
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+from pathlib import Path
+from typing import Any
+
+SOCKET_VARIABLE = "AUTOGRADER_JUDGE_SOCKET"
+"""Where a grader tells the kernel which judge to use."""
+START_LIMIT = 60.0
+"""Seconds of wall time in which a judge of one's own must be up."""
+
+
+class JudgeUnreachable(ConnectionError):
+    """There is no judge to ask."""
+
+
+class JudgeLink:
+    """One check's conversation. Sending is safe from any thread; receiving is for one."""
+
+    def __init__(self) -> None:
+        """Connect to the judge, starting one where that is needed.
+
+        Raises:
+            JudgeUnreachable: There is none and none could be started.
+        """
+        path = os.environ.get(SOCKET_VARIABLE) or own_judge().path()
+        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        try:
+            self._socket.connect(path)
+        except OSError as error:
+            raise JudgeUnreachable(f"the judge cannot be reached ({error})") from error
+        self._stream = self._socket.makefile("rb")
+        self._lock = threading.Lock()
+
+    def say(self, word: str, **rest: Any) -> None:
+        """Say one thing; nothing happens when the judge is gone, which :meth:`hear` tells."""
+        line = json.dumps({"say": word, **rest}, default=str).encode() + b"\n"
+        with self._lock:
+            try:
+                self._socket.sendall(line)
+            except OSError:
+                pass
+
+    def hear(self) -> dict[str, Any]:
+        """The judge's next words.
+
+        Raises:
+            JudgeUnreachable: The judge is gone.
+        """
+        line = self._stream.readline()
+        if not line:
+            raise JudgeUnreachable("the judge ended before it had a verdict")
+        message: dict[str, Any] = json.loads(line)
+        return message
+
+    def close(self) -> None:
+        """Hang up."""
+        self._stream.close()
+        self._socket.close()
+
+
+class OwnJudge:
+    """The judge process of this kernel; it ends with the kernel, which holds its standard input."""
+
+    def __init__(self) -> None:
+        self._folder = tempfile.TemporaryDirectory(prefix="judge-", ignore_cleanup_errors=True)
+        self._socket = Path(self._folder.name) / f"{secrets.token_hex(8)}.socket"
+        environment = {k: v for k, v in os.environ.items() if not k.startswith("RCUTILS_LOGGING")}
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "autograder.judge", "--socket", str(self._socket)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            env=environment,
+            # Interrupting the kernel must not end the judge.
+            start_new_session=True,
+        )
+        self._pid = os.getpid()
+        self._ready = False
+
+    def path(self) -> str:
+        """Its socket, once it listens.
+
+        Raises:
+            JudgeUnreachable: It did not start.
+        """
+        if not self._ready:
+            assert self._process.stdout is not None
+            self._ready = self._process.stdout.readline() == b"ready\n"
+        if not self._ready or not self.alive:
+            raise JudgeUnreachable(
+                "the judge did not start; `./course doctor` in a terminal says what is missing"
+            )
+        return str(self._socket)
+
+    @property
+    def alive(self) -> bool:
+        """Whether the process runs and is this kernel's, not one inherited by a fork."""
+        return self._pid == os.getpid() and self._process.poll() is None
+
+    def stop(self) -> None:
+        """End it."""
+        if self._process.stdin is not None:
+            self._process.stdin.close()
+        try:
+            self._process.wait(timeout=2.0)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+        self._folder.cleanup()
+
+
+_own: OwnJudge | None = None
+
+
+def own_judge() -> OwnJudge:
+    """This kernel's own judge; started at the first call, and again where it has died."""
+    global _own
+    if _own is None or not _own.alive:
+        _own = OwnJudge()
+        atexit.register(_own.stop)
+    return _own
+
+
+def warm_up() -> None:
+    """Start the judge before the first check needs it, unless a grader has one ready."""
+    if not os.environ.get(SOCKET_VARIABLE):
+        own_judge()

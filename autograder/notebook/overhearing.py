@@ -1,0 +1,102 @@
+"""What a subject says while it is checked: its log lines and what it prints, told to the judge and kept off the cell.
+
+Only threads that began with the check are overheard, so that a demonstration node that still runs in the background
+is not taken for the subject.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any, Self
+
+from rclpy.impl.rcutils_logger import RcutilsLogger
+
+
+class Overhearing:
+    """Forwards within a ``with`` block; puts everything back at its end."""
+
+    def __init__(self, tell: Callable[[str], None]) -> None:
+        """Prepare.
+
+        Args:
+            tell: Called with each line.
+        """
+        self._tell = tell
+        self._others = {thread.ident for thread in threading.enumerate()}
+        self._descriptors: list[tuple[int, int]] = []
+
+    def __enter__(self) -> Self:
+        self._usual_log = RcutilsLogger.log
+        self._usual_streams = (sys.stdout, sys.stderr)
+        usual_log, overheard = self._usual_log, self._overheard
+
+        def log(logger: RcutilsLogger, message: Any, severity: Any, **options: Any) -> bool:
+            if overheard():
+                self._tell(str(message))
+            return usual_log(logger, message, severity, **options)
+
+        RcutilsLogger.log = log
+        sys.stdout = _Ear(sys.stdout, self._tell, overheard)
+        sys.stderr = _Ear(sys.stderr, self._tell, overheard)
+        self._silence_compiled_code()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        RcutilsLogger.log = self._usual_log
+        for ear in (sys.stdout, sys.stderr):
+            if isinstance(ear, _Ear):
+                ear.finish()
+        sys.stdout, sys.stderr = self._usual_streams
+        while self._descriptors:
+            descriptor, saved = self._descriptors.pop()
+            os.dup2(saved, descriptor)
+            os.close(saved)
+
+    def _overheard(self) -> bool:
+        return threading.get_ident() not in self._others
+
+    def _silence_compiled_code(self) -> None:
+        # rcutils writes log lines to the descriptors themselves; the card shows what matters of them.
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for descriptor in (1, 2):
+            self._descriptors.append((descriptor, os.dup(descriptor)))
+            os.dup2(nowhere, descriptor)
+        os.close(nowhere)
+
+
+class _Ear:
+    """Stands in for sys.stdout: forwards the lines of overheard threads, passes on everybody else's."""
+
+    def __init__(self, stream: Any, tell: Callable[[str], None], overheard: Callable[[], bool]) -> None:
+        self._stream = stream
+        self._tell = tell
+        self._overheard = overheard
+        self._rest = ""
+        self._lock = threading.Lock()
+
+    def write(self, text: str) -> int:
+        """Take some text; whole lines are told at once."""
+        if not self._overheard():
+            written: int = self._stream.write(text)
+            return written
+        with self._lock:
+            *lines, self._rest = (self._rest + text).split("\n")
+        for line in lines:
+            self._tell(line)
+        return len(text)
+
+    def finish(self) -> None:
+        """Tell the last line, which had no end."""
+        with self._lock:
+            rest, self._rest = self._rest, ""
+        if rest:
+            self._tell(rest)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)

@@ -1,0 +1,140 @@
+"""One run of a subject in the kernel: a node class is made and spun, a function is called, each in a thread."""
+
+from __future__ import annotations
+
+import ctypes
+import inspect
+import threading
+import traceback
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from rclpy.context import Context
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+from std_msgs.msg import Empty
+
+from autograder.notebook.student_tracebacks import student_frames
+
+Tell = Callable[..., None]
+"""Tells the judge one word with its data."""
+
+END_LIMIT = 1.5
+"""Seconds of wall time in which a stopped subject must have left its thread."""
+
+
+class SubjectRun:
+    """Runs one subject once."""
+
+    def __init__(self, number: int, subject: Any, context: Context, tell: Tell) -> None:
+        self._number = number
+        self._subject = subject
+        self._context = context
+        self._tell_judge = tell
+        self._released = threading.Event()
+        self._stopping = threading.Event()
+        self._executor: SingleThreadedExecutor | None = None
+        self._thread = threading.Thread(target=self._live, name=f"subject {number}", daemon=True)
+        self._arguments: Sequence[Any] = ()
+        self._options: Mapping[str, Any] = {}
+
+    def start(self, arguments: Sequence[Any], options: Mapping[str, Any]) -> None:
+        """Begin; ``options`` are passed on where a function takes them."""
+        self._arguments, self._options = arguments, options
+        self._thread.start()
+
+    def release(self) -> None:
+        """Let a made node spin."""
+        self._released.set()
+
+    def stop(self) -> bool:
+        """End the run; whether its thread is gone."""
+        self._stopping.set()
+        self._released.set()
+        if self._executor is not None:
+            self._executor.shutdown(timeout_sec=END_LIMIT)
+        self._thread.join(timeout=0.2 if self._is_class else END_LIMIT / 5)
+        if self._thread.is_alive():
+            _ask_to_leave(self._thread)
+            self._thread.join(timeout=END_LIMIT)
+        return not self._thread.is_alive()
+
+    @property
+    def _is_class(self) -> bool:
+        return inspect.isclass(self._subject)
+
+    def _tell(self, word: str, **rest: Any) -> None:
+        self._tell_judge(word, run=self._number, **rest)
+
+    def _live(self) -> None:
+        try:
+            if self._is_class:
+                self._make_and_spin()
+            else:
+                value = self._subject(*self._arguments, **_accepted(self._subject, self._options))
+                self._tell("returned", value=None if value is None else repr(value))
+        except ExternalShutdownException:
+            pass
+        except BaseException as error:
+            if not (self._stopping.is_set() and isinstance(error, SystemExit)):
+                self._tell("raised", traceback=formatted(error))
+
+    def _make_and_spin(self) -> None:
+        node = self._subject(*self._arguments)
+        if not isinstance(node, Node):
+            raise TypeError(
+                f"{self._subject.__name__} is no Node: write class {self._subject.__name__}(Node)"
+            )
+        try:
+            self._tell("constructed", marker=_mark(node, self._number))
+            self._released.wait()
+            if self._stopping.is_set():
+                return
+            self._executor = SingleThreadedExecutor(context=node.context)
+            self._executor.add_node(node)
+            self._executor.spin()
+        finally:
+            if self._executor is not None:
+                self._executor.remove_node(node)
+            node.destroy_node()
+
+
+def formatted(error: BaseException) -> str:
+    """The traceback with the student's own lines, as a terminal shows it.
+
+    An error that collects those of callbacks is replaced by the first of them.
+    """
+    collected = getattr(error, "errors", ())
+    if collected and isinstance(getattr(collected[0], "error", None), BaseException):
+        error = collected[0].error
+    return "".join(
+        traceback.format_exception(type(error), error, student_frames(error.__traceback__))
+    ).strip()
+
+
+def _mark(node: Node, number: int) -> str:
+    """Put a last endpoint of each kind on the graph: whoever sees it has seen all that the subject made before."""
+    name = f"/_ready_{number}"
+    try:
+        Node.create_publisher(node, Empty, name, 1)
+        Node.create_subscription(node, Empty, name, lambda _: None, 1)
+    except Exception:
+        return ""
+    return name
+
+
+def _accepted(function: Any, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Those of the options that the function has a parameter for."""
+    try:
+        parameters = inspect.signature(function).parameters
+    except (TypeError, ValueError):
+        return {}
+    if any(p.kind is inspect.Parameter.VAR_KEYWORD for p in parameters.values()):
+        return dict(options)
+    return {name: value for name, value in options.items() if name in parameters}
+
+
+def _ask_to_leave(thread: threading.Thread) -> None:
+    """Raise SystemExit in a thread that will not end, such as one in an endless loop."""
+    if thread.ident is not None:
+        ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident), ctypes.py_object(SystemExit))
