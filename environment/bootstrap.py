@@ -130,8 +130,8 @@ def set_up(place: Place, environ: Mapping[str, str], with_tests: bool) -> None:
 def _provide_for_tests(log: IO[str]) -> None:
     apt = system_packages.Apt.here()
     for row in system_packages.provide("tests", log, say, apt):
-        command = system_packages.command_to_type([row], apt)
-        say(f"{row.title} is not there ({row.reason}), what needs it is skipped. Get it with: {command}")
+        get = system_packages.get_with([row], apt)
+        say(f"{row.title} is not there ({row.reason}), so what needs it is skipped. {get}")
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -10,7 +10,7 @@ The ROS wheels bring a ``.pth`` of their own (ros-wheels-bootstrapper) that star
 
 * trusts its guard variable, which a process of another environment can have set for its own libraries;
 * keeps a sourced ROS of another distribution in front, so that the wrong rclpy is found;
-* starts ``sys.argv[0]`` by its name, which can be another ``python``.
+* takes the library folders in the order of a set, another one at each start.
 """
 
 from __future__ import annotations
@@ -80,7 +80,6 @@ def variables(
 def _start_again(environ: MutableMapping[str, str]) -> None:
     """Replace this process by the same one, so that it starts with the environment it has now."""
     environ[_SECOND_START] = "1"
-    # By its path, not by the name it was started with: that name can lead to another interpreter.
     os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], dict(environ))
 
 

@@ -21,15 +21,10 @@ KERNEL_VARIABLES = {"RCUTILS_LOGGING_USE_STDOUT": "1", "RCUTILS_COLORIZED_OUTPUT
 KERNEL_NAME = "python3"
 
 
-def kernelspec(python: Path) -> dict[str, object]:
-    """Return the kernelspec of the course: this Python's ipykernel, with the variables of a graded cell."""
-    return {
-        "argv": [str(python), "-m", "ipykernel_launcher", "-f", "{connection_file}"],
-        "display_name": "Python 3 (ipykernel)",
-        "language": "python",
-        "metadata": {"debugger": True},
-        "env": KERNEL_VARIABLES,
-    }
+def kernel_install_options() -> list[str]:
+    """Return the options of ``python -m ipykernel install`` that make the kernel of the course."""
+    options = ["--sys-prefix", "--name", KERNEL_NAME, "--display-name", "Python 3 (ipykernel)"]
+    return options + [word for name, value in KERNEL_VARIABLES.items() for word in ("--env", name, value)]
 
 
 def lab_settings() -> dict[str, object]:
@@ -63,9 +58,8 @@ def server_config(root: Path, bash: str | None) -> dict[str, object]:
 
 
 def write_jupyter_files(prefix: Path, root: Path) -> None:
-    """Write the files for the environment at `prefix` of the course at `root`."""
+    """Write the settings for the environment at `prefix` of the course at `root`."""
     files = {
-        prefix / "share/jupyter/kernels" / KERNEL_NAME / "kernel.json": kernelspec(prefix / "bin/python"),
         prefix / "share/jupyter/lab/settings/overrides.json": lab_settings(),
         prefix / "etc/jupyter/jupyter_server_config.d/course.json": server_config(root, shutil.which("bash")),
     }

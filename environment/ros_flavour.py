@@ -162,7 +162,7 @@ def load(prefix: Path) -> Ros | None:
         record = json.loads((prefix / RECORD).read_text(encoding="utf-8"))
         paths = {name: tuple(entries) for name, entries in record["paths"].items()}
         return Ros(record["flavour"], paths)
-    except (OSError, ValueError, KeyError, AttributeError):
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
         return None
 
 

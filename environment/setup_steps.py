@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING
 
 from environment import course_process, ros_flavour
-from environment.jupyter_files import write_jupyter_files
+from environment.jupyter_files import kernel_install_options, write_jupyter_files
 from environment.lock import split_blocks
 from environment.place import INTERFACES, Place, environment_paths, environment_values
 from environment.steps import Step, files_below
@@ -175,6 +175,8 @@ class Setup:
 
     def _configure_jupyter(self) -> None:
         write_jupyter_files(self.place.prefix, self.place.root)
+        install: Command = [self.place.python, "-m", "ipykernel", "install", *kernel_install_options()]
+        self._run("registering the kernel", install)
 
     def _install_project(self) -> None:
         # "compat" puts the folder itself on the path, so that `environment` can be imported too.

@@ -18,8 +18,9 @@ from typing import IO, TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-# When a row is needed: by the set-up, or by the tests only (without it the tests that need it are skipped).
-Need = Literal["setup", "tests"]
+# What needs a row: the set-up itself, the tests (without it those that need it are skipped), or the sandboxes
+# of submissions.
+Need = Literal["setup", "tests", "sandbox"]
 
 CHROMIUM_NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
@@ -31,7 +32,7 @@ class SystemPackage:
     Attributes:
         title: what it is, as a reader of a message knows it.
         reason: what the course does with it.
-        need: when it is needed.
+        need: what needs it.
         debian: the packages that bring it on Debian and Ubuntu.
         is_there: tells whether it is there.
     """
@@ -96,6 +97,13 @@ TABLE = (
         debian=("chromium",),
         is_there=lambda: find_program(*CHROMIUM_NAMES) is not None,
     ),
+    SystemPackage(
+        title="bubblewrap",
+        reason="to shut submissions off from each other",
+        need="sandbox",
+        debian=("bubblewrap",),
+        is_there=lambda: find_program("bwrap") is not None,
+    ),
 )
 
 
@@ -117,12 +125,12 @@ def missing(need: Need, table: Sequence[SystemPackage] = TABLE) -> list[SystemPa
     return [row for row in table if row.need == need and not row.is_there()]
 
 
-def command_to_type(rows: Iterable[SystemPackage], apt: Apt) -> str:
-    """Return the command that brings these rows, for a user to type; a sentence where there is no apt-get."""
+def get_with(rows: Iterable[SystemPackage], apt: Apt) -> str:
+    """Return a line that tells a user how to get these rows: the command to type where it is known."""
     rows = list(rows)
     if apt.program:
-        return "sudo apt-get install -y " + " ".join(name for row in rows for name in row.debian)
-    return "install with the package manager of your system: " + ", ".join(row.title for row in rows)
+        return "Get it with: sudo apt-get install -y " + " ".join(name for row in rows for name in row.debian)
+    return f"Get {', '.join(row.title for row in rows)} with the package manager of your system."
 
 
 def _apt_install(rows: Sequence[SystemPackage], apt: Apt, log: IO[str]) -> bool:
@@ -174,4 +182,4 @@ def require(need: Need, log: IO[str], say: Callable[[str], None], apt: Apt | Non
     absent = provide(need, log, say, apt)
     if absent:
         wanted = ", ".join(f"{row.title} ({row.reason})" for row in absent)
-        raise MissingPackagesError(f"Missing: {wanted}. Get it with: {command_to_type(absent, apt)}")
+        raise MissingPackagesError(f"{wanted} is missing. {get_with(absent, apt)}")

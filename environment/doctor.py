@@ -1,0 +1,289 @@
+"""Say what the course needs is there, and what is missing: ``python -m environment.doctor``.
+
+Each probe looks at one group of things and answers with Findings; `PROBES` is their order. A probe never
+raises: what it cannot find out is a finding too.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import shutil
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from environment import jupyter_files, loopback, ros_flavour, system_packages
+from environment.findings import Finding, as_text, exit_code
+from environment.ros_report import INTERFACE_FIELDS
+
+ROOT = Path(__file__).resolve().parent.parent
+PREFIX = ROOT / ".venv"
+SET_UP = "Type: ./course setup"
+SET_UP_ANEW = "Delete the folder .venv, then type: ./course setup"
+
+# Fast DDS moves messages between processes through /dev/shm. A participant takes about half a megabyte per
+# transport; a container's default of 64 MB is enough for a class of one.
+_SHM_NEEDED = 64_000_000
+# Class directories, notebooks with pictures and logs, in bytes.
+_DISK_NEEDED = 500_000_000
+# Programs that only print their version, in seconds.
+_SHORT = 20.0
+
+
+def _output(command: list[str], limit: float = _SHORT) -> tuple[int, str]:
+    """Run a command and return its exit code and all it printed; 127 if it could not be started or hung."""
+    try:
+        done = subprocess.run(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            timeout=limit,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return 127, str(error)
+    return done.returncode, done.stdout
+
+
+def _first_line(text: str) -> str:
+    return next((line.strip() for line in text.splitlines() if line.strip()), "")
+
+
+def _last_line(text: str) -> str:
+    return _first_line("\n".join(reversed(text.splitlines())))
+
+
+def python() -> list[Finding]:
+    """Look at the Python that runs this, and at the environment of the course."""
+    detail = f"{sys.version.split()[0]}, {sys.executable}"
+    if Path(sys.prefix) == PREFIX:
+        return [Finding("Python", "ok", f"{detail}")]
+    if PREFIX.exists():
+        remedy = f"Run this with {PREFIX / 'bin' / 'python'}"
+        return [Finding("Python", "missing", f"{detail} is not the course's own", remedy)]
+    return [Finding("Python", "missing", f"{detail}; the course is not set up in {ROOT}", SET_UP)]
+
+
+def ros() -> list[Finding]:
+    """Look at the ROS 2 that was set up, at its middleware and at the interface package."""
+    recorded = ros_flavour.load(Path(sys.prefix))
+    # The last line: a library that is loaded may have printed before.
+    report = _parsed(_last_line(_output([sys.executable, "-m", "environment.ros_report"])[1]))
+    return [_ros(recorded, report), _middleware(report), _interfaces(report)]
+
+
+def _parsed(line: str) -> dict[str, object]:
+    try:
+        report = json.loads(line)
+    except ValueError:
+        report = None
+    return report if isinstance(report, dict) else {"rclpy_error": line or "Python ended without a word"}
+
+
+def _ros(recorded: ros_flavour.Ros | None, report: dict[str, object]) -> Finding:
+    if "rclpy_error" in report:
+        source = recorded is not None and recorded.is_sourced
+        remedy = "Is the ROS 2 that was sourced at set-up still there? " * source + SET_UP_ANEW
+        return Finding("ROS 2", "missing", f"rclpy cannot be imported: {report['rclpy_error']}", remedy)
+    flavour = recorded.flavour if recorded else "sourced"
+    where = {"wheels": "from wheels", "system": "of the system", "robostack": "of RoboStack"}.get(
+        flavour, flavour
+    )
+    distro = os.environ.get("ROS_DISTRO", "of an unknown distribution").capitalize()
+    return Finding(
+        "ROS 2", "ok", f"{distro} {where}, rclpy {report.get('version')} in {report.get('prefix')}"
+    )
+
+
+def _middleware(report: dict[str, object]) -> Finding:
+    if "rmw" not in report:
+        return Finding("Middleware", "unchecked", "rclpy is missing")
+    domain = os.environ.get("ROS_DOMAIN_ID", "0")
+    return Finding("Middleware", "ok", f"{report['rmw']}, ROS_DOMAIN_ID {domain}")
+
+
+def _interfaces(report: dict[str, object]) -> Finding:
+    name = "my_robot_interfaces"
+    if "fields" not in report:
+        return Finding(name, "missing", str(report.get("interfaces_error", "rclpy is missing")), SET_UP_ANEW)
+    if report["fields"] != INTERFACE_FIELDS:
+        detail = f"another package of that name is in the way: its fields are {report['fields']}"
+        return Finding(name, "missing", detail, "Type it in a terminal where no workspace is sourced.")
+    return Finding(name, "ok", "AddTwoInts and Fibonacci")
+
+
+def talk() -> list[Finding]:
+    """Let two processes talk to each other over ROS."""
+    name = "Two nodes talk"
+    if _output([sys.executable, "-c", "import rclpy"])[0] != 0:
+        return [Finding(name, "unchecked", "rclpy is missing")]
+    seconds = loopback.seconds_to_first_message()
+    if seconds is None:
+        detail = f"a listener heard nothing of a talker beside it for {loopback.LIMIT:.0f} s"
+        remedy = (
+            "Try: ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST FASTDDS_BUILTIN_TRANSPORTS=UDPv4 ./course doctor"
+        )
+        return [Finding(name, "missing", detail, remedy)]
+    return [
+        Finding(name, "ok", f"the first message arrived {seconds:.1f} s after the start of both processes")
+    ]
+
+
+def build_tools() -> list[Finding]:
+    """Look at what builds packages."""
+    found = []
+    compilers = system_packages.find_compilers()
+    if compilers:
+        versions = [_first_line(_output([path, "--version"])[1]) for path in compilers]
+        found.append(Finding("C and C++ compiler", "ok", ", ".join(dict.fromkeys(versions))))
+    for row in system_packages.missing("setup"):
+        remedy = system_packages.get_with([row], system_packages.Apt.here())
+        found.append(Finding(row.title, "missing", f"needed {row.reason}", remedy))
+    found.append(_program("CMake", "cmake", ["--version"]))
+    colcon = shutil.which("colcon")
+    colcon_version = _distribution("colcon-core")
+    if colcon and colcon_version:
+        found.append(Finding("colcon", "ok", f"colcon-core {colcon_version}, {colcon}"))
+    else:
+        found.append(Finding("colcon", "missing", "not found on the PATH", SET_UP_ANEW))
+    return found
+
+
+def _program(title: str, name: str, arguments: list[str]) -> Finding:
+    path = shutil.which(name)
+    code, text = _output([path, *arguments]) if path else (127, "not found on the PATH")
+    if code != 0:
+        return Finding(title, "missing", _last_line(text), SET_UP_ANEW)
+    return Finding(title, "ok", f"{_first_line(text)}, {path}")
+
+
+def _distribution(name: str) -> str:
+    """Return the version of an installed Python package, or an empty text."""
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return ""
+
+
+def jupyter() -> list[Finding]:
+    """Look at JupyterLab, nbgrader and the kernel."""
+    found = []
+    for title, name in (("JupyterLab", "jupyterlab"), ("nbgrader", "nbgrader")):
+        number = _distribution(name)
+        found.append(
+            Finding(title, "ok", number)
+            if number
+            else Finding(title, "missing", "not installed", SET_UP_ANEW)
+        )
+    spec = Path(sys.prefix) / "share/jupyter/kernels" / jupyter_files.KERNEL_NAME / "kernel.json"
+    return [*found, kernel(spec)]
+
+
+def kernel(spec: Path) -> Finding:
+    """Look at a kernelspec: it must start a Python that is there, with the variables of a graded cell."""
+    name = f"Kernel {jupyter_files.KERNEL_NAME}"
+    try:
+        content = json.loads(spec.read_text(encoding="utf-8"))
+        program, variables = content["argv"][0], content.get("env", {})
+    except (OSError, ValueError, LookupError, TypeError) as error:
+        return Finding(name, "missing", f"{spec} cannot be read: {error}", SET_UP_ANEW)
+    if shutil.which(program) is None:
+        return Finding(name, "missing", f"it starts {program}, which is not there", SET_UP_ANEW)
+    wrong = [key for key, value in jupyter_files.KERNEL_VARIABLES.items() if variables.get(key) != value]
+    if wrong:
+        detail = f"it does not set {', '.join(wrong)}: log lines would cost points"
+        return Finding(name, "missing", detail, SET_UP_ANEW)
+    return Finding(name, "ok", program)
+
+
+def space() -> list[Finding]:
+    """Look at the disk and at the shared memory."""
+    found = [folder_space("Disk", ROOT, _DISK_NEEDED, "Make room on the disk.")]
+    remedy = "In a container: docker run --shm-size=512m …; or set FASTDDS_BUILTIN_TRANSPORTS=UDPv4"
+    return [*found, folder_space("Shared memory", Path("/dev/shm"), _SHM_NEEDED, remedy)]
+
+
+def folder_space(name: str, folder: Path, needed: int, remedy: str) -> Finding:
+    """Look at a folder that must be writable and have room.
+
+    Args:
+        name: what it is.
+        folder: the folder.
+        needed: the free space that it must have, in bytes.
+        remedy: how to get it.
+    """
+    if not os.access(folder, os.W_OK):
+        return Finding(name, "missing", f"{folder} cannot be written to", remedy)
+    free = shutil.disk_usage(folder).free
+    detail = f"{free / 1e9:.1f} GB free in {folder}"
+    if free < needed:
+        return Finding(name, "missing", f"{detail}, {needed / 1e9:.2f} GB are needed", remedy)
+    return Finding(name, "ok", detail)
+
+
+def sandbox() -> list[Finding]:
+    """Look at whether a submission could be shut off in a sandbox of its own."""
+    path = shutil.which("bwrap")
+    if path is None:
+        return _not_there("sandbox")
+    # What such a sandbox is made of: its own processes, its own network, nothing else to see.
+    code, text = _output([path, "--ro-bind", "/", "/", "--unshare-all", "--proc", "/proc", "true"])
+    if code != 0:
+        remedy = (
+            "User namespaces may be off here: look at sysctl kernel.unprivileged_userns_clone, or AppArmor"
+        )
+        return [Finding("bubblewrap", "optional", f"{path} cannot work here: {_last_line(text)}", remedy)]
+    return [Finding("bubblewrap", "ok", f"{_first_line(_output([path, '--version'])[1])}, {path}")]
+
+
+def for_tests() -> list[Finding]:
+    """Look at what only ./course test uses."""
+    chromium = system_packages.find_program(*system_packages.CHROMIUM_NAMES)
+    return [Finding("Chromium", "ok", chromium)] if chromium else _not_there("tests")
+
+
+def _not_there(need: system_packages.Need) -> list[Finding]:
+    apt = system_packages.Apt.here()
+    return [
+        Finding(
+            row.title,
+            "optional",
+            f"not there, only needed {row.reason}",
+            system_packages.get_with([row], apt),
+        )
+        for row in system_packages.missing(need)
+    ]
+
+
+PROBES = (python, ros, talk, build_tools, jupyter, space, sandbox, for_tests)
+
+
+def examine() -> list[Finding]:
+    """Look at everything, in about two seconds, and return the findings in their order."""
+    # Most probes wait for a process: three at a time.
+    with ThreadPoolExecutor(3) as pool:
+        return [finding for found in pool.map(lambda probe: probe(), PROBES) for finding in found]
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Print the findings and return the exit code: 0 if the course can run, 1 if something is missing."""
+    parser = argparse.ArgumentParser(prog="python -m environment.doctor", description=__doc__.splitlines()[0])
+    parser.add_argument("--json", action="store_true", help="print the findings as a JSON list")
+    options = parser.parse_args(arguments)
+    findings = examine()
+    print(
+        json.dumps([asdict(finding) for finding in findings], indent=1) if options.json else as_text(findings)
+    )
+    return exit_code(findings)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

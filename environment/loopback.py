@@ -1,0 +1,69 @@
+"""A talk between two processes over ROS: ``python -m environment.loopback talk|listen TOPIC SECONDS``.
+
+The doctor starts both and waits for the listener. They use the domain and the transports of whoever asks, for
+those are what a student's nodes will use.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+import uuid
+
+# Discovery on one host takes well under a second. Where it takes ten, the labs will not work either.
+LIMIT = 10.0
+
+
+def seconds_to_first_message(limit: float = LIMIT) -> float | None:
+    """Start a talker and a listener and return the seconds until the message was heard.
+
+    Args:
+        limit: how long the two try, in seconds.
+
+    Returns:
+        None if nothing was heard, or if one of them could not run.
+    """
+    # Nobody else has this topic.
+    topic = f"/course_doctor_{uuid.uuid4().hex}"
+    started = time.monotonic()
+    with _start("talk", topic, limit) as talker, _start("listen", topic, limit) as listener:
+        try:
+            heard = listener.wait() == 0
+            return time.monotonic() - started if heard else None
+        finally:
+            talker.kill()
+
+
+def _start(role: str, topic: str, limit: float) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-m", "environment.loopback", role, topic, str(limit)]
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def main(role: str, topic: str, limit: float) -> int:
+    """Be the talker or the listener; return 0 if the listener heard something."""
+    import rclpy
+    from rclpy.utilities import try_shutdown
+    from std_msgs.msg import String
+
+    rclpy.init()
+    node = rclpy.create_node(f"course_doctor_{role}")
+    heard: list[str] = []
+    if role == "talk":
+        publisher = node.create_publisher(String, topic, 10)
+        node.create_timer(0.05, lambda: publisher.publish(String(data="hello")))
+    else:
+
+        def hear(message: String) -> None:
+            heard.append(message.data)
+
+        node.create_subscription(String, topic, hear, 10)
+    end = time.monotonic() + limit
+    while not heard and (left := end - time.monotonic()) > 0:
+        rclpy.spin_once(node, timeout_sec=left)
+    try_shutdown()
+    return 0 if heard else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1], sys.argv[2], float(sys.argv[3])))

@@ -1,0 +1,218 @@
+"""The script `course`, in a folder of its own, with programs that only write down that they ran."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+# Stands in for environment/bootstrap.py: notes its arguments, makes what the script looks for.
+SET_UP = """\
+import os, pathlib, sys
+root = pathlib.Path(__file__).resolve().parent.parent
+with (root / "ran.txt").open("a") as log:
+    print("set-up", *[word for word in sys.argv[1:] if word != sys.argv[2]], file=log)
+if (root / "broken").exists():
+    sys.exit(2)
+programs = root / ".venv/bin"
+programs.mkdir(parents=True, exist_ok=True)
+(root / ".venv/course").mkdir(exist_ok=True)
+if not (programs / "python").exists():
+    (programs / "python").symlink_to(sys.executable)
+(root / ".venv/course/token").write_text(sys.argv[2] + "\\n")
+(root / ".venv/course/libraries.sh").write_text("export LD_LIBRARY_PATH='/course lib'\\n")
+"""
+PROGRAM = """\
+#!/bin/sh
+{{ printf '%s' "$(basename "$0")"; for word; do printf ' [%s]' "$word"; done; echo; }} >> '{root}/ran.txt'
+echo "$PWD|${{LD_LIBRARY_PATH:-}}"
+exit {code}
+"""
+
+
+class Course:
+    """A folder with the script, and what happened in it."""
+
+    def __init__(self, root: Path):
+        self.root = root
+        self.script = root / "course"
+
+    def run(self, *arguments: str, cwd: Path | None = None, **more: str) -> subprocess.CompletedProcess[str]:
+        """Run the script and return its exit code and output."""
+        environ = {"PATH": os.environ["PATH"], "PYTHON": sys.executable, **more}
+        return subprocess.run(
+            [str(self.script), *arguments], cwd=cwd, env=environ, capture_output=True, text=True, check=False
+        )
+
+    def ran(self) -> list[str]:
+        """Return what ran since the last time this was asked."""
+        log = self.root / "ran.txt"
+        lines = log.read_text().splitlines() if log.exists() else []
+        log.unlink(missing_ok=True)
+        return lines
+
+    def program(self, name: str, code: int = 0) -> None:
+        """Put a program into the environment that ends with a code."""
+        path = self.root / ".venv/bin" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(PROGRAM.format(root=self.root, code=code))
+        path.chmod(0o755)
+
+
+@pytest.fixture
+def course(tmp_path: Path) -> Course:
+    root = tmp_path / "the course"
+    (root / "environment/requirements").mkdir(parents=True)
+    (root / "environment/ros2_ws/src/interfaces/srv").mkdir(parents=True)
+    (root / "chapters").mkdir()
+    shutil.copy(ROOT / "course", root / "course")
+    (root / "pyproject.toml").write_text("[project]\n")
+    (root / "environment/__init__.py").write_text("")
+    (root / "environment/bootstrap.py").write_text(SET_UP)
+    (root / "environment/requirements/course.lock").write_text("six==1.17.0\n")
+    (root / "environment/ros2_ws/src/interfaces/package.xml").write_text("<package/>\n")
+    (root / "environment/ros2_ws/src/interfaces/srv/A.srv").write_text("---\n")
+    made = Course(root)
+    for name in ("autograder", "jupyter", "ruff", "mypy", "pytest"):
+        made.program(name)
+    return made
+
+
+@pytest.mark.parametrize("arguments", [(), ("help",)])
+def test_help_needs_no_set_up(course: Course, arguments: tuple[str, ...]) -> None:
+    done = course.run(*arguments)
+    assert done.returncode == 0
+    assert "usage: ./course COMMAND" in done.stdout
+    assert course.ran() == []
+
+
+def test_a_command_sets_up_once_and_then_is_only_run(course: Course) -> None:
+    assert course.run("check", "lab_1_2.talker").returncode == 0
+    assert course.ran() == ["set-up --token", "autograder [check] [lab_1_2.talker]"]
+    course.run("check")
+    assert course.ran() == ["autograder [check]"]
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        "pyproject.toml",
+        "environment/bootstrap.py",
+        "environment/requirements/course.lock",
+        "environment/ros2_ws/src/interfaces/package.xml",
+        "environment/ros2_ws/src/interfaces/srv/A.srv",
+    ],
+)
+def test_a_change_of_what_it_is_made_from_sets_up_again(course: Course, changed: str) -> None:
+    course.run("check")
+    course.ran()
+    with (course.root / changed).open("a") as file:
+        file.write("# changed\n")
+    course.run("check")
+    assert course.ran() == ["set-up --token", "autograder [check]"]
+
+
+def test_a_moved_folder_is_set_up_again(course: Course) -> None:
+    course.run("check")
+    course.ran()
+    moved = Course(course.root.rename(course.root.parent / "moved"))
+    moved.run("setup")
+    assert moved.ran() == ["set-up --token"]
+
+
+def test_an_interpreter_that_is_gone_sets_up_again(course: Course) -> None:
+    course.run("check")
+    course.ran()
+    python = course.root / ".venv/bin/python"
+    python.unlink()
+    python.symlink_to("/nowhere/python3")
+    course.run("check")
+    assert course.ran()[0] == "set-up --token"
+
+
+def test_setup_always_looks_again_and_runs_nothing_else(course: Course) -> None:
+    course.run("setup")
+    course.run("setup")
+    assert course.ran() == ["set-up --token", "set-up --token"]
+
+
+def test_a_failed_set_up_runs_nothing(course: Course) -> None:
+    (course.root / "broken").touch()
+    assert course.run("check").returncode == 2
+    assert course.ran() == ["set-up --token"]
+
+
+def test_a_command_runs_in_the_users_folder_and_gives_its_exit_code(course: Course, tmp_path: Path) -> None:
+    course.program("autograder", code=7)
+    done = course.run("grade", "a b", "", cwd=tmp_path)
+    assert done.returncode == 7
+    assert done.stdout == f"{tmp_path}|/course lib\n"
+    assert course.ran()[1] == "autograder [grade] [a b] []"
+
+
+def test_it_is_found_through_links(course: Course, tmp_path: Path) -> None:
+    relative = course.root.parent / "relative"
+    relative.symlink_to(Path(course.root.name) / "course")
+    chain = tmp_path / "chain"
+    chain.symlink_to(relative)
+    through = Course(course.root)
+    through.script = chain
+    assert through.run("check").returncode == 0
+    assert course.ran() == ["set-up --token", "autograder [check]"]
+
+
+def test_the_libraries_are_left_alone_where_something_is_sourced(course: Course) -> None:
+    done = course.run("check", LD_LIBRARY_PATH="/opt/ros/humble/lib")
+    assert done.stdout.endswith("|/opt/ros/humble/lib\n")
+
+
+def test_lab_opens_on_the_chapters(course: Course) -> None:
+    done = course.run("lab", "--no-browser")
+    assert done.stdout.startswith(f"{course.root}/chapters|")
+    assert course.ran()[1] == "jupyter [lab] [--no-browser]"
+
+
+def test_test_runs_every_check_and_the_tests_last(course: Course, tmp_path: Path) -> None:
+    done = course.run("test", "-x", cwd=tmp_path)
+    assert done.returncode == 0
+    assert course.ran() == [
+        "set-up --token --tests",
+        "ruff [check] [.]",
+        "ruff [format] [--check] [.]",
+        "mypy",
+        "autograder [build] [--check]",
+        "pytest [-x]",
+    ]
+    assert done.stdout.splitlines()[-1].startswith(f"{course.root}|")
+
+
+def test_a_failed_check_fails_the_whole_but_the_tests_still_run(course: Course) -> None:
+    course.program("mypy", code=1)
+    done = course.run("test")
+    assert done.returncode == 1
+    assert "not in order: mypy" in done.stderr
+    assert course.ran()[-1].startswith("pytest")
+
+
+def test_failed_tests_fail_the_whole(course: Course) -> None:
+    course.program("pytest", code=3)
+    assert course.run("test").returncode == 3
+
+
+def test_an_old_python_is_told_to_the_user(course: Course, tmp_path: Path) -> None:
+    old = tmp_path / "bin"
+    old.mkdir()
+    for name in ("cat", "cksum", "dirname", "readlink"):
+        (old / name).symlink_to(shutil.which(name) or name)
+    (old / "python3").write_text("#!/bin/sh\nexit 1\n")
+    (old / "python3").chmod(0o755)
+    done = course.run("check", PATH=str(old), PYTHON="")
+    assert done.returncode == 2
+    assert "Python 3.11 or newer is needed" in done.stderr
+    assert course.ran() == []

@@ -1,0 +1,42 @@
+"""The interface package that was built into the environment."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from environment.ros_report import INTERFACE_FIELDS, interface_fields
+
+pytestmark = pytest.mark.ros
+
+# A server whose answer has a text where a number belongs.
+WRONG_TYPE = """
+import rclpy
+from my_robot_interfaces.srv import AddTwoInts
+
+response = AddTwoInts.Response()
+response.sum = "three"
+rclpy.init()
+node = rclpy.create_node("wrong_type")
+publisher = node.create_client(AddTwoInts, "add_two_ints")
+request = AddTwoInts.Request()
+request.a = "three"
+try:
+    publisher.call_async(request)
+except Exception as error:
+    print("caught", type(error).__name__)
+"""
+
+
+def test_the_fields_are_those_of_the_course_text() -> None:
+    assert interface_fields() == INTERFACE_FIELDS
+
+
+def test_a_wrong_field_type_is_an_exception_and_does_not_end_the_process() -> None:
+    done = subprocess.run([sys.executable, "-c", WRONG_TYPE], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, (
+        f"exit status {done.returncode}: was the package built without NDEBUG?\n{done.stderr}"
+    )
+    assert done.stdout.startswith("caught")
