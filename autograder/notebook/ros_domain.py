@@ -1,0 +1,119 @@
+"""Picking a ROS domain that nobody else on this host uses.
+
+Two students on one host who both stay on domain 0 hear each other's ``/chatter``. A domain is free when none
+of its UDP ports is taken, and it stays ours because we keep one of its ports, which DDS itself never uses,
+bound for as long as the process lives: the operating system then refuses it to everybody else, and gives it
+back by itself when the process ends in whatever way.
+
+The port numbers are those of the DDS Interoperability Wire Protocol (RTPS), section 9.6.1.1, with its default
+parameters: port base 7400, domain gain 250, participant gain 2.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import socket
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+DOMAIN_VARIABLE = "ROS_DOMAIN_ID"
+FREE_TO_PICK = range(1, 102)
+"""Domain 0 is everybody's default; from 102 on the ports run into Linux's range for outgoing connections."""
+HIGHEST_DOMAIN = 232
+"""The last domain whose ports are valid UDP port numbers."""
+
+_PORT_BASE = 7400
+_DOMAIN_GAIN = 250
+_CLAIM_OFFSET = 9
+"""RTPS uses the offsets 0, 1 and those from 10 on; the ones between belong to nobody."""
+_PROBED_OFFSETS = (0, *range(10, 26, 2))
+"""Multicast discovery, and the first eight participants: a new participant takes the lowest free place."""
+
+
+class NoFreeDomainError(RuntimeError):
+    """Every domain that could be picked is in use on this host."""
+
+
+@dataclass(frozen=True)
+class DomainClaim:
+    """A ROS domain that this process holds until it ends or calls ``release``.
+
+    Attributes:
+        domain: The domain's number.
+    """
+
+    domain: int
+    _socket: socket.socket
+
+    def release(self) -> None:
+        """Give the domain back, so that another process may pick it."""
+        self._socket.close()
+
+
+def claim_free_domain(candidates: Iterable[int] | None = None) -> DomainClaim:
+    """Pick a ROS domain that no other process uses and hold it.
+
+    Args:
+        candidates: Domains to try, in this order; 1 to 101 in random order where nothing is given.
+
+    Raises:
+        NoFreeDomainError: All of them are taken.
+    """
+    domains = random.sample(FREE_TO_PICK, len(FREE_TO_PICK)) if candidates is None else list(candidates)
+    for domain in domains:
+        holder = _bind(_port(domain, _CLAIM_OFFSET))
+        if holder is None:
+            continue
+        if _looks_used(domain):
+            holder.close()
+            continue
+        return DomainClaim(domain, holder)
+    raise NoFreeDomainError(
+        f"all {len(domains)} ROS domains tried are in use on this host: "
+        f"close some kernels, or choose one yourself by setting {DOMAIN_VARIABLE}"
+    )
+
+
+def domain_from_environment() -> int | None:
+    """The domain that ``ROS_DOMAIN_ID`` names, or None where it is not set.
+
+    Raises:
+        ValueError: It is set to something that is no domain.
+    """
+    text = os.environ.get(DOMAIN_VARIABLE, "").strip()
+    if not text:
+        return None
+    if not text.isdecimal() or int(text) > HIGHEST_DOMAIN:
+        raise ValueError(
+            f"{DOMAIN_VARIABLE} is {text!r}, but a ROS domain is a whole number from 0 to {HIGHEST_DOMAIN} "
+            f"(0 to {FREE_TO_PICK[-1]} to be safe): correct it or unset it"
+        )
+    return int(text)
+
+
+def _port(domain: int, offset: int) -> int:
+    return _PORT_BASE + _DOMAIN_GAIN * domain + offset
+
+
+def _looks_used(domain: int) -> bool:
+    for offset in _PROBED_OFFSETS:
+        probe = _bind(_port(domain, offset))
+        if probe is None:
+            return True
+        probe.close()
+    return False
+
+
+def _bind(port: int) -> socket.socket | None:
+    """A UDP socket on the loopback address, or None where the port is taken."""
+    udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    try:
+        udp.bind(("127.0.0.1", port))
+    except OSError:
+        udp.close()
+        return None
+    return udp

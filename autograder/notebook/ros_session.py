@@ -1,0 +1,128 @@
+"""ROS in a notebook's kernel: started once, on a domain of its own, and shut down when the kernel ends."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import sys
+import threading
+from dataclasses import dataclass
+
+import rclpy
+from rclpy.signals import SignalHandlerOptions, get_current_signal_handlers_options, uninstall_signal_handlers
+from rclpy.utilities import get_default_context, ok, try_shutdown
+
+from autograder.notebook.ros_domain import (
+    DOMAIN_VARIABLE,
+    DomainClaim,
+    claim_free_domain,
+    domain_from_environment,
+)
+
+_CHECK_FIELDS = "ROS_PYTHON_CHECK_FIELDS"
+
+_DEFAULTS = {
+    # A log line on stderr makes stock nbgrader give a right answer no points.
+    "RCUTILS_LOGGING_USE_STDOUT": "1",
+    "RCUTILS_COLORIZED_OUTPUT": "0",
+    # A field of the wrong type is named at once, instead of arriving as garbage.
+    _CHECK_FIELDS: "1",
+}
+_DISCOVERY_VARIABLES = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
+
+
+@dataclass(frozen=True, repr=False)
+class RosSession:
+    """That ROS is up in this kernel.
+
+    Attributes:
+        domain: The ROS domain that the kernel's nodes are on.
+        picked: Whether ``start_ros`` picked that domain, as ``ROS_DOMAIN_ID`` did not name one.
+    """
+
+    domain: int
+    picked: bool
+
+    def __repr__(self) -> str:
+        """One line for the end of a cell."""
+        line = f"ROS 2 is up on domain {self.domain}."
+        if self.picked:
+            line += f" To join it from a terminal: export {DOMAIN_VARIABLE}={self.domain}"
+        return line
+
+
+_lock = threading.RLock()
+_claim: DomainClaim | None = None
+
+
+def prepare_environment() -> None:
+    """Give ROS the settings a notebook needs, where the user has not chosen any.
+
+    Logs go to standard output without colour codes, message fields are type-checked, and discovery stays on
+    this host. The settings are exported, so that what a cell starts as a process has them too.
+    """
+    for name, value in _DEFAULTS.items():
+        os.environ.setdefault(name, value)
+    if not any(os.environ.get(name) for name in _DISCOVERY_VARIABLES):
+        os.environ[_DISCOVERY_VARIABLES[0]] = "LOCALHOST"
+    if os.environ[_CHECK_FIELDS] == "1":
+        _check_fields_of_imported_messages()
+
+
+def _check_fields_of_imported_messages() -> None:
+    """Switch the checks on in generated modules that were imported before the variable was set.
+
+    Each of them reads the variable once, at import, into a global that its messages' constructors look up
+    (``rosidl_generator_py/resource/_msg.py.em``).
+    """
+    for module in list(sys.modules.values()):
+        names = getattr(module, "__dict__", {})
+        if names.get("ros_python_check_fields") == "":
+            names["ros_python_check_fields"] = "1"
+
+
+def start_ros() -> RosSession:
+    """Start ROS in this kernel; where it is up already, only say so.
+
+    The domain is the one in ``ROS_DOMAIN_ID``. Where that is not set, a domain nobody uses is picked, held
+    until the kernel ends, and exported, so that processes started from the notebook join it. ROS installs no
+    signal
+    handlers: interrupting the kernel stops the cell and leaves the nodes alone. After ``rclpy.shutdown()`` it
+    starts ROS again.
+
+    Raises:
+        ValueError: ``ROS_DOMAIN_ID`` is set to something that is no domain.
+        NoFreeDomainError: Every domain on this host is in use.
+    """
+    with _lock:
+        prepare_environment()
+        if ok():
+            _drop_signal_handlers()
+        else:
+            # Forgets a default context that was shut down, so that a fresh one takes its place.
+            try_shutdown()
+            rclpy.init(args=[], domain_id=_session_domain(), signal_handler_options=SignalHandlerOptions.NO)
+        domain = get_default_context().get_domain_id()
+        os.environ.setdefault(DOMAIN_VARIABLE, str(domain))
+        return RosSession(domain=domain, picked=_claim is not None and _claim.domain == domain)
+
+
+def _drop_signal_handlers() -> None:
+    """Someone called ``rclpy.init()`` first: its handlers would end ROS when the kernel is interrupted."""
+    if get_current_signal_handlers_options() != SignalHandlerOptions.NO:
+        uninstall_signal_handlers()
+
+
+def _session_domain() -> int:
+    global _claim
+    domain = domain_from_environment()
+    if domain is None:
+        if _claim is None:
+            _claim = claim_free_domain()
+        domain = _claim.domain
+        os.environ[DOMAIN_VARIABLE] = str(domain)
+    return domain
+
+
+# Registered before the executors' own exit handler, therefore run after it: nodes end first, then ROS.
+atexit.register(try_shutdown)
