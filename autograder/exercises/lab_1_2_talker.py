@@ -9,7 +9,7 @@ from autograder.exercises import common_mistakes as common
 from autograder.exercises.evidence import Evidence, Event, Part, Reference
 from autograder.exercises.model import Advice, Bench, Criterion, Exercise, Finding, Look, Mistake
 
-MESSAGES = {Look.FAST: 10, Look.REAL_TIME: 7}
+MESSAGES = {Look.FAST: 8, Look.REAL_TIME: 7}
 """Messages that are listened to; six intervals in real time, whose median one late message does not move."""
 USUAL_PERIOD = 0.5
 """Seconds; stands in for the reference's period while that is being recorded."""

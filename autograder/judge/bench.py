@@ -70,8 +70,9 @@ class TestBench:
         if self._wire is None or not (self._subject.shares_participant and self._clean):
             self._close_wire()
             self._wire = Wire(self._domain_id)
-        self._log = LogReader(self._wire, self._recorder)
-        self._open.callback(self._wire.node.destroy_subscription, self._log.subscription)
+            # One reader for all parts of a participant: a new one would be told the log of the parts before.
+            self._log = LogReader(self._wire, self._recorder)
+            self._subject.renew()
 
     def stop(self) -> None:
         """End the subject, keep what was seen and take away what the judge put up for this part."""

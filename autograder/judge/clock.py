@@ -30,7 +30,7 @@ ANSWER_LIMIT = 0.5
 """Seconds of wall time in which a spinning node answers a question; one that does not is not stepped."""
 SLOW_STEP = 0.25
 """Seconds of wall time after which a step is suspicious: the subject sleeps, or the machine is overloaded."""
-STANDSTILL = 0.1
+STANDSTILL = 0.06
 """Seconds of wall time for which the clock stands still before it is stepped."""
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import secrets
+import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -10,6 +12,10 @@ from autograder import exercises
 from autograder.exercises.model import Exercise
 from autograder.judge.fork import Child
 from autograder.verdict import Verdict, from_json, not_checked, to_json
+
+class CommandNotFound(LookupError):
+    """The command does not exist or may not be executed."""
+
 
 SPARE = 10.0
 """Seconds beyond an exercise's own limit before its judge is taken to have died."""
@@ -31,14 +37,22 @@ def check_command(
 
     Raises:
         UnknownExercise: No exercise has this id.
+        CommandNotFound: There is no such program.
     """
     exercise = exercises.get(exercise_id)
+    if shutil.which(command[0], path=_search_path(cwd)) is None:
+        raise CommandNotFound(f"there is no program {command[0]!r} to run here; is it spelt right, and executable?")
     chosen = seed or secrets.token_hex(8)
     child = Child(lambda: to_json(_check(exercise, command, chosen, cwd)), exercise.limit + SPARE)
     outcome = child.result()
     if outcome.data is None:
         return not_checked(exercise.id, exercise.title, exercise.points, outcome.trouble, "Run `autograder doctor`.")
     return from_json(outcome.data)
+
+
+def _search_path(cwd: Path | None) -> str | None:
+    # A name with a slash is looked up from the folder that the command will run in.
+    return os.environ.get("PATH") if cwd is None else f"{os.environ.get('PATH', '')}:{cwd}"
 
 
 def _check(exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None) -> Verdict:

@@ -47,6 +47,9 @@ class CommandSubject:
         """Remember the domain that the command's environment will name."""
         self._domain_id = domain_id
 
+    def renew(self) -> None:
+        """Each run of a command is a process of its own, with a participant of its own."""
+
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
         """Start the command with the arguments appended.
 

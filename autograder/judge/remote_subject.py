@@ -23,6 +23,7 @@ class RemoteSubject:
         self._link = link
         self._recorder: Recorder | None = None
         self._run = 0
+        self._fresh = True
         self._marker: str | None = None
         self._ended = False
         self._ready = threading.Event()
@@ -36,13 +37,18 @@ class RemoteSubject:
         self._link.send("begin", domain=domain_id)
         self._ready.wait(STOP_LIMIT)
 
+    def renew(self) -> None:
+        """Let the next run have a fresh context."""
+        self._fresh = True
+
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
         """Let the notebook make the node (a class) or call the function."""
         self._run += 1
         self._recorder = recorder
         self._marker, self._ended = None, False
         self._stopped.clear()
-        self._tell("start", run=self._run, arguments=list(arguments), options=options)
+        fresh, self._fresh = self._fresh, False
+        self._tell("start", run=self._run, fresh=fresh, arguments=list(arguments), options=options)
 
     def release(self) -> None:
         """Let the made node spin."""

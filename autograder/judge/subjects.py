@@ -21,6 +21,10 @@ class Subject(Protocol):
         """Called once, before the first run, with the domain of this check."""
         ...
 
+    def renew(self) -> None:
+        """Begin the next run with a fresh participant: an old one would meet the judge's new one only slowly."""
+        ...
+
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
         """Start a run."""
         ...

@@ -75,7 +75,7 @@ def _converse(link: JudgeLink, exercise: str, subject: Any) -> Verdict:
                 words = link.hear()
                 say = words["say"]
                 if say == "start":
-                    place.ensure()
+                    place.ensure(fresh=bool(words.get("fresh")))
                     number = int(words["run"])
                     run = SubjectRun(number, subject, place.context, link.say)
                     run.start(words["arguments"], words["options"])

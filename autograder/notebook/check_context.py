@@ -26,7 +26,6 @@ class CheckContext:
     def __enter__(self) -> Self:
         with rclpy.utilities.g_context_lock:
             self._usual = rclpy.utilities.g_default_context
-        self.renew()
         return self
 
     def __exit__(
@@ -35,9 +34,9 @@ class CheckContext:
         self._end()
         self._put(self._usual)
 
-    def ensure(self) -> None:
-        """Make a new context where the student's code has shut the last one down, as many programs do."""
-        if not self.context.ok():
+    def ensure(self, *, fresh: bool) -> None:
+        """Make a new context where one is asked for, or where the student's code has shut the last one down."""
+        if fresh or not self.context.ok():
             self.renew()
         else:
             self._put(self.context)

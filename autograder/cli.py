@@ -1,0 +1,183 @@
+"""The ``autograder`` command. Thin: each command hands over to the part that does the work.
+
+Exit codes: 0 all is well, 1 the answer is no (a failed check, stale notebooks), 2 it could not be done (bad input, or
+trouble of the grader's own). Imports are inside the commands, because ``check`` must answer at once.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+import click
+
+if TYPE_CHECKING:
+    from autograder.verdict import Verdict
+
+NO = 1
+CANNOT = 2
+
+
+def fail(message: str) -> NoReturn:
+    """End with a clear error and exit code 2."""
+    click.echo(f"autograder: {message}", err=True)
+    sys.exit(CANNOT)
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="ros2-course-autograder", prog_name="autograder")
+def cli() -> None:
+    """Check ROS 2 exercises on the wire, build the notebooks, grade a class."""
+
+
+@cli.command(context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
+@click.argument("exercise", required=False)
+@click.argument("command", nargs=-1, type=click.UNPROCESSED)
+@click.option("--json", "as_json", is_flag=True, help="Print the verdict as one JSON object.")
+@click.option("--seed", help="Draw the random inputs from this: the same seed gives the same inputs.")
+def check(exercise: str | None, command: tuple[str, ...], as_json: bool, seed: str | None) -> None:
+    """Run any COMMAND as the subject of EXERCISE and print the verdict.
+
+    \b
+    autograder check                               lists the exercises
+    autograder check lab_1_2.talker -- python3 talker.py
+
+    Exit code 0: passed; 1: not passed; 2: could not be checked.
+    """
+    from autograder import exercises
+
+    if exercise is None:
+        list_exercises()
+        return
+    if command[:1] == ("--",):
+        command = command[1:]
+    try:
+        wanted = exercises.get(exercise)
+    except exercises.UnknownExercise as error:
+        fail(str(error))
+    if not command:
+        fail(
+            f"say which command to check, after two dashes: autograder check {exercise} -- python3 my_file.py"
+            + (f" (it is called with {wanted.arguments})" if wanted.arguments else "")
+        )
+    from autograder.judge.command import CommandNotFound, check_command
+
+    try:
+        verdict = check_command(exercise, command, seed=seed)
+    except CommandNotFound as error:
+        fail(str(error))
+    show(verdict, as_json=as_json)
+    sys.exit({"passed": 0, "failed": NO}.get(verdict.state, CANNOT))
+
+
+def list_exercises() -> None:
+    """One line for each exercise: id, points, what is asked for."""
+    from autograder import exercises
+
+    for exercise_id in exercises.all_ids():
+        exercise = exercises.get(exercise_id)
+        click.echo(f"{exercise_id:<26} {exercise.points:>3g} points  {exercise.task}")
+
+
+def show(verdict: Verdict, *, as_json: bool) -> None:
+    """Print a verdict as a card or as JSON."""
+    if as_json:
+        from autograder.verdict import to_json
+
+        click.echo(to_json(verdict).decode())
+        return
+    from autograder.cards.text import card_text
+
+    click.echo(card_text(verdict, color=sys.stdout.isatty()))
+
+
+@cli.command()
+@click.option("--check", "only_check", is_flag=True, help="Write nothing; fail where a notebook is out of step.")
+def build(only_check: bool) -> None:
+    """Derive the chapter notebooks from their masters."""
+    from autograder import course, masters
+
+    sys.exit(masters.build_command(course.root(), check=only_check))
+
+
+@cli.command()
+@click.argument("exercises", nargs=-1, metavar="[EXERCISE]...")
+@click.option("--check", "only_check", is_flag=True, help="Write nothing; fail where a recording differs.")
+def record(exercises: tuple[str, ...], only_check: bool) -> None:
+    """Record what the reference solutions do on the wire: the grader expects that from then on."""
+    from autograder import recording
+
+    try:
+        changed = recording.record(exercises, only_check=only_check, tell=click.echo)
+    except recording.CannotRecord as error:
+        fail(str(error))
+    sys.exit(NO if only_check and changed else 0)
+
+
+@cli.command()
+@click.option("--json", "as_json", is_flag=True, help="Print the findings as JSON.")
+def doctor(as_json: bool) -> None:
+    """Say what is there, what is missing and how to get it."""
+    from autograder import course
+
+    sys.path.insert(0, str(course.root()))
+    from environment import doctor as probes
+
+    sys.exit(probes.main(["--json"] if as_json else []))
+
+
+@cli.command("new-class")
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option("--assignment", "assignments", multiple=True, help="Only this assignment; may be given several times.")
+def new_class(folder: Path, assignments: tuple[str, ...]) -> None:
+    """Make an nbgrader course directory in FOLDER, ready for submissions."""
+    from autograder import course, grading
+
+    with grading_errors():
+        made = grading.new_class(folder, course.root(), assignments=assignments)
+    click.echo(made.summary())
+
+
+@cli.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option("--assignment", "assignments", multiple=True, help="Only this assignment; may be given several times.")
+@click.option("--student", "students", multiple=True, help="Only this student; may be given several times.")
+@click.option("--again", is_flag=True, help="Run unchanged submissions again.")
+@click.option("--jobs", type=click.IntRange(min=1), help="Submissions at once; as many as cores where not given.")
+def grade(
+    folder: Path, assignments: tuple[str, ...], students: tuple[str, ...], again: bool, jobs: int | None
+) -> None:
+    """Grade what was submitted in the class directory FOLDER."""
+    from autograder import grading
+
+    with grading_errors():
+        report = grading.grade(folder, assignments=assignments, students=students, again=again, jobs=jobs)
+    sys.exit(report.exit_code)
+
+
+@cli.command()
+@click.argument("folder", type=click.Path(path_type=Path), default=Path("demo-class"))
+def demo(folder: Path) -> None:
+    """Make a sample class, grade it and show the result."""
+    from autograder import grading
+
+    with grading_errors():
+        report = grading.demo(folder)
+    sys.exit(report.exit_code)
+
+
+def grading_errors() -> object:
+    """Turn the grader's own errors into a clear line and exit code 2."""
+    import contextlib
+
+    from autograder.grading.errors import GradingError
+
+    @contextlib.contextmanager
+    def turned() -> object:
+        try:
+            yield
+        except GradingError as error:
+            fail(str(error))
+
+    return turned()

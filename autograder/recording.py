@@ -1,0 +1,117 @@
+"""Record reference outputs: each master's own solution, seen by the same judge as everybody's.
+
+A reference output follows from the master alone, so nothing that is expected is written a second time: change the
+solution, record, and the grader expects the new behaviour.
+"""
+
+from __future__ import annotations
+
+import os
+import secrets
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from autograder import course, exercises, masters
+from autograder.judge import reference
+from autograder.judge.process import JudgeDied, JudgeProcess
+
+RUN_LIMIT = 120.0
+"""Seconds of wall time in which one reference solution must have been seen."""
+
+_CALL = """
+
+from autograder.notebook import check, start_ros
+start_ros()
+check({exercise!r}, {subject})
+"""
+
+
+class CannotRecord(RuntimeError):
+    """A reference solution could not be run or is not right by its own measure."""
+
+
+def record(wanted: Sequence[str], *, only_check: bool, tell: Callable[[str], object]) -> list[str]:
+    """Record reference outputs.
+
+    Args:
+        wanted: Exercise ids; all exercises where empty.
+        only_check: Write nothing.
+        tell: Called with one line for each exercise.
+
+    Returns:
+        The ids whose reference output is new or differs from the stored one.
+
+    Raises:
+        CannotRecord: A solution could not be recorded; those before it are.
+    """
+    changed = []
+    for exercise_id in wanted or exercises.all_ids():
+        text = recording(exercise_id)
+        file = reference.path(exercise_id)
+        if file.exists() and file.read_text(encoding="utf-8") == text:
+            tell(f"{exercise_id}: unchanged")
+            continue
+        changed.append(exercise_id)
+        if only_check:
+            tell(f"{exercise_id}: differs from {file.relative_to(course.root())}")
+        else:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text, encoding="utf-8")
+            tell(f"{exercise_id}: recorded in {file.relative_to(course.root())}")
+    return changed
+
+
+def recording(exercise_id: str) -> str:
+    """The reference output of an exercise, as text.
+
+    Raises:
+        CannotRecord: There is no master for it, or its solution is not right by its own measure.
+    """
+    try:
+        exercise = exercises.get(exercise_id)
+    except exercises.UnknownExercise as error:
+        raise CannotRecord(str(error)) from error
+    program = _program(exercise.id)
+    with tempfile.TemporaryDirectory(prefix="record-") as folder:
+        file = Path(folder) / "reference_solution.py"
+        file.write_text(program, encoding="utf-8")
+        try:
+            with JudgeProcess(Path(folder) / "judge", seed=secrets.token_hex(8)) as judge:
+                judge.open(exercise.id, record=True)
+                output = _run(file, judge.socket_path)
+                report = judge.close_report()
+        except JudgeDied as error:
+            raise CannotRecord(f"{exercise.id}: {error}") from error
+    if report.reference is None or report.verdict is None:
+        raise CannotRecord(f"{exercise.id}: {report.trouble or 'the solution never asked to be checked'}\n{output}".strip())
+    if not report.verdict.passed:
+        missed = ", ".join(c.title for c in report.verdict.criteria if not c.passed)
+        raise CannotRecord(f"{exercise.id}: the reference solution is not right by its own measure: {missed}")
+    return report.reference
+
+
+def _program(exercise_id: str) -> str:
+    for master in masters.masters(course.root()):
+        if exercise_id in master.read_text(encoding="utf-8"):
+            solution = masters.reference_source(master, exercise_id)
+            return solution.source + _CALL.format(exercise=exercise_id, subject=solution.subject)
+    raise CannotRecord(f"no master in solutions/ checks {exercise_id}")
+
+
+def _run(file: Path, socket: Path) -> str:
+    """Run the program; what it printed, for the case that it fails."""
+    done = subprocess.run(
+        [sys.executable, str(file)],
+        env=os.environ | {"AUTOGRADER_JUDGE_SOCKET": str(socket)},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        timeout=RUN_LIMIT,
+        check=False,
+    )
+    return done.stdout[-4000:]
