@@ -1,0 +1,109 @@
+"""`ros2 action send_goal`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from environment.ros2_command.commands import Outcome, Verb
+from environment.ros2_command.graph_node import NAME_PREFIX, graph_node
+from environment.ros2_command.interface_types import load_type
+from environment.ros2_command.messages import fill, parse_values, to_yaml
+from environment.ros2_command.values_argument import add_values_argument, given_values
+
+if TYPE_CHECKING:
+    import argparse
+
+    from rclpy.node import Node
+    from rclpy.task import Future
+
+_POLL = 0.05  # seconds between two looks for Ctrl-C
+# Names of action_msgs/msg/GoalStatus, by their numbers.
+_STATUS = ("UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED")
+_ACCEPTED, _EXECUTING = 1, 2
+
+
+def _arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("action_name", help="Name of the ROS action (e.g. '/fibonacci')")
+    parser.add_argument(
+        "action_type", help="Type of the ROS action (e.g. 'example_interfaces/action/Fibonacci')"
+    )
+    add_values_argument(
+        parser,
+        "goal",
+        "Goal request values in YAML format (e.g. '{order: 10}')",
+        "Read goal from standard input",
+    )
+    parser.add_argument("-f", "--feedback", action="store_true", help="Echo feedback messages for the goal")
+
+
+def _show_feedback(message: Any) -> None:
+    print(f"Feedback:\n    {to_yaml(message.feedback)}")
+
+
+def _wait(node: Node, future: Future) -> Any:
+    """Spin until a future is done, in short turns: between them Ctrl-C is seen."""
+    import rclpy
+
+    while not future.done():
+        rclpy.spin_once(node, timeout_sec=_POLL)
+    return future.result()
+
+
+def _cancel(node: Node, handle: Any) -> None:
+    """Cancel a goal that nobody is waiting for any more.
+
+    Raises:
+        RuntimeError: the server did not cancel it.
+    """
+    print("Canceling goal...")
+    response = _wait(node, handle.cancel_goal_async())
+    canceling = [info.goal_id for info in response.goals_canceling]
+    if handle.goal_id not in canceling:
+        raise RuntimeError("Failed to cancel goal")
+    print("Goal canceled.")
+
+
+def _send_goal(args: argparse.Namespace) -> Outcome:
+    import rclpy
+
+    try:
+        action = load_type(args.action_type, "action")
+    except ValueError:
+        return "The passed action type is invalid"
+    goal = action.Goal()
+    values = parse_values(given_values(args, "goal"))
+    try:
+        fill(goal, values)
+    except Exception as error:
+        return f"Failed to populate message fields: {error!r}"
+    name = f"{NAME_PREFIX}_send_goal_{args.action_type.replace('/', '_')}"
+    # ROS must survive Ctrl-C here, or the goal could not be canceled.
+    with graph_node(name=name, names=False, handle_interrupt=False) as node:
+        from rclpy.action.client import ActionClient
+
+        client = ActionClient(node, action, args.action_name)
+        handle = None
+        try:
+            print("Waiting for an action server to become available...")
+            while not client.server_is_ready():
+                rclpy.spin_once(node, timeout_sec=_POLL)
+            print(f"Sending goal:\n     {to_yaml(goal)}")
+            handle = _wait(node, client.send_goal_async(goal, _show_feedback if args.feedback else None))
+            if not handle.accepted:
+                print("Goal was rejected.")
+                return None
+            print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
+            result = _wait(node, handle.get_result_async())
+            print(f"Result:\n    {to_yaml(result.result)}")
+            status = result.status if 0 <= result.status < len(_STATUS) else 0
+            print(f"Goal finished with status: {_STATUS[status]}")
+        except KeyboardInterrupt:
+            if handle is not None and handle.status in (0, _ACCEPTED, _EXECUTING):
+                _cancel(node, handle)
+            raise
+        finally:
+            client.destroy()
+    return None
+
+
+VERBS = {"send_goal": Verb(_arguments, _send_goal)}

@@ -1,0 +1,150 @@
+"""The table of all words: which module answers a verb, and which words only the full ros2cli knows.
+
+Looking a word up imports nothing, so `ros2 -h` costs no more than a Python start.
+"""
+
+from __future__ import annotations
+
+import importlib
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, cast
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Callable, Mapping
+
+# What a verb returns, as in ros2cli: None or 0 is success, a number is the exit code, a text is an error
+# that is printed on stderr with exit code 1.
+Outcome = int | str | None
+
+
+@dataclass(frozen=True)
+class Verb:
+    """What a module offers for one verb: the arguments it takes and what it does."""
+
+    arguments: Callable[[argparse.ArgumentParser], None]
+    main: Callable[[argparse.Namespace], Outcome]
+
+
+@dataclass(frozen=True)
+class Word:
+    """One verb in the table: its help line and the module that holds it in `VERBS`."""
+
+    summary: str
+    module: str
+
+    def load(self, name: str) -> Verb:
+        """Import the module and return its verb called `name`."""
+        module = importlib.import_module(f"environment.ros2_command.{self.module}")
+        return cast("dict[str, Verb]", module.VERBS)[name]
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command: a group of verbs, or (with `itself`) one that does something on its own.
+
+    Attributes:
+        summary: its line in `ros2 -h`.
+        verbs: the verbs that work here.
+        elsewhere: verbs that Jazzy's ros2cli has and this command does not.
+        option: a flag of the command that its verbs also take, with its help.
+    """
+
+    summary: str
+    verbs: Mapping[str, Word] = field(default_factory=dict)
+    elsewhere: frozenset[str] = frozenset()
+    itself: Word | None = None
+    option: tuple[str, str] | None = None
+
+
+COMMANDS: Mapping[str, Command] = {
+    "action": Command(
+        "Various action related sub-commands",
+        {
+            "info": Word("Print information about an action", "action"),
+            "list": Word("Output a list of action names", "action"),
+            "send_goal": Word("Send an action goal", "action_goal"),
+        },
+        frozenset({"find", "type"}),
+    ),
+    "doctor": Command("Check ROS setup and other potential issues", itself=Word("", "doctor")),
+    "interface": Command(
+        "Show information about ROS interfaces",
+        {
+            "list": Word("List all interface types available", "interface"),
+            "package": Word("Output a list of available interface types within one package", "interface"),
+            "show": Word("Output the interface definition", "interface_show"),
+        },
+        frozenset({"packages", "proto"}),
+    ),
+    "launch": Command("Run a launch file", itself=Word("", "launch")),
+    "node": Command(
+        "Various node related sub-commands",
+        {
+            "info": Word("Output information about a node", "node"),
+            "list": Word("Output a list of available nodes", "node"),
+        },
+    ),
+    "param": Command(
+        "Various param related sub-commands",
+        {
+            "get": Word("Get parameter", "param"),
+            "list": Word("Output a list of available parameters", "param"),
+            "set": Word("Set parameter", "param"),
+        },
+        frozenset({"delete", "describe", "dump", "load"}),
+    ),
+    "pkg": Command(
+        "Various package related sub-commands",
+        {
+            "create": Word("Create a new ROS 2 package", "pkg_create"),
+            "executables": Word("Output a list of package specific executables", "pkg"),
+            "list": Word("Output a list of available packages", "pkg"),
+            "prefix": Word("Output the prefix path of a package", "pkg"),
+        },
+        frozenset({"xml"}),
+    ),
+    "run": Command("Run a package specific executable", itself=Word("", "run")),
+    "service": Command(
+        "Various service related sub-commands",
+        {
+            "call": Word("Call a service", "service_call"),
+            "find": Word("Output a list of available services of a given type", "service"),
+            "list": Word("Output a list of available services", "service"),
+            "type": Word("Output a service's type", "service"),
+        },
+        frozenset({"echo", "info"}),
+        option=("--include-hidden-services", "Consider hidden services as well"),
+    ),
+    "topic": Command(
+        "Various topic related sub-commands",
+        {
+            "echo": Word("Output messages from a topic", "topic_echo"),
+            "find": Word("Output a list of available topics of a given type", "topic"),
+            "hz": Word("Print the average publishing rate to screen", "topic_hz"),
+            "info": Word("Print information about a topic", "topic"),
+            "list": Word("Output a list of available topics", "topic"),
+            "pub": Word("Publish a message to a topic", "topic_pub"),
+            "type": Word("Print a topic's type", "topic"),
+        },
+        frozenset({"bw", "delay"}),
+        option=("--include-hidden-topics", "Consider hidden topics as well"),
+    ),
+}
+
+# Commands of a full Jazzy installation that are not here, with what to know where there is something to know.
+ELSEWHERE: Mapping[str, str] = {
+    "bag": "",
+    "component": "",
+    "control": "",
+    "daemon": "No daemon is used here: every command looks at the graph by itself.",
+    "extension_points": "",
+    "extensions": "",
+    "lifecycle": "",
+    "multicast": "",
+    "plugin": "",
+    "security": "",
+    "test": "",
+    "trace": "",
+    "wtf": "It is another name of `ros2 doctor`, which is here.",
+}

@@ -1,0 +1,166 @@
+"""From the command line to a verb and back to an exit code."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from typing import NoReturn
+
+from environment.ros2_command.commands import COMMANDS, ELSEWHERE, Command, Outcome, Verb
+
+FULL = "the full ros2cli (a ROS 2 Jazzy installation)"
+_EPILOG = (
+    "This is the course's own ros2. It knows the words above as Jazzy's ros2cli does; everything else needs\n"
+    f"{FULL}."
+)
+# The exit codes of ros2cli after Ctrl-C and SIGTERM: the numbers of the signals.
+_INTERRUPTED, _TERMINATED = 2, 15
+
+
+class _Parser(argparse.ArgumentParser):
+    """An argument parser that says, where an option is not known here, who does know it."""
+
+    def error(self, message: str) -> NoReturn:
+        if message.startswith("unrecognized arguments"):
+            message += f"\nWhat `{self.prog} -h` does not list needs {FULL}."
+        super().error(message)
+
+
+def _parser(prog: str, description: str, epilog: str | None = None) -> _Parser:
+    return _Parser(
+        prog=prog,
+        description=description,
+        epilog=epilog,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+
+
+def _listing(summaries: dict[str, str]) -> str:
+    width = max(map(len, summaries))
+    return "".join(f"{name.ljust(width)}  {summaries[name]}\n" for name in sorted(summaries))
+
+
+def _needs_full(words: str, hint: str = "") -> int:
+    print(f"ros2: `{words}` needs {FULL}.{' ' + hint if hint else ''}", file=sys.stderr)
+    return 2
+
+
+def _add_words(parser: argparse.ArgumentParser, summaries: dict[str, str], prog: str) -> None:
+    """Give a parser its sub-commands, for its help and for the error about a wrong word."""
+    words = parser.add_subparsers(
+        title="Commands",
+        description=_listing(summaries),
+        metavar=f"Call `{prog} <command> -h` for more detailed usage.",
+    )
+    for name in sorted(summaries):
+        words.add_parser(name)
+
+
+def _parse(prog: str, summary: str, verb: Verb, argv: list[str]) -> argparse.Namespace:
+    parser = _parser(prog, summary)
+    verb.arguments(parser)
+    return parser.parse_args(argv)
+
+
+def _word_in(argv: list[str]) -> int:
+    """Return the position of the first word that is not an option, or the length of the list."""
+    return next((i for i, word in enumerate(argv) if not word.startswith("-")), len(argv))
+
+
+def _at(argv: list[str], position: int) -> str:
+    """Return the word at a position, an empty one behind the end."""
+    return argv[position] if position < len(argv) else ""
+
+
+def _group(prog: str, command: Command, argv: list[str]) -> Outcome:
+    """Run a command that is a group of verbs."""
+    at = _word_in(argv)
+    name = _at(argv, at)
+    if name in command.elsewhere:
+        return _needs_full(f"{prog} {name}")
+    if name in command.verbs and not {"-h", "--help"} & set(argv[:at]):
+        word = command.verbs[name]
+        # Options may stand before the verb (`ros2 topic --include-hidden-topics list`).
+        args = _parse(f"{prog} {name}", word.summary, verb := word.load(name), argv[:at] + argv[at + 1 :])
+        return verb.main(args)
+    parser = _parser(prog, command.summary)
+    if command.option:
+        parser.add_argument(command.option[0], action="store_true", help=command.option[1])
+    _add_words(parser, {name: word.summary for name, word in command.verbs.items()}, prog)
+    parser.parse_args(argv)
+    parser.print_help()
+    return 0
+
+
+def _dispatch(argv: list[str]) -> Outcome:
+    at = _word_in(argv)
+    name = _at(argv, at)
+    if name in ELSEWHERE:
+        return _needs_full(f"ros2 {name}", ELSEWHERE[name])
+    if name not in COMMANDS or {"-h", "--help"} & set(argv[:at]):
+        parser = _parser("ros2", "ros2 is an extensible command-line tool for ROS 2.", _EPILOG)
+        parser.add_argument("--use-python-default-buffering", action="store_true", help=argparse.SUPPRESS)
+        _add_words(parser, {name: command.summary for name, command in COMMANDS.items()}, "ros2")
+        parser.parse_args(argv)
+        parser.print_help()
+        return 0
+    command, rest = COMMANDS[name], argv[at + 1 :]
+    if "--use-python-default-buffering" not in argv[:at]:
+        _line_buffered()
+    if command.itself:
+        verb = command.itself.load(name)
+        return verb.main(_parse(f"ros2 {name}", command.summary, verb, rest))
+    return _group(f"ros2 {name}", command, rest)
+
+
+def _line_buffered() -> None:
+    """Show each line at once, also in a pipe or in a notebook's cell."""
+    reconfigure = getattr(sys.stdout, "reconfigure", None)
+    if reconfigure:
+        reconfigure(line_buffering=True)
+
+
+def _find_packages_here() -> None:
+    """Put this environment's own packages behind those of the sourced workspaces, if they are missing."""
+    prefixes = [p for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
+    if sys.prefix not in prefixes:
+        os.environ["AMENT_PREFIX_PATH"] = os.pathsep.join([*prefixes, sys.prefix])
+
+
+def run(argv: list[str]) -> int:
+    """Run one command and return its exit code, as ros2cli does.
+
+    Returns:
+        0 for success; 1 for an error, which is then on stderr; 2 for words or options that are not known
+        here, and after Ctrl-C; 15 after SIGTERM; or the exit code of the program that was run.
+    """
+    _find_packages_here()
+    try:
+        outcome = _dispatch(argv)
+    except KeyboardInterrupt:
+        return _INTERRUPTED
+    except BrokenPipeError:
+        # The reader has gone (`ros2 topic echo … | head`): end quietly, and keep Python from flushing again.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except RuntimeError as error:
+        outcome = str(error)
+    except Exception as error:
+        # rclpy is not imported for every command, so its exception is known by name only.
+        if type(error).__name__ != "ExternalShutdownException":
+            raise
+        return _TERMINATED
+    if isinstance(outcome, str):
+        print(outcome, file=sys.stderr)
+        return 1
+    return outcome or 0
+
+
+def main() -> int:
+    """Be `ros2`: hand over to a real one where there is one, else run the command here."""
+    from environment.ros2_command.real_installation import run_real_command
+
+    run_real_command()
+    return run(sys.argv[1:])

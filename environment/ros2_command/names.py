@@ -1,0 +1,33 @@
+"""Names on the graph: which are hidden, and how a node is called in full."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+def is_hidden(name: str) -> bool:
+    """Tell whether a part of a topic's, service's or action's name begins with an underscore."""
+    return any(part.startswith("_") for part in name.split("/"))
+
+
+@dataclass(frozen=True, order=True)
+class NodeName:
+    """A node of the graph."""
+
+    name: str
+    namespace: str
+
+    @property
+    def full(self) -> str:
+        """The name with its namespace, as `/robot1/talker`."""
+        return f"{self.namespace.rstrip('/')}/{self.name}"
+
+    @property
+    def hidden(self) -> bool:
+        """Whether lists leave it out (the command's own node is such a one)."""
+        return not self.name or self.name.startswith("_")
+
+
+def absolute(node_name: str) -> str:
+    """Return the name of a node with a leading slash."""
+    return node_name if node_name.startswith("/") else f"/{node_name}"

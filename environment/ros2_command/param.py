@@ -1,0 +1,204 @@
+"""`ros2 param list`, `get` and `set`: they call the parameter services of a node."""
+
+from __future__ import annotations
+
+import re
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+from environment.ros2_command.commands import Outcome, Verb
+from environment.ros2_command.graph_node import add_graph_arguments, graph_node
+from environment.ros2_command.names import absolute
+from environment.ros2_command.node import node_names
+
+if TYPE_CHECKING:
+    import argparse
+
+    from rclpy.node import Node
+
+# Seconds.
+_POLL = 0.01
+_SERVICE_LIMIT = 5.0
+
+# By the numbers of rcl_interfaces/msg/ParameterType: its name, the words before its value, the value's field.
+_TYPES = (
+    ("not set", "Parameter not set.", None),
+    ("boolean", "Boolean value is:", "bool_value"),
+    ("integer", "Integer value is:", "integer_value"),
+    ("double", "Double value is:", "double_value"),
+    ("string", "String value is:", "string_value"),
+    ("byte array", "Byte values are:", "byte_array_value"),
+    ("boolean array", "Boolean values are:", "bool_array_value"),
+    ("integer array", "Integer values are:", "integer_array_value"),
+    ("double array", "Double values are:", "double_array_value"),
+    ("string array", "String values are:", "string_array_value"),
+)
+
+
+def _call(node: Node, node_name: str, service: str, request: Any, kind: Any) -> Any | None:
+    """Call a parameter service; return None when the service does not appear."""
+    import rclpy
+
+    client = node.create_client(kind, f"{node_name}/{service}")
+    limit = time.monotonic() + _SERVICE_LIMIT
+    while not client.service_is_ready():
+        if time.monotonic() > limit:
+            return None
+        time.sleep(_POLL)
+    future = client.call_async(request)
+    rclpy.spin_until_future_complete(node, future)
+    return future.result()
+
+
+def _timed_out(node_name: str) -> str:
+    return f"Wait for service timed out waiting for parameter services for node {node_name}"
+
+
+def _find(node: Node, args: argparse.Namespace) -> bool:
+    """Wait, as long as --timeout says, until the node is there."""
+    limit = time.monotonic() + args.timeout
+    name = absolute(args.node_name)
+    while name not in {n.full for n in node_names(node, hidden=args.include_hidden_nodes)}:
+        if time.monotonic() > limit:
+            return False
+        time.sleep(_POLL)
+    return True
+
+
+def _hidden_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
+
+
+def _parameter_arguments(parser: argparse.ArgumentParser) -> None:
+    add_graph_arguments(parser)
+    parser.add_argument("node_name", help="Name of the ROS node")
+    _hidden_option(parser)
+    parser.add_argument("parameter_name", help="Name of the parameter")
+
+
+def _timeout_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--timeout",
+        metavar="N",
+        type=int,
+        default=1,
+        help="Wait for N seconds until node becomes available (default %(default)s sec)",
+    )
+
+
+def _list_arguments(parser: argparse.ArgumentParser) -> None:
+    add_graph_arguments(parser)
+    parser.add_argument("node_name", nargs="?", help="Name of the ROS node")
+    parser.add_argument(
+        "--filter",
+        help="Only parameters matching the regex expression will be showed. Supports `re` regex syntax.",
+    )
+    _hidden_option(parser)
+    parser.add_argument(
+        "--param-prefixes", nargs="+", default=[], help="Only list parameters with the provided prefixes"
+    )
+    parser.add_argument(
+        "--param-type", action="store_true", help="Print parameter types with parameter names"
+    )
+
+
+def _types(node: Node, node_name: str, names: list[str]) -> list[str]:
+    from rcl_interfaces.srv import DescribeParameters
+
+    request = DescribeParameters.Request(names=names)
+    response = _call(node, node_name, "describe_parameters", request, DescribeParameters)
+    if response is None:
+        raise RuntimeError(_timed_out(node_name))
+    return [_TYPES[descriptor.type][0] for descriptor in response.descriptors]
+
+
+def _list(args: argparse.Namespace) -> Outcome:
+    from rcl_interfaces.srv import ListParameters
+
+    with graph_node(args) as node:
+        names = [n.full for n in node_names(node, hidden=args.include_hidden_nodes)]
+        if args.node_name:
+            if absolute(args.node_name) not in names:
+                return "Node not found"
+            names = [absolute(args.node_name)]
+        for name in names:
+            request = ListParameters.Request(prefixes=args.param_prefixes)
+            response = _call(node, name, "list_parameters", request, ListParameters)
+            if response is None:
+                print(_timed_out(name))
+                continue
+            found = sorted(p for p in response.result.names if not args.filter or re.match(args.filter, p))
+            if found and not args.node_name:
+                print(f"{name}:")
+            types = _types(node, name, found) if args.param_type else []
+            for i, parameter in enumerate(found):
+                print(f"  {parameter} (type: {types[i]})" if args.param_type else f"  {parameter}")
+    return None
+
+
+def _get_arguments(parser: argparse.ArgumentParser) -> None:
+    _parameter_arguments(parser)
+    parser.add_argument("--hide-type", action="store_true", help="Hide the type information")
+    _timeout_option(parser)
+
+
+def _get(args: argparse.Namespace) -> Outcome:
+    from rcl_interfaces.srv import GetParameters
+
+    with graph_node(args) as node:
+        if not _find(node, args):
+            return "Node not found"
+        request = GetParameters.Request(names=[args.parameter_name])
+        response = _call(node, absolute(args.node_name), "get_parameters", request, GetParameters)
+    if response is None:
+        return _timed_out(args.node_name)
+    if not response.values:
+        return "Parameter not set"
+    given = response.values[0]
+    _, words, value_field = _TYPES[given.type]
+    value: Any = getattr(given, value_field) if value_field else None
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if args.hide_type:
+        print(value)
+    elif value_field:
+        print(words, value)
+    else:
+        print(words)
+    return None
+
+
+def _set_arguments(parser: argparse.ArgumentParser) -> None:
+    _parameter_arguments(parser)
+    parser.add_argument("value", help="Value of the parameter")
+    _timeout_option(parser)
+
+
+def _set(args: argparse.Namespace) -> Outcome:
+    from rcl_interfaces.msg import Parameter
+    from rcl_interfaces.srv import SetParameters
+    from rclpy.parameter import get_parameter_value
+
+    parameter = Parameter(name=args.parameter_name, value=get_parameter_value(args.value))
+    with graph_node(args) as node:
+        if not _find(node, args):
+            return "Node not found"
+        request = SetParameters.Request(parameters=[parameter])
+        response = _call(node, absolute(args.node_name), "set_parameters", request, SetParameters)
+    if response is None:
+        return _timed_out(args.node_name)
+    result = response.results[0]
+    reason = f": {result.reason}" if result.reason else ""
+    if result.successful:
+        print(f"Set parameter successful{reason}")
+    else:
+        print(f"Setting parameter failed{reason}", file=sys.stderr)
+    return None
+
+
+VERBS = {
+    "get": Verb(_get_arguments, _get),
+    "list": Verb(_list_arguments, _list),
+    "set": Verb(_set_arguments, _set),
+}

@@ -1,0 +1,67 @@
+"""`ros2 run`."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+import signal
+import subprocess
+from typing import TYPE_CHECKING
+
+from environment.ros2_command.commands import Outcome, Verb
+from environment.ros2_command.pkg import executable_paths
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from types import FrameType
+
+
+def _arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--prefix",
+        help="Prefix command, which should go before the executable. Command must be wrapped in quotes if it "
+        "contains spaces (e.g. --prefix 'gdb -ex run --args').",
+    )
+    parser.add_argument("package_name", help="Name of the ROS package")
+    parser.add_argument("executable_name", help="Name of the executable")
+    parser.add_argument("argv", nargs=argparse.REMAINDER, help="Pass arbitrary arguments to the executable")
+
+
+def find_executable(package: str, executable: str) -> Path:
+    """Return the program of a package.
+
+    Raises:
+        RuntimeError: the package, or its program, is not there, or there are several of that name.
+    """
+    found = [path for path in executable_paths(package) if path.name == executable]
+    if not found:
+        raise RuntimeError("No executable found")
+    if len(found) > 1:
+        raise RuntimeError("\n- ".join(["Multiple executables found:", *map(str, found)]))
+    return found[0]
+
+
+def _run(args: argparse.Namespace) -> Outcome:
+    program = find_executable(args.package_name, args.executable_name)
+    process = subprocess.Popen([*shlex.split(args.prefix or ""), str(program), *args.argv])
+
+    def pass_on(number: int, _frame: FrameType | None) -> None:
+        process.send_signal(number)
+
+    # SIGTERM reaches this process alone; without this the program would go on without it.
+    signal.signal(signal.SIGTERM, pass_on)
+    while True:
+        try:
+            code = process.wait()
+            break
+        except KeyboardInterrupt:
+            # The terminal has sent Ctrl-C to the program as well: let it end in its own way.
+            continue
+    if code < 0 and -code in signal.valid_signals():
+        print(f"[ros2run]: {signal.strsignal(-code)}")
+    elif code:
+        print(f"[ros2run]: Process exited with failure {code}")
+    return code
+
+
+VERBS = {"run": Verb(_arguments, _run)}
