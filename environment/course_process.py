@@ -31,6 +31,9 @@ READ_AT_START = ("LD_LIBRARY_PATH", "PYTHONPATH")
 _SECOND_START = "_COURSE_SECOND_START"
 # The guard of ros-wheels-bootstrapper: with it that package does nothing.
 _BOOTSTRAPPER_GUARD = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
+# The program that a workspace's setup.bash asks what to export. It compares with its own environment, so that
+# must be the terminal's, or half of the variables are taken for set.
+_SETUP_BASH_HELPER = "_local_setup_util"
 
 
 def holds_rclpy(prefix: str) -> bool:
@@ -88,6 +91,9 @@ def begin() -> None:
     from course_paths import PATHS, VALUES
 
     environ = os.environ
+    if any(os.path.basename(word).startswith(_SETUP_BASH_HELPER) for word in sys.orig_argv[1:2]):  # noqa: PTH119
+        environ[_BOOTSTRAPPER_GUARD] = "1"
+        return
     changes = variables(PATHS, VALUES, environ)
     second_start = environ.pop(_SECOND_START, None)
     environ.update(changes)

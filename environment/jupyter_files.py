@@ -61,7 +61,7 @@ def write_jupyter_files(prefix: Path, root: Path) -> None:
     """Write the settings for the environment at `prefix` of the course at `root`."""
     files = {
         prefix / "share/jupyter/lab/settings/overrides.json": lab_settings(),
-        prefix / "etc/jupyter/jupyter_server_config.d/course.json": server_config(root, shutil.which("bash")),
+        prefix / "etc/jupyter/jupyter_server_config.json": server_config(root, shutil.which("bash")),
     }
     for path, content in files.items():
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -5,14 +5,11 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from environment.course_process import variables
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 OURS = {
     "PATH": ["/course/.venv/bin"],
@@ -130,3 +127,35 @@ def test_arguments_input_and_options_survive_the_second_start(bare: dict[str, st
 @pytest.mark.ros
 def test_the_marker_of_the_second_start_does_not_reach_children(bare: dict[str, str]) -> None:
     assert start(bare, "-c", "import os; print('_COURSE_SECOND_START' in os.environ)") == "False\n"
+
+
+@pytest.mark.ros
+def test_what_setup_bash_asks_sees_the_terminal_as_it_is(bare: dict[str, str], tmp_path: Path) -> None:
+    helper = tmp_path / "_local_setup_util_sh.py"
+    helper.write_text("import os; print(os.environ.get('AMENT_PREFIX_PATH'), os.environ['PATH'])")
+    assert start(bare, str(helper)) == "None /usr/bin:/bin\n"
+
+
+@pytest.mark.ros
+def test_setup_bash_of_the_environment_gives_a_bare_terminal_its_variables(bare: dict[str, str]) -> None:
+    command = f'. "{sys.prefix}/local_setup.sh"; echo "$AMENT_PREFIX_PATH|$PATH"'
+    done = subprocess.run(["sh", "-c", command], env=bare, capture_output=True, text=True, check=True)
+    assert done.stdout.startswith(f"{sys.prefix}|{sys.prefix}/bin:/usr/bin:/bin")
+
+
+@pytest.mark.ros
+@pytest.mark.parametrize("shell", ["bash", "sh"])
+def test_activate_gives_a_bare_terminal_everything(bare: dict[str, str], shell: str) -> None:
+    # In a plain sh a file cannot know where it is, so it is sourced from the folder of the course.
+    commands = [
+        ". ./environment/activate.sh",
+        *("command -v python", "command -v colcon"),
+        *('echo "$AMENT_PREFIX_PATH"', 'echo "$LD_LIBRARY_PATH"'),
+    ]
+    root = Path(sys.prefix).parent
+    command = [shell, "-c", "\n".join(commands)]
+    done = subprocess.run(command, env=bare, cwd=root, capture_output=True, text=True, check=True)
+    python, colcon, prefixes, libraries = done.stdout.splitlines()
+    assert (python, colcon) == (f"{sys.prefix}/bin/python", f"{sys.prefix}/bin/colcon")
+    assert prefixes.split(":")[0] == sys.prefix
+    assert libraries.split(":")[0] == f"{sys.prefix}/lib"
