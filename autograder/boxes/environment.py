@@ -1,0 +1,51 @@
+"""The environment variables of a submission's kernel: what Python and ROS need, and nothing of the host's."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+_KEPT = {"PATH", "LANG", "LANGUAGE", "TZ", "LD_LIBRARY_PATH", "PYTHONPATH", "VIRTUAL_ENV", "CONDA_PREFIX"}
+_KEPT_PREFIXES = (
+    "LC_",
+    "ROS_",
+    "RMW_",
+    "RCUTILS_",
+    "AMENT_",
+    "CMAKE_PREFIX",
+    "COLCON_PREFIX",
+    "FASTDDS_",
+    "_ROS_WHEELS_",
+)
+
+
+def kernel_environment(scratch: Path, extra: Mapping[str, str]) -> dict[str, str]:
+    """The whole environment of a kernel whose home, temporary and log folders are in ``scratch``.
+
+    Args:
+        scratch: Made before; the folders in it are made here.
+        extra: Variables that hold whatever the host says.
+    """
+    kept = {
+        name: value for name, value in os.environ.items() if name in _KEPT or name.startswith(_KEPT_PREFIXES)
+    }
+    folders = {
+        "HOME": scratch / "home",
+        "TMPDIR": scratch / "tmp",
+        "ROS_LOG_DIR": scratch / "log",
+        "IPYTHONDIR": scratch / "home" / ".ipython",
+        "JUPYTER_CONFIG_DIR": scratch / "home" / ".jupyter",
+    }
+    for folder in folders.values():
+        folder.mkdir(parents=True, exist_ok=True)
+    return {
+        **kept,
+        **{name: str(folder) for name, folder in folders.items()},
+        "PYTHONNOUSERSITE": "1",
+        "PYTHONDONTWRITEBYTECODE": "1",
+        **extra,
+    }

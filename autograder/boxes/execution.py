@@ -1,0 +1,100 @@
+"""What goes into the execution of a notebook and what comes out, as plain data that travels as JSON."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any
+
+from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
+
+
+class Kind(StrEnum):
+    """The type of a cell, in nbformat's words."""
+
+    CODE = "code"
+    MARKDOWN = "markdown"
+    RAW = "raw"
+
+
+@dataclass(frozen=True)
+class Check:
+    """The check that a check cell makes.
+
+    Attributes:
+        exercise: The exercise's id, such as ``"lab_1_2.talker"``.
+        title: The exercise's name for a person.
+        points: Points the judge gives at most.
+        worth: Points the cell carries in the gradebook; the judge's score is scaled to it.
+        limit: Seconds of wall time that the judge allows itself.
+    """
+
+    exercise: str
+    title: str
+    points: float
+    worth: float
+    limit: float
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One cell to execute.
+
+    Attributes:
+        source: The text of the cell.
+        kind: Only code cells are executed.
+        check: Set on a check cell.
+        name: The grade_id, or empty for a cell of the student's own.
+    """
+
+    source: str
+    kind: Kind = Kind.CODE
+    check: Check | None = None
+    name: str = ""
+
+
+class Ended(StrEnum):
+    """How a cell's run ended."""
+
+    DONE = "done"
+    RAISED = "raised"
+    TIMED_OUT = "timed_out"
+    KERNEL_DIED = "kernel_died"
+    NOT_RUN = "not_run"
+    """The kernel was gone, or the notebook's time was up, before the cell's turn."""
+
+
+@dataclass(frozen=True)
+class CellRun:
+    """What came of one cell.
+
+    Attributes:
+        ended: How it ended.
+        outputs: nbformat outputs, capped and stripped of what a browser would execute.
+        error: ``"NameError: name 'x' is not defined"`` for a cell that raised, else empty. The student's own words.
+        seconds: Wall time.
+    """
+
+    ended: Ended
+    outputs: tuple[dict[str, Any], ...] = ()
+    error: str = ""
+    seconds: float = 0.0
+
+
+@dataclass(frozen=True)
+class Execution:
+    """What came of a notebook.
+
+    Attributes:
+        cells: One for each cell that went in, in order.
+        verdicts: By index of the check cell; every check cell has one.
+        trouble: What went wrong on the grader's own side, empty when all was well. Then no result is final.
+        seconds: Wall time, start of the kernel included.
+        start_seconds: Of these, until kernel and judge were ready.
+    """
+
+    cells: tuple[CellRun, ...]
+    verdicts: dict[int, Verdict] = field(default_factory=dict)
+    trouble: str = ""
+    seconds: float = 0.0
+    start_seconds: float = 0.0

@@ -1,0 +1,333 @@
+"""A Jupyter kernel as a child process, spoken to over Unix sockets with nothing but polling and deadlines.
+
+nbclient is made for notebooks one trusts: it keeps all output, believes each message's form and learns of a dead
+kernel from a heartbeat. Here every wait ends at a message, at the process's end or at a deadline, whichever is
+first, and what arrives is only looked at as far as it has the right form (Jupyter messaging specification 5.4).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import secrets
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import zmq
+from jupyter_client.session import Session
+
+from autograder.boxes.execution import Ended
+from autograder.boxes.processes import end_tree
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from autograder.boxes.limits import Limits
+
+Output = Callable[[str, str, Mapping[str, Any]], None]
+"""Called with the id of the request, the message type and the content of each output."""
+
+_RECONNECT_MS = 15
+_ASK_AGAIN_S = 0.5
+_LAST_OUTPUT_S = 2.0
+
+
+class KernelFailed(RuntimeError):
+    """The kernel did not start or did not answer; the message says why."""
+
+
+class Kernel:
+    """A running kernel.
+
+    Args:
+        folder: For the sockets; a short path, since Unix socket names have at most 107 characters.
+        cwd: Where the notebook runs.
+        environment: The whole environment of the kernel.
+        limits: Of these ``start_seconds``, ``interrupt_grace`` and ``message_bytes``.
+        on_output: Gets every output; never called after :meth:`close`.
+
+    Raises:
+        KernelFailed: The process could not be started.
+    """
+
+    def __init__(
+        self, folder: Path, cwd: Path, environment: Mapping[str, str], limits: Limits, on_output: Output
+    ) -> None:
+        self._limits = limits
+        self._on_output = on_output
+        self._session = Session(key=secrets.token_hex(32).encode(), check_pid=False)
+        connection = self._write_connection_file(folder)
+        self._log = folder / "kernel.log"
+        try:
+            with self._log.open("wb") as log:
+                self._process = subprocess.Popen(
+                    _command(connection),
+                    cwd=cwd,
+                    # The kernel ends itself when this process is gone without having ended it.
+                    env={**environment, "JPY_PARENT_PID": str(os.getpid())},
+                    stdin=subprocess.DEVNULL,
+                    stdout=log,
+                    stderr=log,
+                    start_new_session=True,
+                )
+        except OSError as error:
+            raise KernelFailed(f"the kernel could not be started: {error}") from error
+        self._context = zmq.Context()
+        self._shell = self._socket(zmq.DEALER, folder / "k-1")
+        self._iopub_path = folder / "k-2"
+        self._iopub = self._subscribe()
+        self._end_fd = _end_descriptor(self._process.pid)
+        self._poller = zmq.Poller()
+        self._poller.register(self._shell, zmq.POLLIN)
+        self._poller.register(self._iopub, zmq.POLLIN)
+        if self._end_fd is not None:
+            self._poller.register(self._end_fd, zmq.POLLIN)
+
+    @property
+    def pid(self) -> int:
+        """The process id of the kernel."""
+        return self._process.pid
+
+    @property
+    def alive(self) -> bool:
+        """Whether the process still runs."""
+        return self._process.poll() is None
+
+    def await_ready(self) -> None:
+        """Wait until the kernel answers and its outputs reach us.
+
+        Raises:
+            KernelFailed: It ended or did not answer within ``start_seconds``.
+        """
+        deadline = time.monotonic() + self._limits.start_seconds
+        answered = heard = False
+        asked: set[str] = set()
+        while not (answered and heard):
+            if not self.alive:
+                raise KernelFailed(f"the kernel ended while it started: {self._last_words()}")
+            if time.monotonic() > deadline:
+                raise KernelFailed(f"the kernel did not answer within {self._limits.start_seconds:g} s")
+            # Asked more than once because outputs published before our subscription was known are lost.
+            asked.add(self._ask("kernel_info_request", {}))
+            for channel, message in self._messages(min(deadline, time.monotonic() + _ASK_AGAIN_S)):
+                if _parent(message) in asked:
+                    answered |= channel is self._shell
+                    heard |= channel is self._iopub
+                if answered and heard:
+                    break
+
+    def execute(self, source: str, deadline: float, request: Callable[[str], None] = lambda _: None) -> Ended:
+        """Execute one cell.
+
+        A cell that is still running at the deadline is interrupted; a kernel that does not obey is killed.
+
+        Args:
+            source: The cell's text.
+            deadline: On the monotonic clock.
+            request: Called with the id of this request before any output of it arrives.
+        """
+        if not self.alive:
+            return Ended.KERNEL_DIED
+        content = {
+            "code": source,
+            "silent": False,
+            "store_history": True,
+            "user_expressions": {},
+            "allow_stdin": False,
+            "stop_on_error": False,
+        }
+        message = self._session.msg("execute_request", content)
+        request(message["header"]["msg_id"])
+        self._session.send(self._shell, message)
+        ended = self._await_reply(message["header"]["msg_id"], deadline)
+        if ended is not None:
+            return ended
+        self.interrupt()
+        grace = self._limits.interrupt_grace
+        if self._await_reply(message["header"]["msg_id"], time.monotonic() + grace) is None:
+            self.kill()
+        return Ended.TIMED_OUT
+
+    def interrupt(self) -> None:
+        """What the stop button of JupyterLab does."""
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(self._process.pid, signal.SIGINT)
+
+    def kill(self) -> None:
+        """End the process and all that it started."""
+        end_tree(self._process.pid)
+        self._process.wait()
+
+    def close(self) -> None:
+        """Kill the kernel and close the sockets; may be called twice."""
+        if self._context.closed:
+            return
+        self.kill()
+        if self._end_fd is not None:
+            os.close(self._end_fd)
+        self._context.destroy(linger=0)
+
+    def _await_reply(self, request: str, deadline: float) -> Ended | None:
+        """How the cell ended, or None where it is still running at the deadline."""
+        reply: Mapping[str, Any] | None = None
+        idle = False
+        for channel, message in self._messages(deadline):
+            content = _answer(message, request)
+            idle = idle or (channel is self._iopub and content.get("execution_state") == "idle")
+            if channel is self._shell and content and message.get("msg_type") == "execute_reply":
+                reply = content
+            if reply is not None:
+                break
+        if reply is None:
+            return None if self.alive else Ended.KERNEL_DIED
+        if not idle:
+            self._await_idle(request)
+        if _asks_to_exit(reply):
+            self._await_end()
+            return Ended.KERNEL_DIED
+        return Ended.DONE if reply.get("status") == "ok" else Ended.RAISED
+
+    def _await_idle(self, request: str) -> None:
+        """The reply is there; the last outputs travel on the other socket and may be a little later."""
+        for channel, message in self._messages(time.monotonic() + _LAST_OUTPUT_S):
+            if channel is self._iopub and _answer(message, request).get("execution_state") == "idle":
+                return
+        if self.alive:
+            # ZeroMQ ends a connection for good when a message is larger than allowed.
+            self._poller.unregister(self._iopub)
+            self._iopub.close()
+            self._iopub = self._subscribe()
+            self._poller.register(self._iopub, zmq.POLLIN)
+            self._on_output(
+                request, "stream", {"name": "stdout", "text": "\n[output that was too large was dropped]\n"}
+            )
+
+    def _await_end(self) -> None:
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(self._limits.interrupt_grace)
+        self.kill()
+
+    def _messages(self, deadline: float) -> Iterator[tuple[zmq.Socket[bytes], dict[str, Any]]]:
+        """All messages until the deadline or the kernel's end; outputs are handed on from here."""
+        while True:
+            ready = dict(self._poller.poll(self._wait_ms(deadline)))
+            # Outputs first: they were sent before the reply that ends the cell.
+            for channel in (self._iopub, self._shell):
+                if channel in ready:
+                    for message in self._received(channel):
+                        if channel is self._iopub:
+                            self._hand_on(message)
+                        yield channel, message
+            if self._iopub in ready or self._shell in ready:
+                if time.monotonic() < deadline:
+                    continue
+                return
+            if not self.alive or time.monotonic() >= deadline:
+                return
+
+    def _wait_ms(self, deadline: float) -> int:
+        left = max(0.0, deadline - time.monotonic())
+        # Without a descriptor that tells of the process's end, look at it now and then.
+        return int(1000 * (left if self._end_fd is not None else min(left, 0.25))) + 1
+
+    def _received(self, channel: zmq.Socket[bytes]) -> Iterator[dict[str, Any]]:
+        # Bounded, so that a flood on one socket starves neither the other one nor the deadline.
+        for _ in range(100):
+            try:
+                parts = channel.recv_multipart(zmq.NOBLOCK)
+            except zmq.Again:
+                return
+            with contextlib.suppress(Exception):  # a message of no or of a forged form
+                yield self._session.deserialize(self._session.feed_identities(parts)[1])
+
+    def _hand_on(self, message: Mapping[str, Any]) -> None:
+        content = message.get("content")
+        if isinstance(content, Mapping):
+            self._on_output(_parent(message), str(message.get("msg_type")), content)
+
+    def _ask(self, message_type: str, content: dict[str, Any]) -> str:
+        message = self._session.msg(message_type, content)
+        self._session.send(self._shell, message)
+        return str(message["header"]["msg_id"])
+
+    def _subscribe(self) -> zmq.Socket[bytes]:
+        socket = self._socket(zmq.SUB, self._iopub_path)
+        socket.setsockopt(zmq.SUBSCRIBE, b"")
+        return socket
+
+    def _socket(self, kind: int, path: Path) -> zmq.Socket[bytes]:
+        socket: zmq.Socket[bytes] = self._context.socket(kind)
+        socket.setsockopt(zmq.LINGER, 0)
+        socket.setsockopt(zmq.RECONNECT_IVL, _RECONNECT_MS)
+        socket.setsockopt(zmq.MAXMSGSIZE, self._limits.message_bytes)
+        socket.connect(f"ipc://{path}")
+        return socket
+
+    def _write_connection_file(self, folder: Path) -> Path:
+        connection = {
+            "transport": "ipc",
+            "ip": str(folder / "k"),
+            "shell_port": 1,
+            "iopub_port": 2,
+            "stdin_port": 3,
+            "control_port": 4,
+            "hb_port": 5,
+            "key": self._session.key.decode(),
+            "signature_scheme": self._session.signature_scheme,
+            "kernel_name": "python3",
+        }
+        path = folder / "connection.json"
+        path.write_text(json.dumps(connection))
+        return path
+
+    def _last_words(self) -> str:
+        with contextlib.suppress(OSError):
+            lines = self._log.read_text(errors="replace").strip().splitlines()
+            if lines:
+                return lines[-1][:500]
+        return f"exit status {self._process.returncode}"
+
+
+def _command(connection: Path) -> Sequence[str]:
+    return (
+        sys.executable,
+        "-m",
+        "ipykernel_launcher",
+        "-f",
+        str(connection),
+        # No history file: two kernels would wait for each other's lock, and a student's words belong in no home.
+        "--HistoryManager.hist_file=:memory:",
+        "--HistoryManager.enabled=False",
+    )
+
+
+def _end_descriptor(pid: int) -> int | None:
+    """A descriptor that becomes readable when the process ends, where the system has such a thing."""
+    try:
+        return os.pidfd_open(pid)
+    except (AttributeError, OSError):
+        return None
+
+
+def _parent(message: Mapping[str, Any]) -> str:
+    header = message.get("parent_header")
+    return str(header.get("msg_id", "")) if isinstance(header, Mapping) else ""
+
+
+def _answer(message: Mapping[str, Any], request: str) -> Mapping[str, Any]:
+    """The content of a message that answers ``request``; empty for any other."""
+    content = message.get("content")
+    return content if _parent(message) == request and isinstance(content, Mapping) else {}
+
+
+def _asks_to_exit(reply: Mapping[str, Any]) -> bool:
+    """Whether ``exit()`` or ``quit()`` was called: the kernel answers first and ends a moment later."""
+    payload = reply.get("payload")
+    return isinstance(payload, list) and any(
+        isinstance(p, Mapping) and p.get("source") == "ask_exit" for p in payload
+    )

@@ -1,0 +1,182 @@
+"""Collecting a cell's outputs from a kernel that may send anything, in bounded memory.
+
+Messages come from the student's process and are never trusted: what has not the form of the Jupyter messaging
+specification is dropped, and of rich output only plain text and bitmaps are kept. HTML, SVG, JavaScript and
+Markdown would be rendered in the browser of whoever reads the feedback.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+from collections.abc import Mapping
+from typing import Any
+
+IMAGES = ("image/png", "image/jpeg")
+TRACEBACK_LINES = 200
+
+
+class Budget:
+    """Bytes of output that may still be kept, over several cells."""
+
+    def __init__(self, total: int) -> None:
+        self.left = total
+
+    def take(self, wanted: int) -> int:
+        """Take up to ``wanted`` bytes; returns how many were left to take."""
+        granted = max(0, min(wanted, self.left))
+        self.left -= granted
+        return granted
+
+
+class OutputCollector:
+    """The outputs of one cell.
+
+    Args:
+        cell_bytes: Most bytes kept of this cell.
+        notebook: What is left for the whole notebook.
+    """
+
+    def __init__(self, cell_bytes: int, notebook: Budget) -> None:
+        self._own = Budget(cell_bytes)
+        self._notebook = notebook
+        self._outputs: list[dict[str, Any]] = []
+        self._displays: dict[str, list[dict[str, Any]]] = {}
+        self._clear_at_next = False
+        self._dropped = 0
+
+    def handle(self, message_type: str, content: Mapping[str, Any]) -> None:
+        """Take one iopub message into account; anything else than an output is ignored."""
+        match message_type:
+            case "stream":
+                self._stream(content)
+            case "display_data" | "execute_result":
+                self._display(message_type, content)
+            case "update_display_data":
+                self._update(content)
+            case "error":
+                self._error(content)
+            case "clear_output":
+                if content.get("wait"):
+                    self._clear_at_next = True
+                else:
+                    self._clear()
+
+    def outputs(self) -> tuple[dict[str, Any], ...]:
+        """The outputs so far, in nbformat's form, with a closing line where something was dropped."""
+        kept = [_without_overwritten_lines(output) for output in self._outputs]
+        if self._dropped:
+            kept.append(
+                {
+                    "output_type": "stream",
+                    "name": "stdout",
+                    "text": f"\n[{self._dropped} bytes of output were dropped]\n",
+                }
+            )
+        return tuple(kept)
+
+    def _stream(self, content: Mapping[str, Any]) -> None:
+        name = "stderr" if content.get("name") == "stderr" else "stdout"
+        text = self._afford(_text(content.get("text")))
+        if not text:
+            return
+        self._clear_if_due()
+        if self._outputs and self._outputs[-1].get("name") == name:
+            # Joined lazily: repeated += on a long string would cost quadratic time.
+            self._outputs[-1]["text"].append(text)
+        else:
+            self._outputs.append({"output_type": "stream", "name": name, "text": [text]})
+
+    def _display(self, message_type: str, content: Mapping[str, Any]) -> None:
+        data = self._safe_data(content.get("data"))
+        if not data:
+            return
+        self._clear_if_due()
+        output: dict[str, Any] = {"output_type": message_type, "data": data, "metadata": {}}
+        if message_type == "execute_result":
+            output["execution_count"] = None
+        self._outputs.append(output)
+        display_id = _display_id(content)
+        if display_id:
+            self._displays.setdefault(display_id, []).append(output)
+
+    def _update(self, content: Mapping[str, Any]) -> None:
+        earlier = self._displays.get(_display_id(content), [])
+        data = self._safe_data(content.get("data")) if earlier else {}
+        for output in earlier if data else []:
+            output["data"] = data
+
+    def _error(self, content: Mapping[str, Any]) -> None:
+        self._clear_if_due()
+        lines = content.get("traceback")
+        traceback = (
+            [self._afford(_text(line)) for line in lines[:TRACEBACK_LINES]] if isinstance(lines, list) else []
+        )
+        self._outputs.append(
+            {
+                "output_type": "error",
+                "ename": _text(content.get("ename"))[:200],
+                "evalue": self._afford(_text(content.get("evalue"))),
+                "traceback": traceback,
+            }
+        )
+
+    def _safe_data(self, data: Any) -> dict[str, str]:
+        if not isinstance(data, Mapping):
+            return {}
+        safe: dict[str, str] = {}
+        for mime in IMAGES:
+            picture = data.get(mime)
+            if isinstance(picture, str) and _is_base64(picture):
+                # Half a picture is none: all of it or nothing.
+                if len(picture) <= min(self._own.left, self._notebook.left):
+                    safe[mime] = self._afford(picture)
+                else:
+                    self._dropped += len(picture)
+        if "text/plain" in data:
+            safe["text/plain"] = self._afford(_text(data["text/plain"]))
+        return safe
+
+    def _afford(self, text: str) -> str:
+        size = len(text.encode())
+        granted = self._notebook.take(self._own.take(size))
+        if granted == size:
+            return text
+        self._dropped += size - granted
+        return text.encode()[:granted].decode(errors="ignore")
+
+    def _clear_if_due(self) -> None:
+        if self._clear_at_next:
+            self._clear()
+
+    def _clear(self) -> None:
+        self._outputs.clear()
+        self._displays.clear()
+        self._clear_at_next = False
+
+
+def _text(value: Any) -> str:
+    """``value`` as text that can be written as UTF-8; a lone surrogate would end the conversion of the notebook."""
+    text = value if isinstance(value, str) else "" if value is None else repr(value)[:1000]
+    return text.encode("utf-8", "replace").decode("utf-8")
+
+
+def _display_id(content: Mapping[str, Any]) -> str:
+    transient = content.get("transient")
+    return _text(transient.get("display_id")) if isinstance(transient, Mapping) else ""
+
+
+def _is_base64(text: str) -> bool:
+    try:
+        base64.b64decode("".join(text.split()), validate=True)
+    except (binascii.Error, ValueError):
+        return False
+    return True
+
+
+def _without_overwritten_lines(output: dict[str, Any]) -> dict[str, Any]:
+    """Join a stream's pieces; of a line that was overwritten with carriage returns keep what a terminal would show."""
+    if output["output_type"] != "stream":
+        return output
+    lines = "".join(output["text"]).replace("\r\n", "\n").split("\n")
+    return {**output, "text": "\n".join(line.rstrip("\r").rpartition("\r")[2] for line in lines)}

@@ -1,0 +1,93 @@
+"""Ending a process with everything that it started, daemons included."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import os
+import signal
+import sys
+import time
+from typing import TYPE_CHECKING
+
+import psutil
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+_PR_SET_CHILD_SUBREAPER = 36  # linux/prctl.h
+
+
+def adopt_orphans() -> bool:
+    """Make this process the parent of every descendant whose own parent dies, so that none gets out of sight.
+
+    Returns:
+        Whether the system can do this; elsewhere than on Linux a daemon may escape.
+    """
+    if sys.platform != "linux":
+        return False
+    return ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0) == 0
+
+
+def end_tree(pid: int) -> None:
+    """Kill process ``pid``, its process group and all its descendants."""
+    with contextlib.suppress(psutil.NoSuchProcess):
+        _kill(psutil.Process(pid).children(recursive=True))
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        # Only where it leads a group of its own: else the group is ours.
+        if os.getpgid(pid) == pid:
+            os.killpg(pid, signal.SIGKILL)
+    with contextlib.suppress(psutil.NoSuchProcess):
+        _kill([psutil.Process(pid)])
+
+
+def end_descendants(within: float = 3.0) -> int:
+    """Kill every descendant of this process and reap it.
+
+    Meant for a worker between two submissions, when nothing of its own is running and :func:`adopt_orphans` holds.
+
+    Args:
+        within: Seconds after which to give up; a process in an uninterruptible system call dies when that ends.
+
+    Returns:
+        How many processes were found.
+    """
+    seen: set[int] = set()
+    deadline = time.monotonic() + within
+    while time.monotonic() < deadline:
+        alive = psutil.Process().children(recursive=True)
+        if not alive:
+            break
+        seen.update(process.pid for process in alive if not _is_zombie(process))
+        _kill(alive)
+        # A killed process becomes our own child when its parent dies; there is no event for "one of these ended".
+        if not _reap():
+            time.sleep(0.005)
+    return len(seen)
+
+
+def _kill(processes: Iterable[psutil.Process]) -> None:
+    processes = list(processes)
+    # Stopped first, so that none can start another while the list is gone through.
+    for process in processes:
+        with contextlib.suppress(psutil.Error):
+            process.suspend()
+    for process in processes:
+        with contextlib.suppress(psutil.Error):
+            process.kill()
+
+
+def _is_zombie(process: psutil.Process) -> bool:
+    try:
+        return process.status() == psutil.STATUS_ZOMBIE
+    except psutil.Error:
+        return True
+
+
+def _reap() -> bool:
+    """Reap all children that have ended; whether there were any."""
+    reaped = False
+    with contextlib.suppress(ChildProcessError):
+        while os.waitpid(-1, os.WNOHANG)[0]:
+            reaped = True
+    return reaped

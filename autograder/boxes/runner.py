@@ -1,0 +1,185 @@
+"""Executing a rebuilt notebook cell by cell, with the judge looking at each check cell.
+
+What the notebook prints, raises or returns decides nothing. A check cell's result is what the judge has to say
+once the cell has run, and where the judge has nothing to say it is zero, with the reason.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from typing import TYPE_CHECKING, Any, Protocol
+
+from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution, Kind
+from autograder.boxes.kernel import Kernel, KernelFailed
+from autograder.boxes.outputs import Budget, OutputCollector
+from autograder.boxes.zero import grader_trouble, without_verdict
+from autograder.verdict import State, Verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
+
+    from autograder.boxes.limits import Limits
+
+
+class Judge(Protocol):
+    """The judge as it is seen from here."""
+
+    def open(self, exercise_id: str) -> None:
+        """From now on a check of this exercise counts."""
+        ...
+
+    def close(self) -> Verdict | None:
+        """The exercise's check is over; what came of it, or None where nobody asked."""
+        ...
+
+
+def run_notebook(
+    cells: Sequence[Cell],
+    *,
+    judge: contextlib.AbstractContextManager[Judge],
+    environment: Mapping[str, str],
+    folder: Path,
+    cwd: Path,
+    limits: Limits,
+) -> Execution:
+    """Execute a notebook in a kernel of its own.
+
+    Args:
+        cells: The cells of the rebuilt notebook.
+        judge: Started while the kernel starts; must be ended by leaving the context.
+        environment: The whole environment of the kernel; it names the judge's socket.
+        folder: For the kernel's sockets, a short path.
+        cwd: Where the notebook runs.
+        limits: All limits.
+
+    Returns:
+        The execution. Nothing that the notebook does makes this function raise; trouble of the grader's own
+        (no kernel, no judge) is in ``trouble``, and every check it concerns is "not checked".
+    """
+    began = time.monotonic()
+    run = _Run(cells, limits)
+    try:
+        with (
+            contextlib.closing(Kernel(folder, cwd, environment, limits, run.on_output)) as kernel,
+            judge as ready,
+        ):
+            kernel.await_ready()
+            start_seconds = time.monotonic() - began
+            run.all_cells(kernel, ready)
+    except KernelFailed as error:
+        return run.failed(str(error), time.monotonic() - began)
+    except Exception as error:  # a judge that cannot start or end must not cost the batch
+        return run.failed(f"the judge failed: {type(error).__name__}: {error}", time.monotonic() - began)
+    return run.result(time.monotonic() - began, start_seconds)
+
+
+class _Run:
+    """One notebook's execution while it goes on."""
+
+    def __init__(self, cells: Sequence[Cell], limits: Limits) -> None:
+        self._cells = cells
+        self._limits = limits
+        budget = Budget(limits.notebook_output_bytes)
+        self._collectors = [OutputCollector(limits.cell_output_bytes, budget) for _ in cells]
+        self._ended = [Ended.NOT_RUN for _ in cells]
+        self._seconds = [0.0 for _ in cells]
+        self._requests: dict[str, int] = {}
+        self._verdicts: dict[int, Verdict] = {}
+        self._trouble = ""
+
+    def on_output(self, request: str, message_type: str, content: Mapping[str, Any]) -> None:
+        """An output belongs to the cell that asked for it, also when that cell has ended long ago."""
+        index = self._requests.get(request)
+        if index is not None:
+            self._collectors[index].handle(message_type, content)
+
+    def all_cells(self, kernel: Kernel, judge: Judge) -> None:
+        """Run what is to run, as long as there is a kernel and time."""
+        notebook_deadline = time.monotonic() + self._limits.notebook_seconds
+        for index, cell in enumerate(self._cells):
+            if cell.kind is not Kind.CODE:
+                self._ended[index] = Ended.DONE
+                continue
+            if not kernel.alive or time.monotonic() >= notebook_deadline:
+                continue
+            with self._watched(index, cell, judge):
+                began = time.monotonic()
+                deadline = min(notebook_deadline, began + self._limit(cell))
+                self._ended[index] = kernel.execute(cell.source, deadline, self._remember(index))
+                self._seconds[index] = time.monotonic() - began
+
+    def result(self, seconds: float, start_seconds: float) -> Execution:
+        """The execution, with a verdict for every check cell."""
+        runs = [self._cell_run(index) for index in range(len(self._cells))]
+        for index, cell in enumerate(self._cells):
+            if cell.check is not None and index not in self._verdicts:
+                before = [
+                    (_title(self._cells[i]), runs[i])
+                    for i in range(index)
+                    if self._cells[i].kind is Kind.CODE
+                ]
+                self._verdicts[index] = without_verdict(cell.check, runs[index], before, self._limit(cell))
+        return Execution(tuple(runs), self._verdicts, self._trouble, seconds, start_seconds)
+
+    def failed(self, reason: str, seconds: float) -> Execution:
+        """The execution where the grader's own side failed: no check of it says anything."""
+        runs = tuple(self._cell_run(index) for index in range(len(self._cells)))
+        verdicts = {i: grader_trouble(cell.check, reason) for i, cell in enumerate(self._cells) if cell.check}
+        return Execution(runs, verdicts, reason, seconds)
+
+    @contextlib.contextmanager
+    def _watched(self, index: int, cell: Cell, judge: Judge) -> Iterator[None]:
+        """Have the judge look at a check cell; any other cell runs unwatched."""
+        if cell.check is None:
+            yield
+            return
+        try:
+            judge.open(cell.check.exercise)
+        except Exception as error:
+            self._judge_failed(index, cell.check, error)
+            yield
+            return
+        yield
+        try:
+            verdict = judge.close()
+        except Exception as error:
+            self._judge_failed(index, cell.check, error)
+            return
+        if verdict is not None:
+            self._count(index, cell.check, verdict)
+
+    def _count(self, index: int, check: Check, verdict: Verdict) -> None:
+        if verdict.exercise != check.exercise:
+            self._judge_failed(index, check, ValueError(f"it judged {verdict.exercise} instead"))
+            return
+        self._verdicts[index] = verdict
+        if verdict.state is State.NOT_CHECKED:
+            self._trouble = verdict.diagnosis.text if verdict.diagnosis else "the judge could not check"
+
+    def _judge_failed(self, index: int, check: Check, error: Exception) -> None:
+        self._trouble = f"the judge failed: {type(error).__name__}: {error}"
+        self._verdicts[index] = grader_trouble(check, self._trouble)
+
+    def _remember(self, index: int) -> Any:
+        return lambda request: self._requests.__setitem__(request, index)
+
+    def _limit(self, cell: Cell) -> float:
+        if cell.check is not None:
+            return cell.check.limit + self._limits.check_margin
+        return self._limits.cell_seconds
+
+    def _cell_run(self, index: int) -> CellRun:
+        outputs = self._collectors[index].outputs()
+        errors = [f"{o['ename']}: {o['evalue']}"[:500] for o in outputs if o["output_type"] == "error"]
+        return CellRun(
+            self._ended[index], outputs, errors[-1] if errors else "", round(self._seconds[index], 3)
+        )
+
+
+def _title(cell: Cell) -> str:
+    """The first line of a cell that says something, to name the cell by."""
+    lines = [line.strip() for line in cell.source.splitlines()]
+    telling = [line for line in lines if line and not line.startswith("#")]
+    return (telling or lines or [""])[0][:60]

@@ -1,0 +1,42 @@
+"""A folder for one submission that is gone afterwards, whatever was done in it."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import stat
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+
+@contextlib.contextmanager
+def scratch_folder(parent: Path) -> Iterator[Path]:
+    """Make a folder in ``parent`` that only we can read, and remove it at the end.
+
+    Args:
+        parent: Made where it is not there. Keep it short: Unix sockets will have their names in it.
+    """
+    parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+    folder = Path(tempfile.mkdtemp(prefix="n", dir=parent))
+    try:
+        yield folder
+    finally:
+        remove_tree(folder)
+
+
+def remove_tree(folder: Path) -> None:
+    """Remove a folder although somebody took away the right to."""
+    shutil.rmtree(folder, onerror=_make_writable)
+
+
+def _make_writable(function: Callable[[str], Any], path: str, _: Any) -> None:
+    with contextlib.suppress(OSError):
+        os.chmod(os.path.dirname(path), stat.S_IRWXU)  # noqa: PTH101, PTH120  (shutil hands us a str)
+        if not os.path.islink(path):  # noqa: PTH114
+            os.chmod(path, stat.S_IRWXU)  # noqa: PTH101
+        function(path)

@@ -1,0 +1,131 @@
+"""The verdict where the judge has none: zero points, and a reason a student can act on."""
+
+from __future__ import annotations
+
+from autograder.boxes.execution import CellRun, Check, Ended
+from autograder.verdict import Diagnosis, State, Verdict, not_checked
+
+_SYNTAX_ERRORS = ("SyntaxError", "IndentationError", "TabError")
+
+
+def zero(check: Check, key: str, reason: str, next_step: str, detail: str = "") -> Verdict:
+    """A failed check without criteria.
+
+    Args:
+        check: The check that was to be made.
+        key: The diagnosis.
+        reason: What happened, for the student.
+        next_step: What to do now.
+        detail: More text, such as the end of a traceback.
+    """
+    return Verdict(
+        exercise=check.exercise,
+        title=check.title,
+        state=State.FAILED,
+        score=0.0,
+        max_score=check.points,
+        diagnosis=Diagnosis(key=key, text=reason, next_step=next_step),
+        detail=detail,
+    )
+
+
+def grader_trouble(check: Check, reason: str) -> Verdict:
+    """The grader's own trouble: nobody's fault who submitted, and worth another run."""
+    return not_checked(
+        check.exercise,
+        check.title,
+        check.points,
+        f"This could not be checked: {reason}",
+        "This is the grader's trouble, not yours. It is tried again at the next grading run.",
+    )
+
+
+def without_verdict(check: Check, run: CellRun, before: list[tuple[str, CellRun]], limit: float) -> Verdict:
+    """Why a check cell has no verdict.
+
+    Args:
+        check: The check that was to be made.
+        run: What came of the check cell.
+        before: The cells before it, each with its first line, in order.
+        limit: Seconds of wall time that the check cell had.
+    """
+    match run.ended:
+        case Ended.NOT_RUN | Ended.KERNEL_DIED:
+            return _kernel_gone(check, run, before)
+        case Ended.TIMED_OUT:
+            return zero(
+                check,
+                "cell_timed_out",
+                f"The check cell was stopped after {limit:g} s, before the judge had seen enough.",
+                "Look for a call that waits without a limit or a loop that never ends.",
+            )
+        case Ended.RAISED:
+            return _stopped_by_error(check, run, before)
+        case Ended.DONE:
+            return zero(
+                check,
+                "not_asked",
+                "The check cell ran, but the check that belongs to it was never made.",
+                "Make sure that no cell of yours redefines `check`.",
+            )
+
+
+def _kernel_gone(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:
+    if run.ended is Ended.KERNEL_DIED:
+        place = "while this check cell was running"
+    else:
+        culprit = next((title for title, cell in before if cell.ended is Ended.KERNEL_DIED), "")
+        if not culprit:
+            return _out_of_time(check, before)
+        place = f"in the cell that begins with `{culprit}`, before this check cell had its turn"
+    return zero(
+        check,
+        "kernel_died",
+        f"The notebook's kernel ended {place}.",
+        "Look for `exit()`, `quit()` or `os._exit()`, or for something that makes Python crash. "
+        "Restart the kernel and run all cells: that is what the grader does.",
+    )
+
+
+def _out_of_time(check: Check, before: list[tuple[str, CellRun]]) -> Verdict:
+    slow = [title for title, cell in before if cell.ended is Ended.TIMED_OUT]
+    reason = "The notebook's time was up before this check cell had its turn."
+    if slow:
+        reason = f"The cell that begins with `{slow[-1]}` did not end within its time limit, nor when it was interrupted."
+    return zero(
+        check,
+        "notebook_timed_out",
+        reason,
+        "Look for a loop that never ends. Restart the kernel and run all cells: every cell must come to its end.",
+    )
+
+
+def _stopped_by_error(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:
+    """The cell raised, most often because what it names was never defined; the cause then lies in an earlier cell."""
+    cause = next(((title, cell) for title, cell in reversed(before) if cell.ended is Ended.TIMED_OUT), None)
+    if cause:
+        return zero(
+            check,
+            "cell_timed_out",
+            f"The cell that begins with `{cause[0]}` was stopped at its time limit. Then the check cell could not "
+            f"begin: {run.error}",
+            "Look for a loop that never ends. To keep a node running, spin it in the background.",
+        )
+    cause = next(((title, cell) for title, cell in reversed(before) if cell.ended is Ended.RAISED), None)
+    where = f" The cell that begins with `{cause[0]}` had ended with {cause[1].error}." if cause else ""
+    earlier = cause[1].error if cause else run.error
+    key = "syntax_error" if earlier.startswith(_SYNTAX_ERRORS) else "crashed"
+    return zero(
+        check,
+        key,
+        f"The check cell stopped before the check could begin: {run.error}.{where}",
+        "Mend the first cell that shows an error, then restart the kernel and run all cells.",
+        detail=_end_of_traceback(cause[1] if cause else run),
+    )
+
+
+def _end_of_traceback(run: CellRun) -> str:
+    for output in run.outputs:
+        if output["output_type"] == "error":
+            return "\n".join(output["traceback"])[-2000:]
+    return ""

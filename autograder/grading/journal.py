@@ -1,0 +1,76 @@
+"""The results that are final, each under the hash of all it depends on; what is here is not executed again."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder.boxes.execution import Execution  # noqa: TC001  (msgspec reads the annotations)
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from autograder.grading.task import Task
+
+
+@dataclass(frozen=True)
+class _Entry:
+    key: str
+    execution: Execution
+
+
+class Journal:
+    """One file a student's notebook, replaced as a whole, so that a killed run leaves old or new and nothing between.
+
+    Args:
+        folder: Made when the first result is written.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def get(self, task: Task) -> Execution | None:
+        """The execution of exactly this task, or None. A damaged entry counts as none."""
+        try:
+            entry = msgspec.json.decode(self._path(task).read_bytes(), type=_Entry)
+        except (OSError, msgspec.MsgspecError):
+            return None
+        return entry.execution if entry.key == task.key() else None
+
+    def put(self, task: Task, execution: Execution) -> None:
+        """Keep a result, unless the grader itself had trouble: that is tried again at the next run.
+
+        Raises:
+            OSError: It could not be written.
+        """
+        if not execution.trouble:
+            write_whole(self._path(task), msgspec.json.encode(_Entry(task.key(), execution)))
+
+    def forget(self, task: Task) -> None:
+        """Drop what is known of this student's notebook."""
+        self._path(task).unlink(missing_ok=True)
+
+    def _path(self, task: Task) -> Path:
+        return self._folder / task.assignment / f"{task.notebook}@{task.student}.json"
+
+
+def write_whole(path: Path, data: bytes) -> None:
+    """Write a file so that it is never there in part.
+
+    Raises:
+        OSError: It could not be written; then what was there before still is.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    beside = path.with_name(f".{path.name}.{os.getpid()}.new")
+    try:
+        with beside.open("wb") as file:
+            file.write(data)
+        beside.replace(path)
+    except OSError:
+        with contextlib.suppress(OSError):
+            beside.unlink(missing_ok=True)
+        raise

@@ -1,0 +1,57 @@
+"""nbformat's constructors with types: the library itself has none."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+import nbformat
+from nbformat import NotebookNode, v4
+
+from autograder.boxes.execution import Kind
+
+_nbformat: Any = nbformat
+_v4: Any = v4
+
+
+def notebook(cells: list[NotebookNode], metadata: dict[str, Any]) -> NotebookNode:
+    """A notebook of format 4.5."""
+    made: NotebookNode = _v4.new_notebook(cells=cells, metadata=metadata)
+    made.nbformat_minor = 5
+    return made
+
+
+def cell(kind: Kind, source: str) -> NotebookNode:
+    """A cell without outputs."""
+    make = {Kind.CODE: _v4.new_code_cell, Kind.MARKDOWN: _v4.new_markdown_cell, Kind.RAW: _v4.new_raw_cell}[
+        kind
+    ]
+    made: NotebookNode = make(source)
+    return made
+
+
+def output(**fields: Any) -> NotebookNode:
+    """An output from its fields as nbformat names them."""
+    made: NotebookNode = _v4.new_output(**fields)
+    return made
+
+
+def read(text: str) -> NotebookNode:
+    """A notebook from its text.
+
+    Raises:
+        Exception: Whatever nbformat's JSON and schema libraries raise.
+    """
+    read_notebook: NotebookNode = _nbformat.reads(text, as_version=4)
+    return read_notebook
+
+
+def text(of: NotebookNode) -> str:
+    """The text of a notebook."""
+    written: str = _nbformat.writes(of)
+    return written
+
+
+def copied(of: NotebookNode) -> NotebookNode:
+    """A copy that shares nothing with the original."""
+    return copy.deepcopy(of)

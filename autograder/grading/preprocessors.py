@@ -1,0 +1,107 @@
+"""What stands in the place of nbgrader's Execute: the wire decides, whoever pressed the button.
+
+``nbgrader_config.py`` of a class puts :class:`WireExecute` into ``Autograde.autograde_preprocessors``. Plain
+``nbgrader autograde``, formgrader's button and ``autograder grade`` all come through here.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from nbgrader.preprocessors import NbGraderPreprocessor
+from traitlets import Float
+
+from autograder.boxes.execution import Cell, Check, Ended, Execution
+from autograder.boxes.limits import Limits
+from autograder.cards.bundle import mimebundle
+from autograder.grading import engine, nodes
+from autograder.grading.class_directory import ClassDirectory
+from autograder.grading.exporter import SubmissionExporter
+from autograder.grading.journal import Journal
+from autograder.grading.points import points
+from autograder.grading.preparing import task_of
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
+
+    from autograder.grading.task import Task
+    from autograder.verdict import Verdict
+
+
+class WireExecute(NbGraderPreprocessor):
+    """Executes a rebuilt notebook under the eyes of the judge and writes only the judge's points into it."""
+
+    cell_seconds = Float(Limits.cell_seconds, help="Wall time of one cell, in seconds.").tag(config=True)
+    notebook_seconds = Float(Limits.notebook_seconds, help="Wall time of a notebook, in seconds.").tag(
+        config=True
+    )
+
+    def preprocess(self, nb: NotebookNode, resources: dict[str, Any]) -> tuple[NotebookNode, dict[str, Any]]:
+        """Put outputs and scores into the notebook.
+
+        Args:
+            nb: The rebuilt notebook.
+            resources: nbgrader's names of student, assignment and notebook are in it.
+        """
+        if not isinstance(self.parent, SubmissionExporter):
+            # Else what a student wrote into the notebook's metadata would be taken for ours.
+            raise TypeError("Autograde.exporter_class must be autograder.grading.exporter.SubmissionExporter")
+        converter: Any = self.parent.parent
+        names = resources["nbgrader"]
+        directory = ClassDirectory(Path(converter.coursedir.root))
+        problem = nb.metadata.get("autograder", {}).get("problem", "")
+        task = task_of(directory, names["student"], names["assignment"], names["notebook"], nb, problem)
+        finished = getattr(converter, "finished", {})
+        execution = finished.get(task.key()) or self._execute(directory, task)
+        return with_results(nb, task, execution), resources
+
+    def _execute(self, directory: ClassDirectory, task: Task) -> Execution:
+        if task.problem:
+            return task.without_execution()
+        journal = Journal(directory.state / "journal")
+        known = journal.get(task)
+        if known is not None:
+            self.log.info("%s is unchanged; taking the result that is in the journal", task.label)
+            return known
+        execution = engine.execute_one(task, directory.scratch())
+        journal.put(task, execution)
+        return execution
+
+
+def with_results(nb: NotebookNode, task: Task, execution: Execution) -> NotebookNode:
+    """The notebook with the outputs of its cells; of a check cell they are the card and the points."""
+    for index, (node, cell) in enumerate(zip(nb.cells, task.cells, strict=True)):
+        if cell.check is not None:
+            node.outputs = _graded_outputs(cell.check, execution.verdicts[index])
+        elif node.cell_type == "code" and index < len(execution.cells):
+            run = execution.cells[index]
+            node.outputs = [nodes.output(**output) for output in run.outputs] + _remark(
+                cell, run.ended, task.limits
+            )
+    return nb
+
+
+def _graded_outputs(check: Check, verdict: Verdict) -> list[NotebookNode]:
+    """The card, and as the cell's value the score: nbgrader gives a cell that number of points."""
+    score = points(check, verdict)
+    return [
+        nodes.output(output_type="display_data", data=mimebundle(verdict), metadata={}),
+        nodes.output(
+            output_type="execute_result", data={"text/plain": f"{score:g}"}, metadata={}, execution_count=None
+        ),
+    ]
+
+
+def _remark(cell: Cell, ended: Ended, limits: Limits) -> list[NotebookNode]:
+    words = {
+        Ended.TIMED_OUT: f"[stopped: the cell ran for more than {limits.cell_seconds:g} s]",
+        Ended.KERNEL_DIED: "[the kernel ended in this cell]",
+        Ended.NOT_RUN: "[this cell was not run]",
+    }
+    text = words.get(ended)
+    return (
+        [nodes.output(output_type="stream", name="stdout", text=f"{text}\n")]
+        if text and cell.source.strip()
+        else []
+    )

@@ -1,0 +1,45 @@
+"""Random inputs that a student cannot guess, that differ from a neighbour's, and that can be drawn again."""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import os
+import secrets
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_BYTES = 32
+
+
+def create_secret(path: Path) -> None:
+    """Write a new class secret that only its owner can read.
+
+    Raises:
+        FileExistsError: There is one already; a new one would change every student's inputs.
+    """
+    descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    with os.fdopen(descriptor, "w") as file:
+        file.write(secrets.token_hex(_BYTES))
+
+
+def read_secret(path: Path) -> bytes:
+    """The class secret.
+
+    Raises:
+        OSError: It cannot be read.
+        ValueError: It is damaged.
+    """
+    secret = bytes.fromhex(path.read_text().strip())
+    if len(secret) != _BYTES:
+        raise ValueError(f"{path} does not hold {_BYTES} bytes")
+    return secret
+
+
+def seed_for(secret: bytes, student: str, assignment: str, notebook: str) -> str:
+    """The seed of one student's notebook; the judge draws each exercise's inputs from it and the exercise's id."""
+    # Lengths are in the message, so that ("ab", "c") and ("a", "bc") never share a seed.
+    message = "".join(f"{len(part)}:{part};" for part in (student, assignment, notebook))
+    return hmac.new(secret, message.encode(), hashlib.sha256).hexdigest()[:32]

@@ -1,0 +1,83 @@
+"""One notebook of one student, ready to be executed anywhere: plain data, with no path and no secret in it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping  # noqa: TC003  (msgspec reads the annotations)
+from dataclasses import dataclass, field
+
+import msgspec
+
+from autograder.boxes.execution import Cell, Execution
+from autograder.boxes.limits import Limits
+from autograder.boxes.zero import zero
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a worker needs to know, and nothing else.
+
+    Attributes:
+        student: The student's id, for messages.
+        assignment: The assignment's name.
+        notebook: The notebook's name.
+        cells: The rebuilt notebook.
+        seed: What the judge draws random inputs from.
+        course: Stands for the version of everything that decides a grade.
+        limits: All limits.
+        files: Files of the assignment that lie beside the notebook, by relative path.
+        problem: Why there is nothing to execute; empty for a notebook that can be.
+    """
+
+    student: str
+    assignment: str
+    notebook: str
+    cells: tuple[Cell, ...]
+    seed: str
+    course: str
+    limits: Limits = field(default_factory=Limits)
+    files: Mapping[str, bytes] = field(default_factory=dict)
+    problem: str = ""
+
+    @property
+    def label(self) -> str:
+        """How the task is called in messages."""
+        return f"{self.student}/{self.assignment}/{self.notebook}"
+
+    def key(self) -> str:
+        """Equal for two tasks whose execution would be the same; a change of anything that matters changes it."""
+        return hashlib.sha256(msgspec.json.encode(self, order="deterministic")).hexdigest()
+
+    def without_execution(self) -> Execution:
+        """The result of a task with a problem: no cell runs, every check is zero with the reason."""
+        verdicts = {
+            index: zero(
+                cell.check, "unreadable", self.problem, "Hand in the notebook as JupyterLab saves it."
+            )
+            for index, cell in enumerate(self.cells)
+            if cell.check is not None
+        }
+        return Execution(cells=(), verdicts=verdicts)
+
+
+def encode(value: Task | Execution) -> bytes:
+    """A task or an execution as one line of JSON."""
+    return msgspec.json.encode(value)
+
+
+def decode_task(data: bytes) -> Task:
+    """Read a task back.
+
+    Raises:
+        msgspec.DecodeError: ``data`` is no task.
+    """
+    return msgspec.json.decode(data, type=Task)
+
+
+def decode_execution(data: bytes) -> Execution:
+    """Read an execution back.
+
+    Raises:
+        msgspec.DecodeError: ``data`` is no execution.
+    """
+    return msgspec.json.decode(data, type=Execution)

@@ -1,0 +1,158 @@
+"""A process that executes tasks one after the other: JSON lines in, JSON lines out.
+
+It is a process of its own also when there is only one notebook to grade, because it makes itself the parent of
+every daemon that a submission starts, and ends them all. When the grader that started it goes away, so does it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import os
+import queue
+import signal
+import sys
+import threading
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+from autograder.boxes.environment import kernel_environment
+from autograder.boxes.execution import Execution
+from autograder.boxes.processes import adopt_orphans, end_descendants
+from autograder.boxes.runner import run_notebook
+from autograder.boxes.scratch import scratch_folder
+from autograder.boxes.zero import grader_trouble
+from autograder.grading.task import Task, decode_task, encode
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from autograder.verdict import Verdict
+
+JUDGE = "autograder.judge.process:JudgeProcess"
+SOCKET_VARIABLE = "AUTOGRADER_JUDGE_SOCKET"
+
+
+def main(arguments: list[str]) -> None:
+    """Work until standard input ends.
+
+    Args:
+        arguments: The scratch folder, and what makes a judge (``module:class``).
+    """
+    scratch, judge = Path(arguments[0]), _imported(arguments[1])
+    results = _private_stdout()
+    adopt_orphans()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
+    for line in _lines():
+        execution = execute(decode_task(line), scratch, judge)
+        end_descendants()
+        results.write(encode(execution) + b"\n")
+        results.flush()
+
+
+def execute(task: Task, scratch: Path, judge: Any) -> Execution:
+    """Execute one task; whatever fails on our side is in the result.
+
+    Args:
+        task: The task.
+        scratch: Where a folder for it is made.
+        judge: Makes a judge from a socket's path and a seed.
+    """
+    try:
+        with contextlib.ExitStack() as stack:
+            folder = stack.enter_context(scratch_folder(scratch))
+            return _execute(task, folder, judge, stack)
+    except Exception as error:
+        reason = f"{type(error).__name__}: {error}"
+        verdicts = {i: grader_trouble(cell.check, reason) for i, cell in enumerate(task.cells) if cell.check}
+        return Execution(cells=(), verdicts=verdicts, trouble=reason)
+    finally:
+        # Also when we are being ended: nothing of the submission may outlive us.
+        end_descendants()
+
+
+def _execute(task: Task, folder: Path, judge: Any, stack: contextlib.ExitStack) -> Execution:
+    cwd = folder / "work"
+    cwd.mkdir()
+    for name, data in task.files.items():
+        path = cwd / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)
+    socket = folder / "judge"
+    return run_notebook(
+        task.cells,
+        judge=_telling(judge(socket, seed=task.seed)),
+        environment=kernel_environment(folder, {SOCKET_VARIABLE: str(socket), **_ros_variables(stack)}),
+        folder=folder,
+        cwd=cwd,
+        limits=task.limits,
+    )
+
+
+@contextlib.contextmanager
+def _telling(judge: Any) -> Iterator[Any]:
+    with judge as ready:
+        yield _TellingJudge(ready)
+
+
+class _TellingJudge:
+    """Tells a check that nobody asked for from one that the judge itself had trouble with."""
+
+    def __init__(self, judge: Any) -> None:
+        self._judge = judge
+
+    def open(self, exercise_id: str) -> None:
+        self._judge.open(exercise_id)
+
+    def close(self) -> Verdict | None:
+        report = self._judge.close_report()
+        if report.verdict is None and report.trouble:
+            raise RuntimeError(report.trouble)
+        verdict: Verdict | None = report.verdict
+        return verdict
+
+
+def _ros_variables(stack: contextlib.ExitStack) -> Mapping[str, str]:
+    """Loopback only, plain logs on stdout, and a domain of this notebook's own for its demonstration cells."""
+    from autograder.judge.domain import lease
+    from autograder.judge.settings import ros_environment
+
+    return {**ros_environment(), "ROS_DOMAIN_ID": str(stack.enter_context(lease()))}
+
+
+def _imported(name: str) -> Any:
+    module, _, attribute = name.partition(":")
+    return getattr(importlib.import_module(module), attribute)
+
+
+def _private_stdout() -> BinaryIO:
+    """Standard output for results alone: whatever else prints goes to standard error."""
+    results = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
+    return results
+
+
+def _lines() -> Iterator[bytes]:
+    """Tasks as they come. When the grader goes away in the middle of one, end this process and what it started."""
+    lines: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
+    idle = threading.Event()
+
+    def read() -> None:
+        for line in sys.stdin.buffer:
+            lines.put(line)
+        lines.put(None)
+        if not idle.is_set():
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    threading.Thread(target=read, daemon=True).start()
+    while True:
+        idle.set()
+        line = lines.get()
+        if line is None:
+            return
+        idle.clear()
+        yield line
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
