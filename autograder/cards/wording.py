@@ -1,0 +1,164 @@
+"""The words both cards share, so that the HTML card and its plain-text twin never say different things."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from autograder.cards.readable import one_line
+from autograder.verdict import State
+
+if TYPE_CHECKING:
+    from autograder.cards.traffic import Part, Traffic
+    from autograder.verdict import Criterion, Moment, Verdict
+
+STATE_WORDS = {
+    State.PASSED: "Passed",
+    State.FAILED: "Not yet",
+    State.NOT_CHECKED: "Could not be checked",
+}
+
+DIRECTION_WORDS = {
+    "from_subject": "from your code",
+    "to_subject": "to your code",
+    "note": "note",
+}
+
+CRITERION_WORDS = {True: "PASS", False: "NOT YET"}
+
+_BLAMELESS = (
+    "The checker itself had trouble, so nothing was found out about your code: "
+    "this is no mistake of yours, and no points were counted."
+)
+_TRY_AGAIN = "Run the check again. If this card comes back, show it to your instructor."
+
+
+@dataclass(frozen=True)
+class Advice:
+    """The prominent block of a card: what happened, and what to do now.
+
+    Attributes:
+        heading: Such as ``"What happened"``; empty where the text needs none.
+        text: One to three sentences.
+        next_step: What to do now, in the imperative; empty when nothing is left to do.
+    """
+
+    heading: str
+    text: str
+    next_step: str = ""
+
+
+def advice(verdict: Verdict) -> Advice:
+    """What a student should read first, also where the judge named no known mistake."""
+    if verdict.state is State.PASSED:
+        return Advice("", "Well done: your code did everything that was asked for.")
+    diagnosis = verdict.diagnosis
+    if verdict.state is State.NOT_CHECKED:
+        reason = f"{diagnosis.text.rstrip()} " if diagnosis and diagnosis.text.strip() else ""
+        next_step = diagnosis.next_step.strip() if diagnosis else ""
+        return Advice("Why there is no result", reason + _BLAMELESS, next_step or _TRY_AGAIN)
+    first = next((criterion for criterion in verdict.criteria if not criterion.passed), None)
+    if diagnosis:
+        return Advice("What happened", diagnosis.text, diagnosis.next_step.strip() or _start_with(first))
+    return Advice("What happened", "Not everything that was asked for was seen.", _start_with(first))
+
+
+def _start_with(criterion: Criterion | None) -> str:
+    if criterion is None:
+        return "Read the details below, change your code and run the check again."
+    title = criterion.title.rstrip(". ")
+    return f'Start with "{title}": compare what was expected with what was seen, then run the check again.'
+
+
+def points(value: float) -> str:
+    """A number of points without needless zeros: ``"7.5"``, ``"10"``."""
+    return f"{value:.2f}".rstrip("0").rstrip(".")
+
+
+def points_of(earned: float, possible: float) -> str:
+    """``"7.5 of 10 points"``."""
+    return f"{points(earned)} of {points(possible)} {'point' if possible == 1 else 'points'}"
+
+
+def score_line(verdict: Verdict) -> str:
+    """The points in words; what could not be checked has none, not zero."""
+    if verdict.state is State.NOT_CHECKED:
+        return f"no points counted (of {points(verdict.max_score)})"
+    return points_of(verdict.score, verdict.max_score)
+
+
+def tally(verdict: Verdict) -> str:
+    """How many criteria hold, such as ``"3 of 4 criteria hold"``; empty when there are none."""
+    if not verdict.criteria:
+        return ""
+    held = sum(criterion.passed for criterion in verdict.criteria)
+    total = len(verdict.criteria)
+    if total == 1:
+        return f"{held} of 1 criterion holds"
+    if held == total:
+        return f"all {total} criteria hold"
+    return f"{held} of {total} criteria hold"
+
+
+def fine_print(verdict: Verdict) -> list[str]:
+    """What to quote in a question or an appeal: the exercise's id, the seed, the time that the check took."""
+    parts = [verdict.exercise]
+    if verdict.seed:
+        parts.append(f"seed {verdict.seed}")
+    if verdict.seconds > 0:
+        parts.append(f"checked in {duration(verdict.seconds)}")
+    return parts
+
+
+def duration(seconds: float) -> str:
+    """``"0.84 s"``, ``"12.3 s"``."""
+    return f"{seconds:.2f} s" if seconds < 10 else f"{seconds:.1f} s"
+
+
+def detail_heading(detail: str) -> str:
+    """What the detail is, with its most telling line: the exception at the end of a traceback."""
+    last = next((line for line in reversed(detail.splitlines()) if line.strip()), "").strip()
+    if "Traceback (most recent call last)" in detail:
+        return f"The traceback, ending in: {last}"
+    return "The last lines of output"
+
+
+def traffic_notes(shown: Traffic) -> str:
+    """What to know about the traffic that is shown: its kind of time, and what is left out."""
+    notes = []
+    if shown.simulated:
+        notes.append("Simulated time: the checker moved your node's clock, so these seconds pass faster.")
+    if shown.left_out:
+        count = f"{shown.left_out} {'moment' if shown.left_out == 1 else 'moments'}"
+        notes.append(f"Too much to show it all: {count} in between left out.")
+    if shown.parts_left_out:
+        count = f"{shown.parts_left_out} more {'part' if shown.parts_left_out == 1 else 'parts'}"
+        notes.append(f"{count} of the check left out.")
+    return " ".join(notes)
+
+
+def direction(key: str) -> str:
+    """A moment's direction in words."""
+    return DIRECTION_WORDS.get(key) or one_line(key, 40)
+
+
+def moment_in_words(moment: Moment) -> str:
+    """``"at 0.500 s on chatter, from your code: Hello, world! 0"``."""
+    where = one_line(moment.lane, 60)
+    return f"at {moment.t:.3f} s on {where}, {direction(moment.direction)}: {one_line(moment.label, 200)}"
+
+
+def part_in_words(part: Part) -> str:
+    """What a picture of the traffic shows, a sentence for each lane."""
+    return " ".join(_lane_in_words(part, lane) for lane in part.lanes)
+
+
+def _lane_in_words(part: Part, lane: str) -> str:
+    moments = [moment for moment in part.moments if moment.lane == lane]
+    counts = Counter(direction(moment.direction) for moment in moments)
+    listed = ", ".join(f"{count} {words}" for words, count in counts.items())
+    times = f"at {moments[0].t:.2f} s"
+    if len(moments) > 1:
+        times = f"from {moments[0].t:.2f} s to {moments[-1].t:.2f} s"
+    return f"{one_line(lane, 60)}: {listed}, {times}."

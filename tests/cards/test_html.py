@@ -1,0 +1,259 @@
+"""The HTML card: complete, well formed, harmless, and readable where a sanitiser took the styles away."""
+
+from __future__ import annotations
+
+import html
+import os
+import re
+from dataclasses import dataclass, field, replace
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.cards.html import card_html
+from autograder.verdict import Criterion, Diagnosis, State, Verdict, not_checked
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+GOLDEN = Path(__file__).parent / "golden"
+
+HTML_TAGS = "bdi details div li p pre small span strong style summary table tbody td th thead tr ul"
+SVG_TAGS = "desc g line path svg text title"
+TAGS = set(f"{HTML_TAGS} {SVG_TAGS}".split())
+ARIA = "aria-hidden aria-label aria-level role scope tabindex"
+PLAIN = "class colspan data-name hidden lang style"
+DRAWING = "d dx height text-anchor transform width x x1 x2 y y1 y2"
+ATTRIBUTES = set(f"{ARIA} {PLAIN} {DRAWING}".split())
+
+
+@dataclass
+class Element:
+    tag: str
+    attributes: dict[str, str]
+    parent: Element | None = None
+    children: list[Element | str] = field(default_factory=list)
+
+    def text(self) -> str:
+        """All words of the element, as somebody without the style sheet reads them."""
+        if self.tag in {"style", "title", "desc"}:
+            return ""
+        return " ".join(child if isinstance(child, str) else child.text() for child in self.children)
+
+    def all(self, tag: str = "", css_class: str = "") -> list[Element]:
+        found = []
+        for child in self.children:
+            if isinstance(child, Element):
+                classes = child.attributes.get("class", "").split()
+                if tag in {"", child.tag} and (not css_class or css_class in classes):
+                    found.append(child)
+                found += child.all(tag, css_class)
+        return found
+
+    def inside(self, css_class: str) -> bool:
+        above = self.parent
+        return above is not None and (
+            css_class in above.attributes.get("class", "").split() or above.inside(css_class)
+        )
+
+
+class Tree(HTMLParser):
+    """Parses strictly: every tag is closed, in order; a path or a line may close itself."""
+
+    def __init__(self, source: str) -> None:
+        super().__init__(convert_charrefs=True)
+        self.root = self._open = Element("root", {})
+        self.feed(source)
+        self.close()
+        assert self._open is self.root, f"<{self._open.tag}> is never closed"
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        assert len({name for name, _ in attrs}) == len(attrs), f"<{tag}> repeats an attribute"
+        element = Element(tag, {name: value or "" for name, value in attrs}, self._open)
+        self._open.children.append(element)
+        self._open = element
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.handle_starttag(tag, attrs)
+        self.handle_endtag(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self._open.tag == tag, f"</{tag}> closes <{self._open.tag}>"
+        assert self._open.parent is not None
+        self._open = self._open.parent
+
+    def handle_data(self, data: str) -> None:
+        self._open.children.append(data)
+
+    def handle_comment(self, data: str) -> None:
+        raise AssertionError(f"a comment in the card: {data}")
+
+    def handle_decl(self, decl: str) -> None:
+        raise AssertionError(f"a declaration in the card: {decl}")
+
+
+def words(element: Element) -> str:
+    return " ".join(element.text().split())
+
+
+def test_is_well_formed_and_made_of_harmless_parts_only(verdict: Verdict) -> None:
+    tree = Tree(card_html(verdict)).root
+    elements = tree.all()
+    assert {element.tag for element in elements} <= TAGS
+    assert {name for element in elements for name in element.attributes} <= ATTRIBUTES
+
+
+def test_fetches_nothing_and_has_no_ids(verdict: Verdict) -> None:
+    source = card_html(verdict)
+    styles = "".join(str(child) for style in Tree(source).root.all("style") for child in style.children)
+    styles += "".join(element.attributes.get("style", "") for element in Tree(source).root.all())
+    for word in ("url(", "@import", "http:", "https:", "//", "expression(", "behavior"):
+        assert word not in styles, word
+    assert not re.search(r"<[^>]*\s(id|href|src|xlink:href)=", source)
+
+
+def test_markup_in_the_words_stays_words(hostile: Verdict) -> None:
+    tree = Tree(card_html(hostile)).root
+    shown = words(tree)
+    for text in (
+        "<script>alert('title')</script> & \"quotes\"",
+        "</td></table><img src=x onerror=alert(1)>",
+        "{{ 7*7 }} {% raw %} </style><script>alert(2)</script> $x^2$ and $y$",
+        "<b onmouseover=alert(4)>hover</b>",
+        "seed \"'><script>",
+    ):
+        assert text in shown
+
+
+def test_control_characters_are_written_out(hostile: Verdict) -> None:
+    source = card_html(hostile)
+    source.encode("utf-8")  # a lone surrogate would raise
+    assert not re.search(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\u2028\u2029]", source)
+    assert "\\x1b[31mred\\x1b[0m\\x00NUL" in source
+    assert "\\u202edesrever \\u2066" in source
+    assert "\\ud800" in source
+    assert "l1\\nl2\\r\\tl3" in source
+
+
+def test_a_flood_of_output_makes_no_flood_of_a_card(hostile: Verdict) -> None:
+    flood = replace(hostile, detail="z" * 3_000_000, remarks=("r" * 1_000_000,))
+    assert len(card_html(flood)) < 150_000
+
+
+def test_every_criterion_is_a_row_with_its_words(verdict: Verdict) -> None:
+    table = Tree(card_html(verdict)).root.all("table", "agc-table")
+    if not verdict.criteria:
+        assert not table
+        return
+    rows = table[0].all("tr", "agc-row")
+    assert len(rows) == len(verdict.criteria)
+    for row, criterion in zip(rows, verdict.criteria, strict=True):
+        text = words(row)
+        assert text.startswith("✓ PASS" if criterion.passed else "✗ NOT YET")
+        for said in (criterion.title, criterion.expected, criterion.seen):
+            if len(said) < 160 and said.isprintable():
+                assert " ".join(said.split()) in text
+        highlighted = row.all(css_class="agc-seen")[0].all("strong")
+        assert bool(highlighted) is not criterion.passed
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("talker_passed", "Passed · all 4 criteria hold 10 of 10 points"),
+        ("talker_wrong_topic", "Not yet · 3 of 4 criteria hold 7.5 of 10 points"),
+        ("not_checked", "Could not be checked no points counted (of 10)"),
+    ],
+)
+def test_the_head_says_how_it_stands(name: str, said: str, load: Callable[[str], Verdict]) -> None:
+    tree = Tree(card_html(load(name))).root
+    head = tree.all(css_class="agc-head")[0]
+    badge = head.all(css_class="agc-badge")[0]
+    assert badge.attributes["aria-hidden"] == "true"
+    assert said in words(head)
+    assert load(name).title in tree.all(css_class="agc")[0].attributes["aria-label"]
+
+
+def test_what_could_not_be_checked_accuses_nobody(load: Callable[[str], Verdict]) -> None:
+    for verdict in (load("not_checked"), not_checked("lab_1_2.talker", "The talker", 10.0, "")):
+        shown = words(Tree(card_html(verdict)).root)
+        assert "no mistake of yours" in shown
+        assert "What to do next" in shown
+        for accusation in ("NOT YET", "Not yet", "0 of 10", "What happened", "✗", "failed", "wrong"):
+            assert accusation not in shown
+
+
+def test_a_pass_is_met_with_a_warm_word_and_no_homework(load: Callable[[str], Verdict]) -> None:
+    shown = words(Tree(card_html(load("talker_passed"))).root)
+    assert "Well done" in shown
+    assert "What to do next" not in shown
+
+
+def test_a_failure_without_a_known_mistake_still_has_a_next_step() -> None:
+    rate = Criterion("rate", "Publishes every 0.5 s", 5.0, False, "0.5 s", "1.0 s")
+    for diagnosis in (None, Diagnosis("crashed", "It stopped.", " ")):
+        verdict = Verdict("e", "E", State.FAILED, 0.0, 5.0, criteria=(rate,), diagnosis=diagnosis)
+        shown = words(Tree(card_html(verdict)).root)
+        assert 'What to do next Start with "Publishes every 0.5 s"' in shown
+
+
+def test_words_in_a_picture_are_hidden_where_the_picture_is_taken_away(verdict: Verdict) -> None:
+    """JupyterLab drops <svg> and <style> of an untrusted notebook and keeps the words inside an <svg>."""
+    tree = Tree(card_html(verdict)).root
+    for picture in tree.all("svg"):
+        assert picture.inside("agc-pictures")
+    for wrapper in tree.all(css_class="agc-pictures"):
+        assert "hidden" in wrapper.attributes
+        assert "display: none" in wrapper.attributes["style"]
+    sheet = str(tree.all("style")[0].children[0])
+    assert ".agc-pictures[hidden]:has(svg)" in sheet
+
+
+def test_the_picture_has_its_twin_in_words(load: Callable[[str], Verdict]) -> None:
+    verdict = load("three_ints_partial")
+    tree = Tree(card_html(verdict)).root
+    pictures = tree.all("svg", "agc-svg")
+    assert len(pictures) == len({moment.part for moment in verdict.timeline})
+    for picture in pictures:
+        assert picture.attributes["role"] == "img"
+        assert [child.tag for child in picture.children if isinstance(child, Element)][:2] == [
+            "title",
+            "desc",
+        ]
+    table = words(tree.all("table", "agc-moments")[0])
+    for moment in verdict.timeline:
+        assert moment.label in table
+        assert moment.part in table
+
+
+def test_a_long_timeline_is_cut_and_says_so(hostile: Verdict) -> None:
+    tree = Tree(card_html(hostile)).root
+    rows = tree.all("table", "agc-moments")[0].all("td")
+    assert 40 <= len(tree.all("svg", "agc-mark")) <= 62
+    assert any("more left out here" in words(row) for row in rows)
+    left_out = int(re.findall(r"(\d+) moments in between left out", words(tree))[0])
+    assert left_out + len(tree.all("svg", "agc-mark")) == len(hostile.timeline)
+
+
+def test_one_card_looks_as_it_was_agreed(load: Callable[[str], Verdict]) -> None:
+    """Run with ``UPDATE_GOLDEN=1`` after a change that is meant, and read the difference."""
+    source = re.sub(r"<style>.*?</style>\n", "", card_html(load("talker_wrong_topic")), flags=re.DOTALL)
+    path = GOLDEN / "talker_wrong_topic.html"
+    if os.environ.get("UPDATE_GOLDEN"):
+        path.write_text(source + "\n", encoding="utf-8")
+    assert source + "\n" == path.read_text(encoding="utf-8")
+
+
+def test_two_cards_share_a_page(load: Callable[[str], Verdict]) -> None:
+    page = card_html(load("talker_passed")) + card_html(load("crashed"))
+    assert len(Tree(page).root.all(css_class="agc")) == 2
+
+
+def test_the_traceback_is_folded_under_its_last_line(load: Callable[[str], Verdict]) -> None:
+    verdict = load("crashed")
+    folded = Tree(card_html(verdict)).root.all("details")[-1]
+    summary = words(folded.all("summary")[0])
+    assert summary == "The traceback, ending in: AttributeError: 'String' object has no attribute 'dta'"
+    assert html.unescape(folded.all("pre")[0].text()).rstrip() == verdict.detail.rstrip()

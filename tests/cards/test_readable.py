@@ -1,0 +1,70 @@
+"""Text of unknown origin, made legible."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.cards.readable import block, one_line, paragraph, width, wrap
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("plain", "plain"),
+        ("a\x00b", "a\\x00b"),
+        ("\x1b[31mred", "\\x1b[31mred"),
+        ("two\nlines\tand\rmore", "two\\nlines\\tand\\rmore"),
+        ("\u202eevil", "\\u202eevil"),
+        ("\u2066x\u2069", "\\u2066x\\u2069"),
+        ("zero\u200bwidth", "zero\\u200bwidth"),
+        ("\ud800", "\\ud800"),
+        ("\ufffe \U0001fffe", "\\ufffe \\U0001fffe"),
+        ("\U000e0041", "\\U000e0041"),
+        ("Grüße, مرحبا, 你好 👩‍🚀", "Grüße, مرحبا, 你好 👩‍🚀"),
+    ],
+)
+def test_one_line_writes_out_what_cannot_be_seen(text: str, shown: str) -> None:
+    assert one_line(text, 100) == shown
+
+
+def test_one_line_cuts_in_the_middle() -> None:
+    cut = one_line("begin" + "x" * 1000 + "end", 20)
+    assert len(cut) == 20
+    assert cut.startswith("begin")
+    assert cut.endswith("end")
+    assert "…" in cut
+
+
+@pytest.mark.parametrize("text", ["\x00" * 100_000, "x" * 100_000, "\u202e" * 9, "y" * 10])
+def test_one_line_keeps_its_limit(text: str) -> None:
+    assert len(one_line(text, 10)) <= 10
+
+
+def test_paragraph_joins_lines() -> None:
+    assert paragraph("  one\n  two\tthree ", 100) == "one two three"
+
+
+def test_block_keeps_lines_and_drops_colours_only() -> None:
+    assert block("\x1b[1;31mError\x1b[0m\r\n\tat \x07\n", max_lines=5, max_columns=40) == [
+        "Error",
+        "    at \\x07",
+    ]
+
+
+def test_block_keeps_the_end_and_counts_what_it_leaves_out() -> None:
+    lines = block("\n".join(map(str, range(100))), max_lines=10, max_columns=40)
+    assert len(lines) == 10
+    assert lines[0] == "0"
+    assert lines[-1] == "99"
+    assert int(lines[3].split()[1]) == 100 - 9
+
+
+def test_width_counts_columns() -> None:
+    assert [width("abc"), width("你好"), width("e\u0301"), width("")] == [3, 4, 1, 0]
+
+
+def test_wrap_breaks_at_blanks_and_long_words_anywhere() -> None:
+    assert wrap("one two three", 9, "> ", "  ") == ["> one two", "  three"]
+    assert wrap("abcdefghij k", 6, "", " ") == ["abcdef", " ghij", " k"]
+    assert wrap("你好你好", 5) == ["你好", "你好"]
+    assert wrap("", 5, "> ") == [">"]
