@@ -227,9 +227,9 @@ def _labels(part: Part) -> list[str]:
 
 
 def _continued(previous: str, label: str) -> str:
-    """``label`` without the words that it shares with ``previous``; a ditto mark where they are the same."""
+    """``label`` without the words it shares with ``previous``: none at all where both are the same."""
     if label == previous:
-        return "″" if len(label) > 2 else label
+        return ""
     shared = next((i for i, (a, b) in enumerate(zip(previous, label, strict=False)) if a != b), len(previous))
     blank = label.rfind(" ", 0, shared)
     return f"…{label[blank + 1 :]}" if blank >= 5 else label

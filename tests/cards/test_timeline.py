@@ -119,10 +119,10 @@ def test_repeated_words_are_written_once_in_a_full_lane() -> None:
     assert labels == ["Hello, world! 0", *(f"…{number}" for number in range(1, 8))]
 
 
-def test_the_same_label_again_is_a_ditto_mark() -> None:
+def test_the_same_label_again_is_not_repeated() -> None:
     moments = tuple(Moment(float(t), "log", "from_subject", "waiting again...") for t in range(7))
     labels = [mark.label for mark in picture(Part("", False, moments)).lanes[0].marks]
-    assert labels == ["waiting again...", *["″"] * 6]
+    assert labels == ["waiting again...", *[""] * 6]
 
 
 def test_nothing_to_draw_is_an_error() -> None:
