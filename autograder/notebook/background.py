@@ -5,10 +5,10 @@ from __future__ import annotations
 import threading
 from typing import TYPE_CHECKING, Any
 
-from autograder.notebook.callback_errors import CallbackError, CallbackErrors, node_label
+from autograder.notebook.callback_errors import CallbackError, CallbackErrors
 from autograder.notebook.cell_runs import CellRun, CellWatch
 from autograder.notebook.made_nodes import MadeNodes, NodeIdentity
-from autograder.notebook.node_ends import destroy_node
+from autograder.notebook.node_ends import destroy_node, node_label
 from autograder.notebook.notebook_output import say
 from autograder.notebook.spin_threads import GRACE, Ending, SpinThreads
 
@@ -162,10 +162,14 @@ def running_backgrounds() -> list[Background]:
         return list(_running)
 
 
-def end_everything() -> None:
-    """Stop all backgrounds and destroy all nodes."""
+def end_everything(grace: float = GRACE) -> None:
+    """Stop all backgrounds and destroy all nodes.
+
+    Args:
+        grace: Seconds that each running callback has to return by itself.
+    """
     for background in running_backgrounds():
-        background.end()
+        background.end(grace=grace)
     for made in _made.alive():
         destroy_node(made.node)
 

@@ -13,7 +13,7 @@ from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
 
-from autograder.notebook.node_ends import NodeEndedError
+from autograder.notebook.node_ends import NodeEndedError, node_label
 from autograder.notebook.notebook_output import say
 from autograder.notebook.student_tracebacks import PlainlyShownError, last_student_line, render
 
@@ -146,16 +146,6 @@ def describe(entity: Any) -> str:
     if isinstance(entity, ActionServer | ActionClient):
         return "its action server" if isinstance(entity, ActionServer) else "its action client"
     return "a task" if entity is None else f"its {type(entity).__name__}"
-
-
-def node_label(node: Any) -> str:
-    """The node's name; its class where the node cannot be asked any more."""
-    if node is None:
-        return "a node"
-    try:
-        return str(node.get_name())
-    except Exception:  # A destroyed node raises InvalidHandle, one without super().__init__() AttributeError.
-        return type(node).__name__
 
 
 def _last_line(error: BaseException) -> str:

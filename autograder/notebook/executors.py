@@ -10,7 +10,8 @@ import atexit
 from typing import TYPE_CHECKING, Any
 
 from autograder.notebook.background import Background, end_everything, replace_named
-from autograder.notebook.callback_errors import CallbackFailedError, node_label
+from autograder.notebook.callback_errors import CallbackFailedError
+from autograder.notebook.node_ends import node_label
 from autograder.notebook.ros_session import RosSession, prepare_environment, start_ros
 from autograder.notebook.usable_nodes import SettingError, check_nodes, check_threads
 
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 __all__ = ["Background", "RosSession", "Spinning", "spin_in_background", "spinning", "start_ros", "stop_all"]
+
+_GRACE_AT_EXIT = 0.5
+"""Seconds; a kernel that takes more than five to end is killed (``KernelManager.shutdown_wait_time``)."""
 
 
 def spinning(*nodes: Node, threads: int = 1) -> Spinning:
@@ -124,4 +128,4 @@ class Spinning:
 
 prepare_environment()
 # The threads must be gone before the interpreter goes: see spin_threads.
-atexit.register(end_everything)
+atexit.register(end_everything, grace=_GRACE_AT_EXIT)

@@ -101,10 +101,22 @@ def make_executor(threads: int, context: Context) -> LendingExecutor:
     return LendingMultiThreadedExecutor(num_threads=threads, context=context)
 
 
-def _global_executor_holding(node: Node) -> Executor | None:
-    """The global executor of rclpy, if that is the one which has just added the node."""
-    # Asking rclpy.get_global_executor() would create one.
+def wake_global_executor() -> None:
+    """Bring a callback that waits within ``rclpy.spin_once()`` back to Python for a moment."""
+    executor = _global_executor()
+    if executor is not None:
+        executor.wake()
+
+
+def _global_executor() -> Executor | None:
+    """The executor of ``rclpy.spin`` and the like, if there is one; rclpy's own function would make one."""
     executor: Executor | None = getattr(rclpy, "__executor", None)
+    return executor
+
+
+def _global_executor_holding(node: Node) -> Executor | None:
+    """The global executor, if that is the one which has just added the node."""
+    executor = _global_executor()
     return executor if executor is not None and node in executor.get_nodes() else None
 
 

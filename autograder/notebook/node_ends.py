@@ -35,6 +35,16 @@ def destroy_node(node: Node) -> None:
         node.destroy_node()
 
 
+def node_label(node: Any) -> str:
+    """The node's name; its class where the node cannot be asked any more."""
+    if node is None:
+        return "a node"
+    try:
+        return str(node.get_name())
+    except (InvalidHandle, AttributeError):  # destroyed, or its super().__init__() was never called
+        return type(node).__name__
+
+
 def is_destroyed(node: Node) -> bool:
     """Whether the node was destroyed."""
     try:
@@ -46,7 +56,7 @@ def is_destroyed(node: Node) -> bool:
 
 def release_waiting_calls(node: Node) -> None:
     """Wake everybody who waits for a service's or an action's answer through this node."""
-    error = NodeEndedError(f"{type(node).__name__} was stopped while this call was waiting for its answer")
+    error = NodeEndedError(f"{node_label(node)} was stopped while this call was waiting for its answer")
     for future in list(_pending_answers(node)):
         if not future.done():
             future.set_exception(error)

@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any
 from rclpy.exceptions import InvalidHandle
 from rclpy.executors import ConditionReachedException, ExternalShutdownException, ShutdownException
 
-from autograder.notebook.lending_executors import make_executor
+from autograder.notebook.lending_executors import make_executor, wake_global_executor
 from autograder.notebook.node_ends import NodeEndedError, destroy_node, release_waiting_calls
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class CallbackBrokenOff(BaseException):
     """Raised inside a callback that has not returned although its node is to stop."""
 
     def __str__(self) -> str:
-        return f"the callback was still running {GRACE:g} s after its node was told to stop"
+        return "the callback did not return when its node was told to stop; it was broken off here"
 
 
 class Ending(Enum):
@@ -205,6 +205,7 @@ class SpinThreads:
         for _ in range(_ATTEMPTS):  # A bare `except:` in a loop survives the first.
             for ident in list(self._running):
                 _raise_in_thread(ident, CallbackBrokenOff)
+            wake_global_executor()
             if self._join(_LAST_GRACE / _ATTEMPTS):
                 return
         # Stuck outside Python, or catching everything. The thread is left behind: it runs no rclpy, so that

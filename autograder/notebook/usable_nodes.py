@@ -7,9 +7,8 @@ from typing import Any
 
 from rclpy.node import Node
 
-from autograder.notebook.callback_errors import node_label
 from autograder.notebook.lending_executors import LendingExecutor
-from autograder.notebook.node_ends import NodeEndedError, is_destroyed
+from autograder.notebook.node_ends import NodeEndedError, is_destroyed, node_label
 from autograder.notebook.student_tracebacks import PlainlyShownError
 
 
