@@ -1,0 +1,113 @@
+"""Derive every chapter notebook from its master, or say which of them are out of step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+
+from autograder.masters.checks import exercise_points
+from autograder.masters.errors import MasterError
+from autograder.masters.layout import chapter_notebooks, chapter_path, masters
+from autograder.masters.release import release_text
+from autograder.masters.source import Points, source_notebook
+from autograder.masters.work import holds_work
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@dataclass(frozen=True)
+class BuildReport:
+    """What a build did, or in check mode would do. Each is a tuple of chapter notebooks, in order.
+
+    Attributes:
+        written: Written just now.
+        unchanged: In step with their masters already.
+        stale: Check mode only: missing, or out of step with their masters.
+        edited: Not overwritten because somebody has written into them.
+        orphans: In the chapters although no master stands for them. They are never deleted.
+    """
+
+    written: tuple[Path, ...] = ()
+    unchanged: tuple[Path, ...] = ()
+    stale: tuple[Path, ...] = ()
+    edited: tuple[Path, ...] = ()
+    orphans: tuple[Path, ...] = ()
+
+    @property
+    def in_step(self) -> bool:
+        """Whether the chapters are now exactly what the masters say."""
+        return not (self.stale or self.edited or self.orphans)
+
+
+def build(root: Path, *, check: bool = False, points: Points = exercise_points) -> BuildReport:
+    """Derive the chapters of the course in ``root`` from its masters.
+
+    Every master is read before the first notebook is written, so one bad master changes nothing.
+
+    Args:
+        root: The folder that holds ``solutions`` and ``chapters``.
+        check: Write nothing; report what is stale.
+        points: Gives the points of an exercise; the exercises themselves by default.
+
+    Raises:
+        MasterError: A master cannot be used, or there is none.
+        OSError: A chapter notebook cannot be read or written.
+    """
+    sources = {chapter_path(root, master): source_notebook(master, points=points) for master in masters(root)}
+    texts = {path: release_text(source) for path, source in sources.items()}
+    found: dict[str, list[Path]] = {"written": [], "unchanged": [], "stale": [], "edited": []}
+    for path, text in texts.items():
+        found[_settle(path, text, check=check)].append(path)
+    orphans = [path for path in chapter_notebooks(root) if path not in texts]
+    return BuildReport(**{state: tuple(paths) for state, paths in found.items()}, orphans=tuple(orphans))
+
+
+def _settle(path: Path, text: str, *, check: bool) -> str:
+    """Bring one chapter notebook in step, and say in a word what it came to."""
+    if path.exists() and path.read_bytes() == text.encode():
+        return "unchanged"
+    if check:
+        return "stale"
+    if holds_work(path):
+        return "edited"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    # Written beside and moved, so that an interrupted build leaves no half notebook.
+    beside = path.with_name(f".{path.name}.new")
+    beside.write_text(text, encoding="utf-8", newline="\n")
+    beside.replace(path)
+    return "written"
+
+
+def build_command(
+    root: Path, *, check: bool = False, console: Console | None = None, points: Points = exercise_points
+) -> int:
+    """Build or check, say in a few lines what came of it, and give the exit code.
+
+    Returns:
+        0 when the chapters are in step, 1 when they are not, 2 when a master cannot be used.
+    """
+    console = console or Console()
+    try:
+        report = build(root, check=check, points=points)
+    except MasterError as error:
+        console.print(f"[bold red]cannot build[/]  {error}", highlight=False, soft_wrap=True)
+        return 2
+    for word, paths, meaning in _lines(report):
+        for path in paths:
+            console.print(f"{word:<10} {path.relative_to(root)}  {meaning}", highlight=False, soft_wrap=True)
+    in_step = len(report.unchanged) + len(report.written)
+    notebooks = "chapter notebook" if in_step == 1 else "chapter notebooks"
+    console.print(f"{in_step} {notebooks} in step with the masters.", highlight=False)
+    return 0 if report.in_step else 1
+
+
+def _lines(report: BuildReport) -> list[tuple[str, tuple[Path, ...], str]]:
+    return [
+        ("written", report.written, ""),
+        ("stale", report.stale, "— run: ./course build"),
+        ("edited", report.edited, "— somebody's work is in it: move it away, then build again"),
+        ("orphan", report.orphans, "— no master stands for it: write one, or delete it"),
+    ]

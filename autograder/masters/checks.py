@@ -1,0 +1,95 @@
+"""What a check cell asks for, read from its one line of code, and what its exercise is worth."""
+
+from __future__ import annotations
+
+import ast
+import difflib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from autograder.masters.errors import MasterError
+from autograder.masters.naming import grade_id_of_exercise
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from autograder.masters.parsing import Cell
+
+FORM = 'A check cell is one line such as: check("lab_1_2.talker", TalkerNode)'
+
+
+@dataclass(frozen=True)
+class CheckCall:
+    """``check("<exercise>", <subject>)`` and where it stands."""
+
+    master: Path
+    line: int
+    exercise: str
+    subject: str
+
+
+def read_check(master: Path, cell: Cell) -> CheckCall:
+    """Read a check cell.
+
+    Raises:
+        MasterError: The cell has another form, names another notebook's exercise, or has a wrong grade_id.
+    """
+    exercise, subject = _call(master, cell)
+    if exercise.partition(".")[0] != master.stem:
+        raise MasterError(
+            master,
+            cell.line,
+            f"The exercise '{exercise}' does not belong to this notebook.",
+            f"Exercises of this master begin with '{master.stem}.'.",
+        )
+    expected = grade_id_of_exercise(exercise)
+    if cell.grade_id is not None and cell.grade_id != expected:
+        raise MasterError(
+            master,
+            cell.line,
+            f"The grade_id '{cell.grade_id}' does not match check(\"{exercise}\", …).",
+            f"Leave the grade_id out: it is '{expected}' by itself.",
+        )
+    return CheckCall(master, cell.line, exercise, subject)
+
+
+def _call(master: Path, cell: Cell) -> tuple[str, str]:
+    try:
+        body = ast.parse(cell.source).body
+    except SyntaxError:
+        body = []
+    match body:
+        case [
+            ast.Expr(ast.Call(ast.Name("check"), [ast.Constant(str() as exercise), ast.Name(subject)], []))
+        ]:
+            return exercise, subject
+    raise MasterError(master, cell.line, "This check cell cannot be read.", f"{FORM}.")
+
+
+def exercise_points(check: CheckCall) -> float:
+    """The points of the exercise that a check cell names.
+
+    Raises:
+        MasterError: There is no such exercise, or it is worth nothing.
+    """
+    # Imported late: building a notebook for a test with its own points needs no exercises.
+    from autograder import exercises
+
+    try:
+        points = float(exercises.get(check.exercise).points)
+    except exercises.UnknownExercise as error:
+        near = difflib.get_close_matches(check.exercise, exercises.all_ids(), n=3, cutoff=0.0)
+        raise MasterError(
+            check.master,
+            check.line,
+            f"There is no exercise '{check.exercise}'.",
+            f"Add it to autograder/exercises, or name one that is there: {', '.join(near)}.",
+        ) from error
+    if points <= 0:
+        raise MasterError(
+            check.master,
+            check.line,
+            f"The exercise '{check.exercise}' has no points.",
+            "Give its criteria points in autograder/exercises.",
+        )
+    return points

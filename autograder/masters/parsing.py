@@ -1,0 +1,133 @@
+"""A master's text as a list of cells with their kinds and line numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any
+
+from jupytext.myst import MystMetadataParsingError, myst_to_notebook
+from nbformat import ValidationError
+
+from autograder.masters.errors import CellError, MasterError
+from autograder.masters.hints import nest_hints
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+HEADER = """\
+---
+jupytext:
+  formats: md:myst
+kernelspec:
+  display_name: Python 3 (ipykernel)
+  name: python3
+---
+"""
+
+
+class Kind(StrEnum):
+    """What a cell is for. The values of the last three are tags; an author types the last two."""
+
+    TEXT = "text"
+    """Markdown; students may write into it."""
+    GIVEN = "given"
+    """Code that is part of the explanation: locked and tracked. Code without a tag is this."""
+    SOLUTION = "solution"
+    """Code in which a region is the student's to write."""
+    CHECK = "check"
+    """The one line that asks for a verdict: locked, graded, carries the exercise's points."""
+
+
+TAGS = {kind.value: kind for kind in (Kind.GIVEN, Kind.SOLUTION, Kind.CHECK)}
+OPTIONS = {"tags", "grade_id"}
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One cell of a master.
+
+    Attributes:
+        kind: What it is for.
+        source: Its text, without the options that stand on top.
+        line: Where it begins in the master, counted from 1.
+        body_line: Where ``source`` begins in the master, counted from 1.
+        grade_id: The name that the author gave it, or None.
+    """
+
+    kind: Kind
+    source: str
+    line: int
+    body_line: int
+    grade_id: str | None = None
+
+
+def parse_master(path: Path) -> list[Cell]:
+    """Read the cells of a master.
+
+    Raises:
+        MasterError: The file is missing or no UTF-8 text, its options are no YAML, or one of them is unknown.
+    """
+    text = _read(path)
+    try:
+        notebook = myst_to_notebook(text, add_source_map=True)
+    except MystMetadataParsingError as error:
+        raise MasterError(path, None, f"{error}.", "Look at the YAML options there.") from error
+    except (ValidationError, AttributeError) as error:
+        reason = str(error).split("\n", 1)[0]
+        problem = f"Jupyter refuses the header: {reason}."
+        raise MasterError(path, 1, problem, f"Begin with:\n{HEADER}") from error
+    lines = text.splitlines()
+    places = notebook.metadata["source_map"]
+    return [_cell(path, node, place, lines) for node, place in zip(notebook.cells, places, strict=True)]
+
+
+def _read(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        raise MasterError(path, None, "There is no such master.", "Look at the file's name.") from error
+    except UnicodeDecodeError as error:
+        raise MasterError(path, None, "The file is not UTF-8 text.", "Save it as UTF-8.") from error
+
+
+def _cell(path: Path, node: Any, place: int, lines: list[str]) -> Cell:
+    if node.cell_type == "markdown":
+        first = next(number for number in range(place, len(lines)) if lines[number].strip()) + 1
+        try:
+            return Cell(Kind.TEXT, nest_hints(node.source), first, first)
+        except CellError as error:
+            raise error.at(path, first) from error
+    if node.cell_type == "raw":
+        raise MasterError(path, place, "A raw cell has no place in a chapter.", "Make it Markdown or code.")
+    kind, grade_id = _options(path, node.metadata, place)
+    if not node.source.strip():
+        raise MasterError(path, place, "An empty code cell.", "Fill it or take it out.")
+    return Cell(kind, node.source, place, _body_line(node.source, place, lines), grade_id)
+
+
+def _options(path: Path, metadata: Any, line: int) -> tuple[Kind, str | None]:
+    for option in sorted(set(metadata) - OPTIONS):
+        raise MasterError(
+            path, line, f"Unknown cell option '{option}'.", f"Known are: {', '.join(sorted(OPTIONS))}."
+        )
+    tags = metadata.get("tags", [])
+    tags = [tags] if isinstance(tags, str) else list(tags)
+    for tag in tags:
+        if tag not in TAGS:
+            raise MasterError(path, line, f"Unknown tag '{tag}'.", f"Known are: {', '.join(TAGS)}.")
+    if len(tags) > 1:
+        raise MasterError(path, line, f"A cell with {len(tags)} tags.", "A cell is one thing: keep one tag.")
+    kind = TAGS[tags[0]] if tags else Kind.GIVEN
+    grade_id = metadata.get("grade_id")
+    return kind, None if grade_id is None else str(grade_id)
+
+
+def _body_line(source: str, place: int, lines: list[str]) -> int:
+    """The line on which a code cell's text begins, below its fence and its options."""
+    first = source.split("\n", 1)[0]
+    for number in range(place, len(lines)):
+        if lines[number].strip() == first.strip():
+            return number + 1
+    return place

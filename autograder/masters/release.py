@@ -1,0 +1,42 @@
+"""From a source notebook to the chapter notebook, through the steps of ``nbgrader generate_assignment``.
+
+The steps run in this process and without a gradebook, which takes milliseconds a notebook instead of seconds.
+A test proves that nbgrader's own command gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import nbformat
+from nbconvert.exporters import NotebookExporter
+from nbformat import NotebookNode
+from nbgrader.converters import GenerateAssignment
+from nbgrader.preprocessors import ClearSolutions, NbGraderPreprocessor
+from traitlets.config import Config
+
+from autograder.masters.stubs import LeaveStubs
+
+
+def release_preprocessors() -> list[type[NbGraderPreprocessor]]:
+    """The steps of nbgrader for a release, with :class:`LeaveStubs` in the place of ClearSolutions.
+
+    A class's ``nbgrader_config.py`` sets ``c.GenerateAssignment.preprocessors`` to this.
+    """
+    return [LeaveStubs if step is ClearSolutions else step for step in GenerateAssignment().preprocessors]
+
+
+def release_text(source: NotebookNode) -> str:
+    """The chapter notebook of ``source`` as it is written to a file."""
+    config = Config()
+    config.Exporter.default_preprocessors = []
+    # As `nbgrader generate_assignment --no-db` does; the step only writes to the gradebook.
+    config.SaveCells.enabled = False
+    exporter = NotebookExporter(config=config)
+    for step in release_preprocessors():
+        exporter.register_preprocessor(step)
+    text, _ = exporter.from_notebook_node(source)
+    return text
+
+
+def release_notebook(source: NotebookNode) -> NotebookNode:
+    """The chapter notebook of ``source``: solutions replaced by their stubs, given cells locked."""
+    return nbformat.reads(release_text(source), as_version=4)

@@ -1,0 +1,211 @@
+"""A master as nbgrader's source notebook: checked at the door, then expanded.
+
+What an author types is a tag; what nbgrader wants is eight lines of metadata a cell. The expansion is here.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from nbformat import NotebookNode, from_dict
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+
+from autograder.masters import naming
+from autograder.masters.checks import CheckCall, exercise_points, read_check
+from autograder.masters.errors import CellError, MasterError
+from autograder.masters.parsing import Cell, Kind, parse_master
+from autograder.masters.regions import find_region, mentions_a_region
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+GRADE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
+SCHEMA_VERSION = 3
+"""Of nbgrader's cell metadata."""
+
+# No version of Python or of a package stands here: it would change the chapters from machine to machine.
+NOTEBOOK_METADATA: dict[str, Any] = {
+    "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
+    "language_info": {
+        "codemirror_mode": {"name": "ipython", "version": 3},
+        "file_extension": ".py",
+        "mimetype": "text/x-python",
+        "name": "python",
+        "nbconvert_exporter": "python",
+        "pygments_lexer": "ipython3",
+    },
+}
+
+Points = Callable[[CheckCall], float]
+
+
+@dataclass(frozen=True)
+class NamedCell:
+    """A cell of a master with all that nbgrader must know of it.
+
+    Attributes:
+        cell: The cell as the author wrote it.
+        name: The grade_id of a tracked cell; the cell's id in any case.
+        check: What a check cell asks for, else None.
+        points: What a check cell can earn, else None.
+    """
+
+    cell: Cell
+    name: str
+    check: CheckCall | None = None
+    points: float | None = None
+
+
+def source_notebook(master: Path, *, points: Points = exercise_points) -> NotebookNode:
+    """The nbgrader source notebook of ``master``, solutions and all.
+
+    Args:
+        master: A MyST Markdown file.
+        points: Gives the points of an exercise; the exercises themselves by default.
+
+    Raises:
+        MasterError: The master cannot be used; says where, why and what to do.
+    """
+    notebook = new_notebook(metadata=from_dict(NOTEBOOK_METADATA))
+    notebook.nbformat_minor = 5
+    notebook.cells = [_node(named) for named in named_cells(master, points=points)]
+    return notebook
+
+
+def named_cells(master: Path, *, points: Points = exercise_points) -> list[NamedCell]:
+    """The cells of ``master``, checked and named.
+
+    Raises:
+        MasterError: As for :func:`source_notebook`.
+    """
+    cells = parse_master(master)
+    named = list(_name_all(master, cells, points))
+    _unique(master, named)
+    _subjects_are_solutions(master, named)
+    return named
+
+
+def _name_all(master: Path, cells: list[Cell], points: Points) -> Iterator[NamedCell]:
+    numbering = naming.Numbering()
+    section = "start"
+    for cell in cells:
+        if cell.kind is Kind.TEXT:
+            section = naming.last_heading(cell.source) or section
+            yield NamedCell(cell, numbering.name(naming.text_id(cell.source)))
+            continue
+        _region_where_it_belongs(master, cell)
+        if cell.kind is Kind.CHECK:
+            check = read_check(master, cell)
+            yield NamedCell(cell, naming.grade_id_of_exercise(check.exercise), check, points(check))
+        elif cell.kind is Kind.SOLUTION:
+            yield NamedCell(cell, cell.grade_id or _defined_name(master, cell))
+        else:
+            yield NamedCell(cell, cell.grade_id or numbering.name(f"{cell.kind}-{naming.slug(section)}"))
+
+
+def _region_where_it_belongs(master: Path, cell: Cell) -> None:
+    if cell.kind is not Kind.SOLUTION:
+        if mentions_a_region(cell.source):
+            raise MasterError(
+                master,
+                cell.line,
+                "A solution region in a cell that is no solution.",
+                "Tag it: ':tags: [solution]'.",
+            )
+        return
+    try:
+        region = find_region(cell.source)
+    except CellError as error:
+        raise error.at(master, cell.body_line) from error
+    try:
+        naming.defined_names(cell.source)
+    except SyntaxError as error:
+        raise _no_python(master, cell, "The solution is no Python", error) from error
+    try:
+        naming.defined_names(region.unsolved)
+    except SyntaxError as error:
+        raise MasterError(
+            master,
+            cell.line,
+            f"Without its solution the cell is no Python ({error.msg}).",
+            "Students get it so: leave a docstring or a 'pass' outside of the region.",
+        ) from error
+
+
+def _defined_name(master: Path, cell: Cell) -> str:
+    names = naming.defined_names(cell.source)
+    if len(names) != 1:
+        raise MasterError(
+            master,
+            cell.line,
+            f"This solution cell defines {len(names)} functions and classes, so it has no name.",
+            "Let it define one, or name it: ':grade_id: some_name'.",
+        )
+    return names[0]
+
+
+def _no_python(master: Path, cell: Cell, what: str, error: SyntaxError) -> MasterError:
+    line = cell.body_line + (error.lineno or 1) - 1
+    return MasterError(master, line, f"{what} ({error.msg}).", "Mend it here.")
+
+
+def _unique(master: Path, named: list[NamedCell]) -> None:
+    seen: dict[str, int] = {}
+    for item in named:
+        if not GRADE_ID.fullmatch(item.name):
+            raise MasterError(
+                master,
+                item.cell.line,
+                f"'{item.name}' cannot be a grade_id.",
+                "Use letters, digits, '_' and '-', at most 64 of them.",
+            )
+        if item.name in seen:
+            raise MasterError(
+                master,
+                item.cell.line,
+                f"The grade_id '{item.name}' is taken by the cell on line {seen[item.name]}.",
+                "Give one of them another: ':grade_id: some_name'; an exercise is checked in one cell only.",
+            )
+        seen[item.name] = item.cell.line
+
+
+def _subjects_are_solutions(master: Path, named: list[NamedCell]) -> None:
+    """A check judges what a student wrote: its subject comes from a solution cell above it."""
+    written: set[str] = set()
+    for item in named:
+        if item.cell.kind is Kind.SOLUTION:
+            written.update(naming.defined_names(item.cell.source))
+        elif item.check is not None and item.check.subject not in written:
+            raise MasterError(
+                master,
+                item.cell.line,
+                f"The check judges '{item.check.subject}', which no solution cell above it defines.",
+                f"Name what the student writes there: {', '.join(sorted(written)) or 'nothing so far'}.",
+            )
+
+
+def _node(named: NamedCell) -> NotebookNode:
+    cell = named.cell
+    if cell.kind is Kind.TEXT:
+        return new_markdown_cell(cell.source, id=named.name)
+    metadata = {"nbgrader": _nbgrader(named)}
+    return new_code_cell(cell.source, id=named.name, metadata=from_dict(metadata))
+
+
+def _nbgrader(named: NamedCell) -> dict[str, Any]:
+    kind = named.cell.kind
+    metadata: dict[str, Any] = {
+        "cell_type": "code",
+        "grade": kind is Kind.CHECK,
+        "grade_id": named.name,
+        "locked": kind is not Kind.SOLUTION,
+        "schema_version": SCHEMA_VERSION,
+        "solution": kind is Kind.SOLUTION,
+        "task": False,
+    }
+    if named.points is not None:
+        metadata["points"] = int(named.points) if named.points == int(named.points) else named.points
+    return metadata

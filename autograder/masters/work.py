@@ -1,0 +1,35 @@
+"""Whether somebody has worked in a chapter notebook, so that a build must not overwrite it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import nbformat
+from nbgrader.utils import compute_checksum
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def holds_work(path: Path) -> bool:
+    """Whether the notebook differs from what a build once wrote, in a way that a person meant.
+
+    A release carries the checksum of each code cell in its metadata: a cell that no longer matches was
+    edited, one without was added. The output of cells is no work. A file that is no notebook counts as work:
+    better to ask than to overwrite it.
+    """
+    if not path.exists():
+        return False
+    try:
+        notebook = nbformat.read(path, as_version=4)
+    except Exception:
+        # nbformat raises whatever its JSON and schema libraries do.
+        return True
+    return any(_edited(cell) for cell in notebook.cells if cell.cell_type == "code")
+
+
+def _edited(cell: Any) -> bool:
+    tracked = cell.metadata.get("nbgrader", {})
+    if "checksum" in tracked:
+        return bool(tracked["checksum"] != compute_checksum(cell))
+    return bool(cell.source.strip())

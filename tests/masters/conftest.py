@@ -1,0 +1,91 @@
+"""Small courses to build from."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.masters.parsing import HEADER as HEADER_LINES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from autograder.masters.source import Points
+
+HEADER = HEADER_LINES + "\n"
+
+
+@pytest.fixture
+def course(tmp_path: Path) -> Path:
+    """A course with one small master in it."""
+    folder = tmp_path / "solutions" / "01_first"
+    folder.mkdir(parents=True)
+    (folder / "lab_9_1.md").write_text(HEADER + SMALL_MASTER)
+    return tmp_path
+
+
+@pytest.fixture
+def write_master(tmp_path: Path) -> Callable[[str], Path]:
+    """Write a master of the name lab_9_1 with this text below its header."""
+
+    def write(text: str) -> Path:
+        path = tmp_path / "solutions" / "01_first" / "lab_9_1.md"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(HEADER + text)
+        return path
+
+    return write
+
+
+@pytest.fixture
+def ten_points() -> Points:
+    """Points for exercises that do not exist, so that these tests need no real ones."""
+    return lambda check: 10.0
+
+
+SMALL_MASTER = '''\
+# Lab 9.1: Doubling
+
+Some text.
+
++++
+
+## Given
+
+```{code-cell} ipython3
+import math
+```
+
+## Write it
+
+```{code-cell} ipython3
+:tags: [solution]
+
+def double(number: int) -> int:
+    """Twice the number."""
+    ### BEGIN SOLUTION
+    # TODO: return twice the number.
+    return 2 * number
+    ### END SOLUTION
+```
+
+:::{hint} Where do I begin?
+With `number`.
+:::
+
+:::{hint} And then?
+Add it to itself.
+:::
+
+```{code-cell} ipython3
+print(double(21))
+```
+
+```{code-cell} ipython3
+:tags: [check]
+
+check("lab_9_1.double", double)
+```
+'''

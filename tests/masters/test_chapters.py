@@ -1,0 +1,126 @@
+"""The course's own masters and chapters."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import nbformat
+import pytest
+from nbgrader.nbgraderformat.v3 import MetadataValidatorV3
+
+from autograder import exercises
+from autograder.masters.chapters import build
+from autograder.masters.layout import chapter_path, masters
+from autograder.masters.parsing import Kind
+from autograder.masters.regions import find_region
+from autograder.masters.release import release_text
+from autograder.masters.source import named_cells, source_notebook
+
+ROOT = Path(__file__).resolve().parents[2]
+MASTERS = masters(ROOT)
+each_master = pytest.mark.parametrize("master", MASTERS, ids=lambda path: path.stem)
+
+
+def test_every_chapter_is_in_step_with_its_master() -> None:
+    report = build(ROOT, check=True)
+    assert (report.stale, report.orphans) == ((), ())
+    assert len(report.unchanged) == len(MASTERS) >= 3
+
+
+def test_another_process_builds_the_same_bytes() -> None:
+    # Another hash seed, another folder: nothing of either may be in a chapter.
+    code = (
+        "import sys; from pathlib import Path; from autograder.masters import release_text, source_notebook\n"
+        "for master in sys.argv[1:]: sys.stdout.write(release_text(source_notebook(Path(master))))"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", code, *map(str, MASTERS)],
+        cwd=ROOT.parent,
+        env={**os.environ, "PYTHONHASHSEED": "7", "PYTHONIOENCODING": "utf-8"},
+        capture_output=True,
+        check=True,
+    )
+    assert result.stdout.decode() == "".join(chapter_path(ROOT, master).read_text() for master in MASTERS)
+
+
+@each_master
+def test_no_line_of_a_solution_is_in_its_chapter(master: Path) -> None:
+    text = chapter_path(ROOT, master).read_text()
+    notebook = nbformat.reads(text, as_version=4)
+    everything = "\n".join(cell.source for cell in notebook.cells)
+    assert "SOLUTION" not in everything
+    for named in named_cells(master):
+        if named.cell.kind is Kind.SOLUTION:
+            for line in find_region(named.cell.source).answer:
+                # A hint may say how a method begins, and a short line is nobody's secret.
+                if len(line.strip()) > len("return total") and not line.strip().startswith("def "):
+                    assert line.strip() not in everything, line
+
+
+@each_master
+def test_a_solution_cell_is_small_and_asks_for_one_thing(master: Path) -> None:
+    for named in named_cells(master):
+        if named.cell.kind is Kind.SOLUTION:
+            region = find_region(named.cell.source)
+            written = [line for line in region.answer if line.strip()]
+            assert 2 <= len(written) <= 8, named.name
+            assert len(region.stub) == 1, f"{named.name}: the TODO is one line"
+            assert region.unsolved.count("TODO") == 1
+
+
+@each_master
+def test_nbgrader_accepts_source_and_release(master: Path) -> None:
+    for notebook in (source_notebook(master), nbformat.read(chapter_path(ROOT, master), as_version=4)):
+        nbformat.validate(notebook)
+        MetadataValidatorV3().validate_nb(notebook)
+
+
+def test_every_exercise_is_checked_in_exactly_one_notebook() -> None:
+    checked = [named.check.exercise for master in MASTERS for named in named_cells(master) if named.check]
+    assert sorted(checked) == sorted(exercises.all_ids())
+
+
+@each_master
+def test_points_are_the_exercises_own(master: Path) -> None:
+    for cell in nbformat.read(chapter_path(ROOT, master), as_version=4).cells:
+        data = cell.metadata.get("nbgrader", {})
+        if data.get("grade"):
+            exercise = ast.literal_eval(ast.parse(cell.source).body[0].value.args[0])
+            assert data["points"] == exercises.get(exercise).points
+
+
+@each_master
+def test_links_lead_to_files(master: Path) -> None:
+    chapter = chapter_path(ROOT, master)
+    for cell in nbformat.read(chapter, as_version=4).cells:
+        for target in re.findall(r"\]\(([^)#]+)[^)]*\)", cell.source if cell.cell_type == "markdown" else ""):
+            if "://" not in target:
+                assert (chapter.parent / target).exists(), target
+
+
+@each_master
+def test_every_picture_has_a_text_alternative(master: Path) -> None:
+    for diagram in re.findall(r"```mermaid\n(.*?)```", master.read_text(), flags=re.DOTALL):
+        assert "accTitle:" in diagram
+        assert "accDescr:" in diagram
+
+
+@each_master
+def test_a_code_cell_is_introduced(master: Path) -> None:
+    cells = [named.cell for named in named_cells(master)]
+    for before, cell in zip([None, *cells], cells, strict=False):
+        if cell.kind is not Kind.TEXT:
+            assert before is not None
+            assert before.kind is Kind.TEXT, f"line {cell.line}: no word before this cell"
+            prose = [line for line in before.source.splitlines() if line.strip() and not line.startswith("#")]
+            assert prose, f"line {cell.line}: only a heading before this cell"
+
+
+@each_master
+def test_no_machine_is_named(master: Path) -> None:
+    assert not re.search(r"/(home|root|work|tmp|opt|usr)/", release_text(source_notebook(master)))
