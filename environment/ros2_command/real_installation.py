@@ -16,7 +16,12 @@ _HEAD = 1024  # bytes: a script names what it starts well before this
 
 
 def find_real_command(environ: Mapping[str, str]) -> Path | None:
-    """Return the first `ros2` on PATH that is not one of the course's own, or None."""
+    """Return the `ros2` of the ROS installation in use, None when that has none.
+
+    It is on PATH, is not one of the course's own, and belongs to a prefix of AMENT_PREFIX_PATH: the `ros2` of
+    another distribution that happens to be on PATH would not fit this process's libraries.
+    """
+    prefixes = environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
     for folder in environ.get("PATH", "").split(os.pathsep):
         candidate = Path(folder or ".", "ros2")
         try:
@@ -24,31 +29,13 @@ def find_real_command(environ: Mapping[str, str]) -> Path | None:
                 own = OWN_MARK in file.read(_HEAD)
         except OSError:
             continue
-        if not own and os.access(candidate, os.X_OK):
+        if not own and str(candidate.parent.parent) in prefixes and os.access(candidate, os.X_OK):
             return candidate
     return None
-
-
-def environment_of_real_command(environ: Mapping[str, str], own_prefix: str) -> dict[str, str]:
-    """Return the environment without what only the wheels of `own_prefix` need.
-
-    The libraries of two ROS installations must not meet in one process.
-    """
-    real = {name: value for name, value in environ.items() if name != "_ROS_WHEELS_BOOTSTRAP_COMPLETE"}
-    libraries = [
-        folder
-        for folder in real.pop("LD_LIBRARY_PATH", "").split(os.pathsep)
-        if folder and not folder.startswith(f"{own_prefix}/")
-    ]
-    if libraries:
-        real["LD_LIBRARY_PATH"] = os.pathsep.join(libraries)
-    return real
 
 
 def run_real_command() -> None:
     """Become the real `ros2` if there is one; return otherwise."""
     real = find_real_command(os.environ)
-    if real is None:
-        return
-    sys.stdout.flush()
-    os.execve(real, [str(real), *sys.argv[1:]], environment_of_real_command(os.environ, sys.prefix))
+    if real is not None:
+        os.execv(real, [str(real), *sys.argv[1:]])

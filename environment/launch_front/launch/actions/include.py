@@ -1,0 +1,69 @@
+"""Include another launch file."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any
+
+from ..action import Action, LaunchDescriptionEntity
+from ..launch_description import required_arguments
+from ..launch_description_sources import AnyLaunchDescriptionSource, LaunchDescriptionSource
+from ..substitution import SomeSubstitutionsType, normalize, perform
+from .configuration import SetLaunchConfiguration
+from .flow import OpaqueFunction
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from ..launch_context import LaunchContext
+
+
+class IncludeLaunchDescription(Action):
+    """All that another launch file describes, with arguments for it."""
+
+    def __init__(
+        self,
+        launch_description_source: LaunchDescriptionSource | SomeSubstitutionsType,
+        *,
+        launch_arguments: Iterable[tuple[SomeSubstitutionsType, SomeSubstitutionsType]] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        if not isinstance(launch_description_source, LaunchDescriptionSource):
+            launch_description_source = AnyLaunchDescriptionSource(launch_description_source)
+        self.launch_description_source = launch_description_source
+        self.launch_arguments = [
+            (normalize(name), normalize(value)) for name, value in launch_arguments or ()
+        ]
+
+    def sub_entities(self) -> Iterable[LaunchDescriptionEntity]:
+        """Return the launch description, if its path is known without running the launch."""
+        found = self.launch_description_source.try_get_launch_description_without_context()
+        return [] if found is None else [found]
+
+    def execute(self, context: LaunchContext) -> Iterable[LaunchDescriptionEntity]:
+        """Read the file and return what it describes.
+
+        Raises:
+            RuntimeError: an argument without a default is missing.
+        """
+        source = self.launch_description_source
+        outside = context.current_launch_file
+        description = source.get_launch_description(context)
+        given = [perform(context, name) for name, _ in self.launch_arguments]
+        for argument in required_arguments(description):
+            if argument.name not in given and argument.name not in context.launch_configurations:
+                raise RuntimeError(
+                    f"Included launch description missing required argument '{argument.name}' "
+                    f"(description: '{argument.description}'), given: [{', '.join(given)}]"
+                )
+
+        def inside(path: str | None) -> OpaqueFunction:
+            return OpaqueFunction(function=lambda c: setattr(c, "current_launch_file", path))
+
+        return [
+            *(SetLaunchConfiguration(name, value) for name, value in self.launch_arguments),
+            inside(os.path.abspath(source.location)),  # noqa: PTH100 (does not follow links)
+            description,
+            inside(outside),
+        ]

@@ -1,0 +1,93 @@
+"""A launch description: what a launch file returns."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .action import Action, LaunchDescriptionEntity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from .actions.configuration import DeclareLaunchArgument
+    from .launch_context import LaunchContext
+
+
+class LaunchDescription(LaunchDescriptionEntity):
+    """Entities, in the order in which they happen."""
+
+    def __init__(
+        self,
+        initial_entities: Iterable[LaunchDescriptionEntity] | None = None,
+        *,
+        deprecated_reason: str | None = None,
+    ) -> None:
+        self.entities: list[LaunchDescriptionEntity] = []
+        self.deprecated_reason = deprecated_reason
+        for entity in initial_entities or ():
+            self.add_entity(entity)
+
+    def add_entity(self, entity: LaunchDescriptionEntity) -> None:
+        """Add one at the end.
+
+        Raises:
+            TypeError: it is no entity.
+        """
+        if not isinstance(entity, LaunchDescriptionEntity):
+            raise TypeError(
+                f"a LaunchDescription holds actions such as Node(…), got {entity!r} ({type(entity).__name__})"
+            )
+        self.entities.append(entity)
+
+    add_action = add_entity
+
+    def sub_entities(self) -> Iterable[LaunchDescriptionEntity]:
+        """Return the entities."""
+        return self.entities
+
+    def visit(self, context: LaunchContext) -> Iterable[LaunchDescriptionEntity]:
+        """Return the entities, and warn if the file is an old one."""
+        if self.deprecated_reason is not None:
+            context.screen.log(
+                "WARNING",
+                "launch",
+                f"launch file [{context.current_launch_file}] is deprecated: {self.deprecated_reason}",
+            )
+        return self.entities
+
+    def get_launch_arguments(self) -> list[DeclareLaunchArgument]:
+        """Return the arguments that are declared, here and in included files; each name once."""
+        return [argument for argument, _ in declared_arguments(self)]
+
+
+def declared_arguments(description: LaunchDescription) -> list[tuple[DeclareLaunchArgument, bool]]:
+    """Return each argument of a launch description, with whether only a condition declares it."""
+    from .actions.configuration import DeclareLaunchArgument
+
+    found: dict[str, tuple[DeclareLaunchArgument, bool]] = {}
+
+    def search(entities: Iterable[LaunchDescriptionEntity], *, conditional: bool) -> None:
+        for entity in entities:
+            under = conditional or (isinstance(entity, Action) and entity.condition is not None)
+            if isinstance(entity, DeclareLaunchArgument):
+                found.setdefault(entity.name, (entity, under))
+            search(entity.sub_entities(), conditional=conditional)
+            search(entity.conditional_sub_entities(), conditional=True)
+
+    search(description.entities, conditional=False)
+    return list(found.values())
+
+
+def required_arguments(description: LaunchDescription) -> list[DeclareLaunchArgument]:
+    """Return the arguments without a default that are surely declared by the description itself."""
+    return [
+        argument
+        for argument, conditional in declared_arguments(_without_includes(description))
+        if not conditional and argument.default_value is None
+    ]
+
+
+def _without_includes(description: LaunchDescription) -> LaunchDescription:
+    from .actions.include import IncludeLaunchDescription
+
+    return LaunchDescription(e for e in description.entities if not isinstance(e, IncludeLaunchDescription))

@@ -1,0 +1,173 @@
+"""A process of a launch: start it, read what it writes, end it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+from dataclasses import dataclass, field
+from typing import IO, TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from .screen import OutputPlan
+    from .timers import Timer
+
+_CHUNK = 65536  # bytes read at once
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Everything that is decided before a process starts.
+
+    Attributes:
+        name: as `talker-1`.
+        cmd: the command line.
+        shell: run it by a shell.
+        cwd: the folder to start it in, None for that of the launch.
+        env: its environment.
+        output: where its lines go.
+        output_format: how a line is shown; `line` and `this` (the action) can be used in it.
+        emulate_tty: let it believe that it writes to a terminal, so that Python does not hold back lines.
+        sigterm_timeout: seconds from SIGINT to SIGTERM.
+        sigkill_timeout: seconds from SIGTERM to SIGKILL.
+    """
+
+    name: str
+    cmd: Sequence[str]
+    shell: bool
+    cwd: str | None
+    env: Mapping[str, str] = field(repr=False)
+    output: OutputPlan
+    output_format: str
+    emulate_tty: bool
+    sigterm_timeout: float
+    sigkill_timeout: float
+
+
+class RunningProcess:
+    """One run of a process. It has a process group of its own, so that what it starts itself ends with it."""
+
+    def __init__(self, action: Any, plan: Plan) -> None:
+        self.action = action
+        self.plan = plan
+        self.escalation: list[Timer] = []
+        self.streams: dict[str, IO[bytes]] = {}
+        self._process: subprocess.Popen[bytes] | None = None
+        self._partial = {"stdout": b"", "stderr": b""}
+
+    @property
+    def pid(self) -> int:
+        """The process id.
+
+        Raises:
+            RuntimeError: it has not been started.
+        """
+        if self._process is None:
+            raise RuntimeError(f"process {self.plan.name} has not been started")
+        return self._process.pid
+
+    def start(self) -> None:
+        """Start it.
+
+        Raises:
+            OSError: the program can not be started.
+        """
+        command: Any = " ".join(self.plan.cmd) if self.plan.shell else list(self.plan.cmd)
+        ends = {name: os.openpty() if self.plan.emulate_tty else os.pipe() for name in self._partial}
+        reading = {name: pair[0] for name, pair in ends.items()}
+        try:
+            self._process = subprocess.Popen(
+                command,
+                shell=self.plan.shell,
+                cwd=self.plan.cwd,
+                env=dict(self.plan.env),
+                # Nothing is ever written to it, but a program that reads must not see an end.
+                stdin=subprocess.PIPE,
+                stdout=ends["stdout"][1],
+                stderr=ends["stderr"][1],
+                process_group=0,
+                preexec_fn=_end_with_parent(),
+            )
+        except OSError:
+            for end in reading.values():
+                os.close(end)
+            raise
+        finally:
+            for _, writing in ends.values():
+                os.close(writing)
+        for name, end in reading.items():
+            os.set_blocking(end, False)
+            self.streams[name] = os.fdopen(end, "rb", buffering=0)
+
+    def send(self, number: signal.Signals) -> bool:
+        """Send a signal to the process and to what it has started; return whether it was still there."""
+        try:
+            os.killpg(self.pid, number)
+        except ProcessLookupError:
+            return False
+        return True
+
+    def poll(self) -> int | None:
+        """Return the exit code, None while it runs."""
+        return None if self._process is None else self._process.poll()
+
+    def _data(self, source: str) -> bytes | None:
+        """Return what is there: None for nothing yet, an empty text at the end of the stream."""
+        try:
+            return self.streams[source].read(_CHUNK)
+        except OSError:
+            # A terminal without a process behind it says EIO instead of an end.
+            return b""
+
+    def _lines(self, source: str, data: bytes) -> list[bytes]:
+        *lines, self._partial[source] = (self._partial[source] + data).split(b"\n")
+        return [line.removesuffix(b"\r") for line in lines] if self.plan.emulate_tty else lines
+
+    def read(self, source: str) -> tuple[list[bytes], bool]:
+        """Read once.
+
+        Returns:
+            the complete lines, without their ends; and whether the stream goes on.
+        """
+        data = self._data(source)
+        return self._lines(source, data or b""), data != b""
+
+    def drain(self, source: str) -> list[bytes]:
+        """Read all that is there and return the complete lines."""
+        lines: list[bytes] = []
+        while data := self._data(source):
+            lines += self._lines(source, data)
+        return lines
+
+    def rest(self, source: str) -> list[bytes]:
+        """Return a last line that has no end."""
+        rest, self._partial[source] = self._partial[source], b""
+        return [rest] if rest else []
+
+    def close(self) -> None:
+        """Close the streams and stop what was to happen if it did not end."""
+        for stream in self.streams.values():
+            stream.close()
+        self.streams.clear()
+        for timer in self.escalation:
+            timer.cancel()
+        if self._process is not None and self._process.stdin is not None:
+            self._process.stdin.close()
+
+
+def _end_with_parent() -> Callable[[], None] | None:
+    """Return what a new process does so that the kernel ends it when the launch is killed."""
+    try:
+        import ctypes
+
+        prctl = ctypes.CDLL(None).prctl
+    except (ImportError, OSError, AttributeError):
+        return None
+    set_parent_death_signal = 1  # PR_SET_PDEATHSIG of <sys/prctl.h>
+
+    def request() -> None:
+        prctl(set_parent_death_signal, signal.SIGKILL)
+
+    return request

@@ -1,0 +1,5 @@
+"""The course's own `launch_ros`, used where the real one is not installed: ROS nodes in launch files."""
+
+from . import actions, descriptions, parameter_descriptions, substitutions
+
+__all__ = ["actions", "descriptions", "parameter_descriptions", "substitutions"]

@@ -1,0 +1,64 @@
+"""What holds for all nodes that follow in the same group."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from launch.action import Action
+from launch.substitution import SomeSubstitutionsType, normalize, perform
+
+from ..names import check_namespace, inner_namespace
+from ..parameter_descriptions import evaluate_dictionary
+
+if TYPE_CHECKING:
+    from launch.launch_context import LaunchContext
+
+# Where the namespace of the present scope is kept, as in the real launch: include files can look at it.
+NAMESPACE = "ros_namespace"
+
+
+class PushROSNamespace(Action):
+    """Put the nodes that follow into a namespace."""
+
+    def __init__(self, namespace: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._namespace = normalize(namespace)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Set it, inside the namespace that holds already.
+
+        Raises:
+            ValueError: it is no namespace.
+        """
+        outer = context.launch_configurations.get(NAMESPACE)
+        namespace = inner_namespace(outer, perform(context, self._namespace)) or "/"
+        check_namespace(namespace)
+        context.launch_configurations[NAMESPACE] = namespace
+
+
+class SetRemap(Action):
+    """Remap a name in the nodes that follow."""
+
+    def __init__(self, src: SomeSubstitutionsType, dst: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._src, self._dst = normalize(src), normalize(dst)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Add the rule."""
+        context.remappings = [
+            *context.remappings,
+            (perform(context, self._src), perform(context, self._dst)),
+        ]
+
+
+class SetParameter(Action):
+    """Set a parameter in the nodes that follow."""
+
+    def __init__(self, name: SomeSubstitutionsType, value: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._name, self._value = normalize(name), value
+
+    def execute(self, context: LaunchContext) -> None:
+        """Add the parameter."""
+        found = evaluate_dictionary(context, {tuple(self._name): self._value})
+        context.parameters = [*context.parameters, *found.items()]

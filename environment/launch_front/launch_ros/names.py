@@ -1,0 +1,45 @@
+"""Names of nodes and namespaces."""
+
+from __future__ import annotations
+
+import re
+
+_PART = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+
+
+def check_node_name(name: str) -> None:
+    """Make sure that a text is the name of a node.
+
+    Raises:
+        ValueError: it is none.
+    """
+    if not _PART.fullmatch(name):
+        raise ValueError(
+            f"Invalid node name: '{name}'. A name has letters, digits and underscores, no digit first"
+        )
+
+
+def check_namespace(namespace: str) -> None:
+    """Make sure that a text is an absolute namespace.
+
+    Raises:
+        ValueError: it is none.
+    """
+    parts = namespace[1:].split("/")
+    if namespace != "/" and (namespace[:1] != "/" or not all(_PART.fullmatch(part) for part in parts)):
+        raise ValueError(
+            f"Invalid namespace: '{namespace}'. Its parts have letters, digits and underscores, "
+            "no digit first"
+        )
+
+
+def inner_namespace(outer: str | None, namespace: str | None) -> str | None:
+    """Return a namespace inside another one, as an absolute one; None when both are None.
+
+    A namespace that begins with a slash stays what it is.
+    """
+    if namespace is None:
+        return outer
+    if not namespace.startswith("/"):
+        namespace = f"{(outer or '').rstrip('/')}/{namespace}"
+    return namespace.rstrip("/") or "/"

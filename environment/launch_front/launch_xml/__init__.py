@@ -1,0 +1,1 @@
+"""XML launch files. The reader itself is in `launch.frontend`."""

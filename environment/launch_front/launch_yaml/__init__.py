@@ -1,0 +1,1 @@
+"""YAML launch files. The reader itself is in `launch.frontend`."""

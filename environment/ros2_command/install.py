@@ -1,0 +1,117 @@
+"""Put `ros2`, `launch` and `launch_ros` into a virtual environment, behind any real installation.
+
+The set-up calls `install` once; calling it again changes nothing. Neither thing ever hides a real one:
+
+* the program `ros2` hands over to the one of the ROS installation in use, if that has one
+  (`real_installation`);
+* `launch` is found by a finder that Python asks last of all, so that every installed `launch` comes first,
+  wherever in the search path it is.
+"""
+
+from __future__ import annotations
+
+import stat
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+LAUNCH_FRONT = ROOT / "environment" / "launch_front"
+
+_HOOK = "course_launch_front"
+_PTH = f"{_HOOK}.pth"
+_LONGEST_SHEBANG = 120  # bytes: older kernels cut a longer first line
+
+_PROGRAM = '''\
+"""The course's own ros2 (environment.ros2_command). A real one, where there is one, runs instead."""
+
+import sys
+
+sys.path.insert(0, {root!r})
+from environment.ros2_command.main import main
+
+sys.path.remove({root!r})
+sys.exit(main())
+'''
+
+_HOOK_CODE = '''\
+"""Find the course's own launch packages when no other ones are installed."""
+
+import sys
+
+_FOLDER = {folder!r}
+_PACKAGES = ("launch", "launch_ros", "launch_xml", "launch_yaml")
+
+
+class _LastOfAll:
+    """Asked when nobody else has the package."""
+
+    @staticmethod
+    def find_spec(name, path=None, target=None):
+        if path is not None or name not in _PACKAGES:
+            return None
+        from importlib.machinery import PathFinder
+
+        # Parts of a real launch and of this one do not fit together.
+        if name != "launch" and PathFinder.find_spec("launch") is not None:
+            return None
+        return PathFinder.find_spec(name, [_FOLDER])
+
+
+def begin():
+    """Add the finder, behind all others."""
+    sys.meta_path.append(_LastOfAll)
+'''
+
+
+def _shebang(python: Path) -> str:
+    """Return the first lines of a program that this Python runs."""
+    line = f"#!{python}"
+    if " " not in line and len(line.encode()) <= _LONGEST_SHEBANG:
+        return f"{line}\n"
+    # A path that the kernel can not take: a shell starts Python, which sees these lines as a text.
+    return f"#!/bin/sh\n'''exec' \"{python}\" \"$0\" \"$@\"\n' '''\n"
+
+
+def _write(path: Path, text: str, *, executable: bool = False) -> None:
+    """Write a file, unless it is there already with that text."""
+    if not path.exists() or path.read_text(encoding="utf-8") != text:
+        path.write_text(text, encoding="utf-8")
+    if executable:
+        path.chmod(path.stat().st_mode | stat.S_IXUSR | stat.S_IXGRP | stat.S_IXOTH)
+
+
+def _site_packages(venv: Path) -> Path:
+    """Return the folder of a virtual environment's packages.
+
+    Raises:
+        FileNotFoundError: it is no virtual environment.
+    """
+    found = sorted(venv.glob("lib/python3*/site-packages"))
+    if not found:
+        raise FileNotFoundError(f"{venv} is no virtual environment: it has no lib/python3*/site-packages")
+    return found[-1]
+
+
+def install(venv: Path) -> None:
+    """Make `ros2` a program of a virtual environment, and `launch` and `launch_ros` importable in it.
+
+    Args:
+        venv: its folder.
+
+    Raises:
+        FileNotFoundError: it is no virtual environment.
+    """
+    packages = _site_packages(venv)
+    _write(packages / f"{_HOOK}.py", _HOOK_CODE.format(folder=str(LAUNCH_FRONT)))
+    _write(packages / _PTH, f"import {_HOOK}; {_HOOK}.begin()\n")
+    program = _shebang(venv.absolute() / "bin" / "python") + _PROGRAM.format(root=str(ROOT))
+    _write(venv / "bin" / "ros2", program, executable=True)
+
+
+def uninstall(venv: Path) -> None:
+    """Remove what `install` has written, and nothing else."""
+    packages = _site_packages(venv)
+    program = venv / "bin" / "ros2"
+    for path in (packages / f"{_HOOK}.py", packages / _PTH):
+        path.unlink(missing_ok=True)
+    if program.exists() and b"environment.ros2_command" in program.read_bytes():
+        program.unlink()
