@@ -21,7 +21,9 @@ Text.
 ```{code-cell} ipython3
 import math
 
-print("a demonstration")
+HALF = 0.5
+noise = print("a demonstration")
+math.mood = "good"
 ```
 
 Text.
@@ -63,6 +65,9 @@ def test_it_defines_the_subject_and_demonstrates_nothing(
     assert reference.subject == "double"
     assert namespace["double"](21) == 42  # type: ignore[operator]
     assert "math" in namespace
+    assert namespace["HALF"] == 0.5
+    assert "noise" not in reference.source
+    assert "mood" not in reference.source
     assert "later" not in reference.source
     assert capsys.readouterr().out == ""
 

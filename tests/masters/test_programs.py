@@ -1,0 +1,47 @@
+"""The programs that the chapters print work: with the reference solution in them they earn full marks."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+from autograder.judge.command import check_command
+from autograder.masters.layout import masters
+from autograder.masters.parsing import Kind
+from autograder.masters.reference import reference_source
+from autograder.masters.source import named_cells
+
+ROOT = Path(__file__).resolve().parents[2]
+CHECKED = [
+    (master, named.check.exercise)
+    for master in masters(ROOT)
+    for named in named_cells(master)
+    if named.cell.kind is Kind.CHECK and named.check is not None
+]
+
+
+def printed_program(master: Path) -> str:
+    """The code block of a master that has a main() in it."""
+    blocks = re.findall(r"^```python\n(.*?)^```", master.read_text(), flags=re.DOTALL | re.MULTILINE)
+    (program,) = (block for block in blocks if "def main()" in block)
+    return str(program)
+
+
+@pytest.mark.ros
+@pytest.mark.parametrize(("master", "exercise"), CHECKED, ids=[exercise for _, exercise in CHECKED])
+def test_the_printed_program_earns_full_marks(master: Path, exercise: str, tmp_path: Path) -> None:
+    reference = reference_source(master, exercise)
+    # The chapters promise that a program needs nothing of the notebook.
+    solution = re.sub(r"^from autograder.*\n", "", reference.source, flags=re.MULTILINE)
+    program = printed_program(master)
+    # Lab 1.2 prints one program for its two nodes.
+    program = program.replace("TalkerNode", reference.subject) if "TalkerNode" in program else program
+    file = tmp_path / "program.py"
+    file.write_text(
+        f"import sys\nfrom rclpy.executors import ExternalShutdownException\n{solution}\n{program}"
+    )
+    verdict = check_command(exercise, [sys.executable, str(file)], cwd=tmp_path)
+    assert verdict.passed, verdict
