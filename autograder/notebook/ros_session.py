@@ -103,7 +103,7 @@ def start_ros() -> RosSession:
             try_shutdown()
             rclpy.init(args=[], domain_id=_session_domain(), signal_handler_options=SignalHandlerOptions.NO)
         domain = get_default_context().get_domain_id()
-        os.environ.setdefault(DOMAIN_VARIABLE, str(domain))
+        os.environ[DOMAIN_VARIABLE] = os.environ.get(DOMAIN_VARIABLE) or str(domain)
         return RosSession(domain=domain, picked=_claim is not None and _claim.domain == domain)
 
 
@@ -120,7 +120,6 @@ def _session_domain() -> int:
         if _claim is None:
             _claim = claim_free_domain()
         domain = _claim.domain
-        os.environ[DOMAIN_VARIABLE] = str(domain)
     return domain
 
 

@@ -257,7 +257,7 @@ class SpinThreads:
             while not self._stop.is_set():
                 try:
                     work = self._next_work()
-                except Exception as error:
+                except Exception as error:  # Such as InvalidHandle, of a node destroyed at this moment.
                     failed_waits += 1
                     if failed_waits == _MAX_FAILED_WAITS:
                         self._on_failure(Failure(error, goes_on=False))
@@ -278,8 +278,8 @@ class SpinThreads:
             return _Work(*self.executor.wait_for_ready_callbacks(None, None, self._stop.is_set))
         except (ExternalShutdownException, ShutdownException):
             self._ask_to_stop(Ending.ROS_SHUT_DOWN)
-        except (ConditionReachedException, InvalidHandle):
-            pass  # Told to stop, or a node was destroyed at this moment.
+        except ConditionReachedException:
+            pass  # Told to stop.
         return None
 
     def _hand_out(self, work: _Work) -> None:

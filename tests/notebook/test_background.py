@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import rclpy
 from my_robot_interfaces.srv import AddTwoInts
+from rclpy.executors import Executor
 from rclpy.node import Node
 
 from autograder.notebook.executors import spin_in_background, start_ros, stop_all
@@ -67,6 +68,7 @@ def test_it_can_be_stopped_from_within_a_callback(until: Any) -> None:
     node.create_timer(0.005, background.stop)
     until(lambda: is_destroyed(node))
     assert not background.running
+    assert background.errors == ()
 
 
 @pytest.mark.parametrize("threads", [1, 3])
@@ -103,6 +105,37 @@ def test_a_callback_may_end_it_as_it_ends_a_script(
     assert is_destroyed(node)
     assert background.errors == ()
     assert "A callback raised SystemExit, so done spins no longer." in capfd.readouterr().out
+
+
+def test_trouble_of_the_executor_is_survived_or_told(
+    nodes: Any, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], count_spin_threads: Any
+) -> None:
+    """rclpy's wait fails for a moment when something is destroyed just then; it must not fail for ever."""
+    trouble = threading.Event()
+    plain_wait = Executor.wait_for_ready_callbacks
+
+    def wait(executor: Executor, *args: Any, **kwargs: Any) -> Any:
+        if trouble.is_set():
+            if not lasting:
+                trouble.clear()
+            raise RuntimeError("wait set is broken")
+        return plain_wait(executor, *args, **kwargs)
+
+    monkeypatch.setattr(Executor, "wait_for_ready_callbacks", wait)
+    node = nodes.Ticker()
+    background = spin_in_background(node)
+    lasting = False
+    trouble.set()
+    node.wait_for_ticks(3)
+    assert background.errors == ()
+    lasting = True
+    trouble.set()
+    background._threads._threads[0].join(20)
+    assert not background.running
+    assert count_spin_threads() == 0
+    printed = capfd.readouterr().out
+    assert "RuntimeError: wait set is broken" in printed
+    assert "The executor failed, so ticker spins no longer." in printed
 
 
 @pytest.mark.parametrize("threads", [1, 3])

@@ -77,9 +77,10 @@ from my_robot_interfaces.srv import AddTwoInts
 def add(request, response):
     response.sum = request.a + request.b
     return response
-server = Node("server")
+keep = globals().get("keep", [])
+server = Node(f"server_{len(keep)}")
 server.create_service(AddTwoInts, "add", add)
-keep = [server] + globals().get("keep", [])
+keep.append(server)
 """
     notebook.run(cell, "one")
     notebook.run(cell, "one")
@@ -208,7 +209,7 @@ def run_with_nbclient(domain: int, monkeypatch: pytest.MonkeyPatch, *sources: st
     monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
     monkeypatch.delenv("PYTEST_CURRENT_TEST")
     cells = [{"cell_type": "code", "source": source, "metadata": {}, "outputs": []} for source in sources]
-    notebook = nbformat.from_dict({"nbformat": 4, "nbformat_minor": 4, "metadata": {}, "cells": cells})  # type: ignore[no-untyped-call]
+    notebook = nbformat.from_dict({"nbformat": 4, "nbformat_minor": 4, "metadata": {}, "cells": cells})
     NotebookClient(notebook, timeout=60, allow_errors=True, kernel_name="python3").execute()
     return [cell.outputs for cell in notebook.cells]
 

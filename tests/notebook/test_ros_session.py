@@ -123,9 +123,11 @@ def test_an_interrupt_leaves_ros_up_even_after_the_students_own_init(run_script:
     script = """
 import os, signal, time
 import rclpy
+from rclpy.signals import SignalHandlerOptions, get_current_signal_handlers_options
 from autograder.notebook.ros_session import start_ros
 {first}
 start_ros()
+assert get_current_signal_handlers_options() == SignalHandlerOptions.NO
 try:
     os.kill(os.getpid(), signal.SIGINT)
     time.sleep(20)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -101,8 +102,10 @@ def test_two_threads_run_two_callbacks_at_a_time() -> None:
     met = threading.Event()
 
     def meet() -> None:
-        both_are_in.wait(timeout=20)
-        met.set()
+        if not met.is_set():
+            with suppress(threading.BrokenBarrierError):  # How one ends that came in alone after the two.
+                both_are_in.wait(timeout=20)
+                met.set()
 
     group = ReentrantCallbackGroup()
     for _ in range(2):
