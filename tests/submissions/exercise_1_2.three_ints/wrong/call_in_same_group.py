@@ -1,0 +1,35 @@
+"""Wrong, row 20: call() inside a callback; client and timer share the default group, so the answer cannot get in."""
+import sys
+
+import rclpy
+from my_robot_interfaces.srv import AddTwoInts
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+
+
+class ThreeInts(Node):
+    def __init__(self):
+        super().__init__('three_ints')
+        self.cli = self.create_client(AddTwoInts, 'add_two_ints')
+        self.once = self.create_timer(0.1, self.work)
+
+    def work(self):
+        self.once.cancel()
+        a, b, c = map(int, sys.argv[1:4])
+        total = self.cli.call(AddTwoInts.Request(a=a, b=b)).sum
+        total = self.cli.call(AddTwoInts.Request(a=total, b=c)).sum
+        self.get_logger().info(f'Final sum: {total}')
+
+
+def main():
+    rclpy.init()
+    node = ThreeInts()
+    if not node.cli.wait_for_service(timeout_sec=5.0):
+        sys.exit('add_two_ints is not there')
+    executor = MultiThreadedExecutor()
+    executor.add_node(node)
+    executor.spin()
+
+
+if __name__ == '__main__':
+    main()

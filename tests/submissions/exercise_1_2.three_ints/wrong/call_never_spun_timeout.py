@@ -1,0 +1,33 @@
+"""Wrong, row 19: call() with a limit, nobody spins, and None comes back when the limit is over."""
+import sys
+
+import rclpy
+from my_robot_interfaces.srv import AddTwoInts
+from rclpy.node import Node
+
+
+class ThreeInts(Node):
+    def __init__(self):
+        super().__init__('three_ints')
+        self.cli = self.create_client(AddTwoInts, 'add_two_ints')
+
+    def add(self, a, b):
+        request = AddTwoInts.Request()
+        request.a = a
+        request.b = b
+        return self.cli.call(request, timeout_sec=1.0).sum
+
+
+def main():
+    a, b, c = int(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
+    rclpy.init()
+    node = ThreeInts()
+    if not node.cli.wait_for_service(timeout_sec=5.0):
+        sys.exit('add_two_ints is not there')
+    first = node.add(a, b)
+    total = node.add(first, c)
+    node.get_logger().info(f'Final sum: {total}')
+
+
+if __name__ == '__main__':
+    main()

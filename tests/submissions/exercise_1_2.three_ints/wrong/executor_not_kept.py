@@ -1,0 +1,37 @@
+"""Wrong, row 30: a node holds its executor only weakly; nobody keeps this one."""
+import sys
+
+import rclpy
+from my_robot_interfaces.srv import AddTwoInts
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+
+
+class ThreeInts(Node):
+    def __init__(self):
+        super().__init__('three_ints')
+        self.cli = self.create_client(AddTwoInts, 'add_two_ints')
+        SingleThreadedExecutor().add_node(self)
+
+    def add(self, a, b):
+        request = AddTwoInts.Request()
+        request.a = a
+        request.b = b
+        future = self.cli.call_async(request)
+        self.executor.spin_until_future_complete(future)
+        return future.result().sum
+
+
+def main():
+    a, b, c = int(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
+    rclpy.init()
+    node = ThreeInts()
+    if not node.cli.wait_for_service(timeout_sec=5.0):
+        sys.exit('add_two_ints is not there')
+    first = node.add(a, b)
+    total = node.add(first, c)
+    node.get_logger().info(f'Final sum: {total}')
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,40 @@
+"""Wrong, row 27: spin_until_future_complete takes the node from the background executor; the call() after it waits for ever."""
+import sys
+import threading
+
+import rclpy
+from my_robot_interfaces.srv import AddTwoInts
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+
+
+class ThreeInts(Node):
+    def __init__(self):
+        super().__init__('three_ints')
+        self.cli = self.create_client(AddTwoInts, 'add_two_ints')
+
+    def add(self, a, b):
+        request = AddTwoInts.Request()
+        request.a = a
+        request.b = b
+        future = self.cli.call_async(request)
+        rclpy.spin_until_future_complete(self, future)
+        return future.result().sum
+
+
+def main():
+    a, b, c = int(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
+    rclpy.init()
+    node = ThreeInts()
+    if not node.cli.wait_for_service(timeout_sec=5.0):
+        sys.exit('add_two_ints is not there')
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    threading.Thread(target=executor.spin, daemon=True).start()
+    first = node.add(a, b)
+    total = node.cli.call(AddTwoInts.Request(a=first, b=c)).sum
+    node.get_logger().info(f'Final sum: {total}')
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,50 @@
+"""Wrong: cancels at the tenth feedback."""
+import rclpy
+from action_msgs.msg import GoalStatus
+from my_robot_interfaces.action import Fibonacci
+from rclpy.action import ActionClient
+from rclpy.node import Node
+
+
+class CancelingClient(Node):
+    def __init__(self):
+        super().__init__('canceling_client')
+        self.client = ActionClient(self, Fibonacci, 'fibonacci')
+        self.goal = None
+        self.count = 0
+
+    def send_goal(self):
+        goal = Fibonacci.Goal()
+        goal.order = 20
+        self.client.send_goal_async(goal, self.on_feedback).add_done_callback(self.on_response)
+
+    def on_response(self, future):
+        self.goal = future.result()
+        self.goal.get_result_async().add_done_callback(self.on_result)
+
+    def on_feedback(self, message):
+        self.count += 1
+        self.get_logger().info(f'Feedback {self.count}: {list(message.feedback.partial_sequence)}')
+        if self.count == 10:
+            self.goal.cancel_goal_async()
+
+    def on_result(self, future):
+        status = future.result().status
+        if status == GoalStatus.STATUS_CANCELED:
+            self.get_logger().info('Goal was canceled')
+        else:
+            self.get_logger().info(f'Goal ended with status {status}')
+        rclpy.shutdown()
+
+
+def main():
+    rclpy.init()
+    node = CancelingClient()
+    if not node.client.wait_for_server(timeout_sec=10.0):
+        raise SystemExit('the action server is not there')
+    node.send_goal()
+    rclpy.spin(node)
+
+
+if __name__ == '__main__':
+    main()

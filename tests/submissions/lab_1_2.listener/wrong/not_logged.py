@@ -1,0 +1,24 @@
+"""Wrong: hears every text and says none."""
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import String
+
+
+class ListenerNode(Node):
+    def __init__(self):
+        super().__init__('listener_node')
+        self.subscription = self.create_subscription(String, 'chatter', self.listener_callback, 10)
+        self.texts = []
+
+    def listener_callback(self, msg):
+        self.texts.append(msg.data)
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = ListenerNode()
+    rclpy.spin(node)
+
+
+if __name__ == '__main__':
+    main()

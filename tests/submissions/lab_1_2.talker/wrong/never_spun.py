@@ -1,0 +1,30 @@
+"""Wrong, row 1: the node is made but nothing spins it, so the timer never fires."""
+import time
+
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import String
+
+
+class TalkerNode(Node):
+    def __init__(self):
+        super().__init__('talker_node')
+        self.pub = self.create_publisher(String, 'chatter', 10)
+        self.i = 0
+        self.timer = self.create_timer(0.5, self.timer_callback)
+        self.get_logger().info('publishing...')
+
+    def timer_callback(self):
+        self.pub.publish(String(data=f'Hello, world! {self.i}'))
+        self.i += 1
+
+
+def main():
+    rclpy.init()
+    node = TalkerNode()
+    while rclpy.ok():
+        time.sleep(1)
+
+
+if __name__ == '__main__':
+    main()
