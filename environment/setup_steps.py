@@ -9,7 +9,7 @@ import shlex
 import shutil
 import subprocess
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import IO, TYPE_CHECKING
 
 from environment import course_process, ros_flavour
@@ -52,7 +52,9 @@ class Setup:
         """Return the steps in their order; those of the tests only when they are asked for."""
         place = self.place
         locks = [place.lock("course")] if self.ros.is_sourced else [place.lock("course"), place.lock("ros")]
-        kind = (str(place.root), str(place.base_python), sys.version, repr(self.ros))
+        # The notice is for the user: it does not make another environment.
+        ros = repr(replace(self.ros, notice=""))
+        kind = (str(place.root), str(place.base_python), sys.version, ros)
         interfaces = (place.environment / "repair_wheels.py", *files_below(place.interfaces))
         start = (place.environment / "course_process.py", place.environment / "place.py")
         jupyter = (place.environment / "jupyter_files.py",)

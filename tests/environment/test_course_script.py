@@ -136,6 +136,19 @@ def test_an_interpreter_that_is_gone_sets_up_again(course: Course) -> None:
     assert course.ran()[0] == "set-up --token"
 
 
+def test_the_environments_own_start_does_not_hide_what_is_sourced_from_the_set_up(course: Course) -> None:
+    course.run("setup")
+    course.ran()
+    python = course.root / ".venv/bin/python"
+    python.unlink()
+    python.write_text(
+        f'#!/bin/sh\necho "python $1" >> \'{course.root}/ran.txt\'\nexec {sys.executable} "$@"\n'
+    )
+    python.chmod(0o755)
+    course.run("setup", PYTHON="")
+    assert course.ran() == ["python -S", "python -S", "set-up --token"]
+
+
 def test_setup_always_looks_again_and_runs_nothing_else(course: Course) -> None:
     course.run("setup")
     course.run("setup")

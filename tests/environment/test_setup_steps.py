@@ -1,0 +1,161 @@
+"""What the steps of the set-up are made from, and what they do to what is there already."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from environment import bootstrap
+from environment.place import Place, environment_paths
+from environment.ros_flavour import Ros
+from environment.setup_steps import Setup, SetupError
+from environment.steps import Step, digest
+
+ROOT = Path(__file__).resolve().parents[2]
+PLACE = Place(ROOT, Path("/usr/bin/python3.11"))
+JAZZY = Ros("system", {"AMENT_PREFIX_PATH": ("/opt/ros/jazzy",), "LD_LIBRARY_PATH": ("/opt/ros/jazzy/lib",)})
+
+
+def steps(place: Place = PLACE, ros: Ros | None = None, with_tests: bool = False) -> dict[str, Step]:
+    """Return the steps of a set-up by their names."""
+    setup = Setup(place, ros or Ros("wheels"), {}, io.StringIO())
+    return {step.name: step for step in setup.steps(with_tests)}
+
+
+def made_from(step: Step) -> str:
+    return digest(step.inputs, ROOT)
+
+
+def test_the_order() -> None:
+    assert list(steps(with_tests=True)) == [
+        *("environment", "packages", "interfaces", "start", "jupyter", "project", "dev")
+    ]
+
+
+def test_without_tests_their_tools_are_not_installed() -> None:
+    assert "dev" not in steps()
+
+
+def test_another_python_another_folder_or_another_ros_makes_another_environment() -> None:
+    usual = made_from(steps()["environment"])
+    others = [
+        steps(replace(PLACE, base_python=Path("/usr/bin/python3.12"))),
+        steps(ros=JAZZY),
+        steps(ros=replace(JAZZY, paths={"AMENT_PREFIX_PATH": ("/opt/ros/other",)})),
+    ]
+    assert len({usual, *(made_from(other["environment"]) for other in others)}) == 4
+
+
+def test_a_notice_about_a_ros_that_is_left_out_makes_the_same_environment() -> None:
+    noticed = steps(ros=Ros("wheels", notice="ROS 2 humble is sourced"))
+    assert made_from(noticed["environment"]) == made_from(steps()["environment"])
+
+
+def test_the_ros_wheels_are_left_out_where_a_ros_is_sourced() -> None:
+    ros_lock = PLACE.lock("ros")
+    assert ros_lock in steps()["packages"].inputs
+    assert ros_lock not in steps(ros=JAZZY)["packages"].inputs
+    assert PLACE.lock("course") in steps(ros=JAZZY)["packages"].inputs
+
+
+def test_the_interfaces_are_made_from_every_file_of_their_package() -> None:
+    names = {path.name for path in steps()["interfaces"].inputs if isinstance(path, Path)}
+    assert {
+        "AddTwoInts.srv",
+        "Fibonacci.action",
+        "CMakeLists.txt",
+        "package.xml",
+        "repair_wheels.py",
+    } == names
+
+
+def test_a_sourced_ros_comes_after_the_environment_in_every_search_path(tmp_path: Path) -> None:
+    place = Place(tmp_path, Path("/usr/bin/python3.11"))
+    paths = environment_paths(place, JAZZY)
+    assert paths["AMENT_PREFIX_PATH"] == [f"{tmp_path}/.venv", "/opt/ros/jazzy"]
+    assert paths["LD_LIBRARY_PATH"] == [f"{tmp_path}/.venv/lib", "/opt/ros/jazzy/lib"]
+
+
+def test_a_command_that_fails_is_an_error_that_says_what_it_was_to_do(tmp_path: Path) -> None:
+    log = tmp_path / "log.txt"
+    with log.open("w") as output:
+        setup = Setup(
+            Place(tmp_path, Path("/usr/bin/python3.11")), Ros("wheels"), {"PATH": "/usr/bin:/bin"}, output
+        )
+        with pytest.raises(SetupError, match="building failed"):
+            setup._run("building", ["sh", "-c", "echo because; exit 3"])
+    assert "because" in log.read_text()
+
+
+def test_the_commands_of_the_set_up_see_neither_another_ros_nor_another_python(tmp_path: Path) -> None:
+    humble = tmp_path / "opt/ros/humble"
+    (humble / "share/rclpy").mkdir(parents=True)
+    (humble / "share/rclpy/package.xml").touch()
+    environ = {
+        "PATH": "/usr/bin:/bin",
+        "AMENT_PREFIX_PATH": str(humble),
+        "PYTHONPATH": f"{humble}/lib/python3.10/site-packages",
+        "PYTHONHOME": "/usr",
+        "VIRTUAL_ENV": "/home/me/another",
+    }
+    log = tmp_path / "log.txt"
+    place = Place(tmp_path, Path("/usr/bin/python3.11"))
+    with log.open("w") as output:
+        Setup(place, Ros("wheels"), environ, output)._run("looking", ["env"])
+    lines = log.read_text().splitlines()
+    assert f"VIRTUAL_ENV={tmp_path}/.venv" in lines
+    assert f"AMENT_PREFIX_PATH={tmp_path}/.venv" in lines
+    assert not [line for line in lines if "humble" in line or line.startswith("PYTHONHOME")]
+
+
+# What is looked at before anything is done.
+
+
+def test_a_folder_called_venv_that_is_none_is_not_touched(tmp_path: Path) -> None:
+    (tmp_path / ".venv").mkdir()
+    (tmp_path / ".venv/thesis.txt").write_text("mine")
+    with pytest.raises(SetupError, match="Move it away"):
+        bootstrap._check_place(Place(tmp_path, Path("/usr/bin/python3.11")))
+    assert (tmp_path / ".venv/thesis.txt").read_text() == "mine"
+
+
+def test_a_folder_with_a_colon_in_its_name_is_refused(tmp_path: Path) -> None:
+    root = tmp_path / "course:1"
+    root.mkdir()
+    with pytest.raises(SetupError, match="colon"):
+        bootstrap._check_place(Place(root, Path("/usr/bin/python3.11")))
+
+
+def test_a_disk_without_room_is_said_before_anything_is_installed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(bootstrap, "_SPACE_NEEDED", 10**18)
+    with pytest.raises(SetupError, match="GB left"):
+        bootstrap._check_space(Place(tmp_path, Path("/usr/bin/python3.11")))
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("OSError: [Errno 28] No space left on device", "disk is full"),
+        (
+            "ERROR: THESE PACKAGES DO NOT MATCH THE HASHES FROM THE REQUIREMENTS FILE",
+            "not the one that is locked",
+        ),
+        ("ERROR: No matching distribution found for ros-rcl==9.2.8", "is there a network"),
+        ("ninja: build stopped: subcommand failed.", "the whole log is"),
+    ],
+)
+def test_a_failure_shows_the_end_of_the_log_and_the_usual_cause(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, said: str
+) -> None:
+    log = tmp_path / "setup.log"
+    log.write_text("\n".join([*(f"line {number}" for number in range(100)), line]) + "\n")
+    bootstrap._explain_failure(log)
+    shown = capsys.readouterr().err
+    assert line in shown
+    assert "line 10\n" not in shown
+    assert said.lower() in shown.lower()
