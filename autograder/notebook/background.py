@@ -9,7 +9,7 @@ from autograder.notebook.callback_errors import CallbackError, CallbackErrors
 from autograder.notebook.cell_runs import CellRun, CellWatch
 from autograder.notebook.made_nodes import MadeNodes, NodeIdentity
 from autograder.notebook.node_ends import destroy_node, node_label
-from autograder.notebook.notebook_output import say
+from autograder.notebook.notebook_output import let_log_lines_arrive, say
 from autograder.notebook.spin_threads import GRACE, Ending, SpinThreads
 
 if TYPE_CHECKING:
@@ -88,10 +88,8 @@ class Background:
             # An impatient second interrupt must not leave threads behind.
             self._threads.stop(grace=0.0)
             raise
-        finally:
-            with _lock:
-                if self in _running:
-                    _running.remove(self)
+        if self._shown:
+            let_log_lines_arrive()
 
     def drop(self, node: Node) -> None:
         """Part with one node for good; with the last one the background ends."""

@@ -62,11 +62,13 @@ def test_a_name_is_taken_over_and_a_node_given_again_lives_on(nodes: Any) -> Non
     assert second.nodes == (kept,)
 
 
-def test_it_can_be_stopped_from_within_a_callback(until: Any) -> None:
+def test_it_can_be_stopped_from_within_a_callback(until: Any, count_spin_threads: Callable[[], int]) -> None:
     node = Node("suicidal")
     background = spin_in_background(node)
     node.create_timer(0.005, background.stop)
     until(lambda: is_destroyed(node))
+    stop_all()
+    assert count_spin_threads() == 0
     assert not background.running
     assert background.errors == ()
 

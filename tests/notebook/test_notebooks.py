@@ -38,6 +38,36 @@ with spinning(ShyNode()) as shy:
     assert output.stderr == ""
 
 
+def test_the_last_log_lines_come_before_the_cell_ends_on_a_busy_machine(notebook: Notebook) -> None:
+    """They reach the cell through a thread of the kernel's; here that thread is slow."""
+    output = notebook.run("""
+import sys
+class Chatterbox(Node):
+    def __init__(self):
+        super().__init__("chatterbox")
+        self.done = threading.Event()
+        self.create_timer(0.005, self.tick)
+    def tick(self):
+        if not self.done.is_set():
+            self.get_logger().info("famous last words")
+            self.done.set()
+quick_write = sys.stdout.write
+def slow_write(text):
+    time.sleep(0.2)
+    return quick_write(text)
+sys.stdout.write = slow_write
+with spinning(Chatterbox()) as chatterbox:
+    chatterbox.done.wait(20)
+unchanged = sys.stdout.write is slow_write
+del sys.stdout.write
+unchanged
+""")
+    assert "[chatterbox]: famous last words" in output.stdout
+    assert "\x16" not in output.stdout
+    assert output.stderr == ""
+    assert output.value == "True"
+
+
 @pytest.mark.parametrize("ids", [("one", "one"), (None, None)], ids=["JupyterLab", "nbclient"])
 def test_a_cell_run_again_replaces_what_it_left(notebook: Notebook, ids: tuple[str | None, ...]) -> None:
     """Without the cell's id it is known by its text."""
