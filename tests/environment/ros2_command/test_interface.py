@@ -1,0 +1,96 @@
+"""`ros2 interface`: what is in an interface file, with nested types below their fields."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from environment.ros2_command.interface_show import nested_type, without_comment
+
+if TYPE_CHECKING:
+    import subprocess
+    from collections.abc import Callable
+
+
+@pytest.mark.parametrize(
+    ("line", "nested"),
+    [
+        ("int32 order", None),
+        ("int32[] sequence", None),
+        ("string<=10 name", None),
+        ("Point position", "geometry_msgs/msg/Point"),
+        ("Point[3] corners", "geometry_msgs/msg/Point"),
+        ("geometry_msgs/Point[<=4] corners  # up to four", "geometry_msgs/msg/Point"),
+        ("std_msgs/msg/Header header", "std_msgs/msg/Header"),
+        ("Header header", "std_msgs/msg/Header"),
+        ("uint8 OK=0", None),
+        ("float64 x 1.5", None),
+        ("# Point position", None),
+        ("", None),
+        ("---", None),
+    ],
+)
+def test_nested_types_are_recognized(line: str, nested: str | None) -> None:
+    assert nested_type(line, "geometry_msgs") == nested
+
+
+@pytest.mark.parametrize(
+    ("line", "kept"),
+    [
+        ("int32 a # the first", "int32 a"),
+        ("# all of it", ""),
+        ('string s "a # b" # c', 'string s "a # b"'),
+        ("int32 a", "int32 a"),
+    ],
+)
+def test_comments_are_taken_off(line: str, kept: str) -> None:
+    assert without_comment(line) == kept
+
+
+def test_show_indents_nested_types_by_tabs(ros2: Callable[..., subprocess.CompletedProcess[str]]) -> None:
+    shown = ros2("interface", "show", "std_msgs/msg/Header", "--no-comments")
+    assert shown.stdout == "builtin_interfaces/Time stamp\n\tint32 sec\n\tuint32 nanosec\nstring frame_id\n"
+    assert shown.returncode == 0
+
+
+def test_show_keeps_comments_of_the_file_itself(
+    ros2: Callable[..., subprocess.CompletedProcess[str]],
+) -> None:
+    plain = ros2("interface", "show", "geometry_msgs/msg/TwistStamped").stdout
+    everything = ros2("interface", "show", "geometry_msgs/msg/TwistStamped", "--all-comments").stdout
+    assert plain.startswith("# A twist with reference coordinate frame and timestamp\n")
+    assert "\t# " not in plain
+    assert "\t# " in everything
+
+
+def test_show_reads_the_name_from_a_pipe(ros2: Callable[..., subprocess.CompletedProcess[str]]) -> None:
+    shown = ros2("interface", "show", "-", stdin="std_msgs/msg/Bool\n")
+    assert "bool data" in shown.stdout.splitlines()
+
+
+@pytest.mark.parametrize(
+    ("name", "error"),
+    [
+        ("std_msgs/String", "Expected three parts separated by '/'"),
+        ("nothing_msgs/msg/String", "Unknown package 'nothing_msgs'"),
+        ("std_msgs/msg/Strin", "Could not find the interface"),
+        ("../msg/String", "Must not contain"),
+    ],
+)
+def test_show_says_what_is_wrong(
+    name: str, error: str, ros2: Callable[..., subprocess.CompletedProcess[str]]
+) -> None:
+    shown = ros2("interface", "show", name)
+    assert error in shown.stderr
+    assert shown.returncode == 1
+
+
+def test_list_and_package(ros2: Callable[..., subprocess.CompletedProcess[str]]) -> None:
+    package = ros2("interface", "package", "my_robot_interfaces").stdout.splitlines()
+    assert sorted(package) == ["my_robot_interfaces/action/Fibonacci", "my_robot_interfaces/srv/AddTwoInts"]
+    services = ros2("interface", "list", "-s").stdout.splitlines()
+    assert services[0] == "Services:"
+    assert "    my_robot_interfaces/srv/AddTwoInts" in services
+    assert not any("/msg/" in line for line in services)
+    assert ros2("interface", "package", "nothing").returncode == 1

@@ -1,0 +1,381 @@
+"""`ros2 launch` with real processes: its words, Ctrl-C, crashes, timers and handlers."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import textwrap
+import time
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    import subprocess
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from conftest import Running
+
+    Ros2 = Callable[..., subprocess.CompletedProcess[str]]
+    Start = Callable[..., Running]
+
+HEAD = """\
+from launch import LaunchDescription
+from launch.actions import *
+from launch.event_handlers import *
+from launch.substitutions import *
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    return LaunchDescription([
+"""
+STUBBORN = "['sh', '-c', 'trap \"\" INT; echo up; while :; do sleep 0.05; done']"
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Callable[[str], str]:
+    """Write a Python launch file with these actions, and return its path."""
+
+    def make(actions: str) -> str:
+        path = tmp_path / "test.launch.py"
+        path.write_text(HEAD + textwrap.indent(textwrap.dedent(actions), " " * 8) + "\n    ])\n")
+        return str(path)
+
+    return make
+
+
+def shape(text: str) -> list[str]:
+    """Return lines of output with what differs between two runs left out."""
+    text = re.sub(r"pid \[?\d+", lambda m: re.sub(r"\d+", "N", m[0]), text)
+    return re.sub(r"below \S+", "below DIR", text).splitlines()
+
+
+def gone(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return True
+    # A process that nobody has waited for yet is gone as well.
+    with open(f"/proc/{pid}/stat", encoding="utf-8") as file:  # noqa: PTH123
+        return file.read().rpartition(")")[2].split()[0] == "Z"
+
+
+def wait_until_gone(pid: int) -> None:
+    deadline = time.monotonic() + 20
+    while not gone(pid):
+        assert time.monotonic() < deadline, f"process {pid} is still there"
+        time.sleep(0.01)
+
+
+def pid_of(running: Running, name: str) -> int:
+    line = running.wait_for(f"[{name}]: process started with pid [")
+    return int(line.rpartition("[")[2].rstrip("]"))
+
+
+def test_what_a_launch_says(ros2: Ros2, write: Callable[[str], str], tmp_path: Path) -> None:
+    done = ros2("launch", write("ExecuteProcess(cmd=['echo', 'hello'], output='screen'), LogInfo(msg='x')"))
+    assert shape(done.stdout) == [
+        "[INFO] [launch]: All log files can be found below DIR",
+        "[INFO] [launch]: Default logging verbosity is set to INFO",
+        "[INFO] [launch.user]: x",
+        "[INFO] [echo-1]: process started with pid [N]",
+        "[echo-1] hello",
+        "[INFO] [echo-1]: process has finished cleanly [pid N]",
+    ]
+    assert done.returncode == 0
+    log = (tmp_path / "ros_log/latest/launch.log").read_text()
+    assert re.search(r"^\d+\.\d{7} \[INFO\] \[launch.user\]: x$", log, re.MULTILINE)
+
+
+def test_a_crash_is_reported_with_name_and_exit_code(ros2: Ros2, write: Callable[[str], str]) -> None:
+    done = ros2("launch", write("Node(package='demo_pkg', executable='says', arguments=['3']),"))
+    lines = shape(done.stdout)
+    # By default stdout goes to the log and stderr to the screen.
+    assert "[says-1] on stderr" in lines
+    assert not any(line.startswith("[says-1] 3") for line in lines)
+    died = r"\[ERROR\] \[says-1\]: process has died \[pid N, exit code 3, cmd '/\S+/says 3 --ros-args'\]\."
+    assert re.fullmatch(died, lines[-1])
+    # As in Jazzy, the launch itself has done what it should.
+    assert done.returncode == 0
+
+
+def test_output_of_all_processes_can_be_shown(ros2: Ros2, write: Callable[[str], str]) -> None:
+    path = write("Node(package='demo_pkg', executable='says', arguments=['0', 'out']),")
+    assert "[says-1] 0 out --ros-args" not in ros2("launch", path).stdout
+    assert "[says-1] 0 out --ros-args" in ros2("launch", "-a", path).stdout
+
+
+@pytest.mark.parametrize(
+    ("actions", "error"),
+    [
+        ("Node(package='no_such_pkg', executable='x'),", "package 'no_such_pkg' not found, searching: ["),
+        (
+            "Node(package='demo_pkg', executable='tlaker'),",
+            "executable 'tlaker' not found on the libexec directory",
+        ),
+        (
+            "Node(package='demo_pkg', executable='says', nmae='x'),",
+            "unexpected keyword argument 'nmae' (test.launch.py, line 9)",
+        ),
+        (
+            "DeclareLaunchArgument('rate'),",
+            "missing required argument 'rate' (description: 'no description given')",
+        ),
+        ("LogInfo(msg=LaunchConfiguration('rate')),", "launch configuration 'rate' does not exist"),
+        (
+            "Node(package='demo_pkg', executable='says', output='scren'),",
+            "scren is not a valid standard output",
+        ),
+        ("LogInfo(msg='a'", "SyntaxError"),
+    ],
+)
+def test_an_error_in_the_launch_file(
+    actions: str, error: str, ros2: Ros2, write: Callable[[str], str]
+) -> None:
+    done = ros2("launch", write(actions))
+    assert "[ERROR] [launch]: Caught exception in launch (see debug for traceback): " in done.stdout
+    assert error in done.stdout
+    assert "Traceback" not in done.stdout + done.stderr
+    assert done.returncode == 1
+
+
+def test_an_error_ends_what_was_started_before(ros2: Ros2, write: Callable[[str], str]) -> None:
+    actions = """
+        ExecuteProcess(cmd=['sleep', '100']),
+        TimerAction(period=0.1, actions=[LogInfo(msg=LaunchConfiguration('nothing'))]),
+    """
+    done = ros2("launch", write(actions))
+    assert "[INFO] [sleep-1]: sending signal 'SIGINT' to process[sleep-1]" in done.stdout
+    assert "exit code -2" in done.stdout
+    assert done.returncode == 1
+
+
+def test_a_program_that_can_not_be_started(ros2: Ros2, write: Callable[[str], str]) -> None:
+    done = ros2("launch", write("ExecuteProcess(cmd=['no_such_program']),"))
+    assert "[ERROR] [no_such_program-1]: exception occurred while executing process:" in done.stdout
+    assert done.returncode == 0
+
+
+def test_ctrl_c_ends_every_process(start: Start, write: Callable[[str], str]) -> None:
+    running = start(
+        "launch", write("ExecuteProcess(cmd=['sleep', '100']), ExecuteProcess(cmd=['sleep', '200']),")
+    )
+    pids = [pid_of(running, name) for name in ("sleep-1", "sleep-2")]
+    running.send(signal.SIGINT)
+    assert running.end() == 0
+    assert shape(running.text)[4:7] == [
+        "[WARNING] [launch]: user interrupted with ctrl-c (SIGINT)",
+        "[INFO] [sleep-1]: sending signal 'SIGINT' to process[sleep-1]",
+        "[INFO] [sleep-2]: sending signal 'SIGINT' to process[sleep-2]",
+    ]
+    assert all(map(gone, pids))
+
+
+def test_ctrl_c_reaches_what_a_process_has_started(start: Start, write: Callable[[str], str]) -> None:
+    command = "['sh', '-c', 'sleep 100 & echo inner $!; wait']"
+    running = start("launch", write(f"ExecuteProcess(cmd={command}, output='screen'),"))
+    inner = int(running.wait_for("inner").split()[-1])
+    running.send(signal.SIGINT)
+    running.end()
+    wait_until_gone(inner)
+
+
+def test_a_second_ctrl_c_is_ignored_and_signals_escalate(start: Start, write: Callable[[str], str]) -> None:
+    actions = f"ExecuteProcess(cmd={STUBBORN}, output='screen', sigterm_timeout='0.4'),"
+    running = start("launch", write(actions))
+    running.wait_for("[sh-1] up")
+    running.send(signal.SIGINT)
+    running.wait_for("user interrupted with ctrl-c (SIGINT)")
+    running.send(signal.SIGINT)
+    running.wait_for("user interrupted with ctrl-c (SIGINT) again, ignoring...")
+    assert running.end() == 0
+    assert (
+        "[ERROR] [sh-1]: process[sh-1] failed to terminate '0.4' seconds after receiving 'SIGINT', "
+        "escalating to 'SIGTERM'" in running.lines
+    )
+    assert "[INFO] [sh-1]: sending signal 'SIGTERM' to process[sh-1]" in running.lines
+    assert "exit code -15" in running.lines[-1]
+
+
+def test_the_last_resort_is_sigkill(start: Start, write: Callable[[str], str]) -> None:
+    stubborn = STUBBORN.replace("INT", "INT TERM")
+    actions = (
+        f"ExecuteProcess(cmd={stubborn}, output='screen', sigterm_timeout='0.2', sigkill_timeout='0.2'),"
+    )
+    running = start("launch", write(actions))
+    running.wait_for("[sh-1] up")
+    running.send(signal.SIGINT)
+    running.end()
+    assert "escalating to 'SIGKILL'" in running.text
+    assert "exit code -9" in running.lines[-1]
+
+
+def test_sigterm_ends_every_process_too(start: Start, write: Callable[[str], str]) -> None:
+    running = start("launch", write("ExecuteProcess(cmd=['sleep', '100']),"))
+    pid = pid_of(running, "sleep-1")
+    running.send(signal.SIGTERM)
+    assert running.end() == 1
+    assert "[ERROR] [launch]: user interrupted with ctrl-\\ (SIGTERM), terminating..." in running.lines
+    assert gone(pid)
+
+
+def test_even_a_killed_launch_leaves_nothing_behind(start: Start, write: Callable[[str], str]) -> None:
+    running = start("launch", write("ExecuteProcess(cmd=['sleep', '100']),"))
+    pid = pid_of(running, "sleep-1")
+    running.send(signal.SIGKILL)
+    running.process.wait(20)
+    wait_until_gone(pid)
+
+
+def test_events_of_processes(ros2: Ros2, write: Callable[[str], str]) -> None:
+    actions = """
+        first := ExecuteProcess(cmd=['sh', '-c', 'echo one; exit 4'], name='first'),
+        RegisterEventHandler(OnProcessStart(target_action=first, on_start=[LogInfo(msg='started')])),
+        RegisterEventHandler(OnProcessIO(
+            target_action=first, on_stdout=lambda event: LogInfo(msg=event.text.decode().strip())
+        )),
+        RegisterEventHandler(OnProcessExit(
+            target_action=first,
+            on_exit=lambda event, context: LogInfo(msg=f'{event.process_name}: {event.returncode}'),
+        )),
+        RegisterEventHandler(OnShutdown(on_shutdown=[LogInfo(msg='the end')])),
+    """
+    said = [line for line in ros2("launch", write(actions)).stdout.splitlines() if "launch.user" in line]
+    assert said == [
+        "[INFO] [launch.user]: started",
+        "[INFO] [launch.user]: one",
+        "[INFO] [launch.user]: first-1: 4",
+        "[INFO] [launch.user]: the end",
+    ]
+
+
+def test_a_required_process_ends_the_launch(ros2: Ros2, write: Callable[[str], str]) -> None:
+    actions = "ExecuteProcess(cmd=['sleep', '100']), ExecuteProcess(cmd=['true'], on_exit=Shutdown()),"
+    done = ros2("launch", write(actions))
+    assert "[INFO] [launch]: process[true-2] was required: shutting down launched system" in done.stdout
+    assert "sending signal 'SIGINT' to process[sleep-1]" in done.stdout
+    assert done.returncode == 0
+
+
+def test_respawn_stops_after_the_given_number(ros2: Ros2, write: Callable[[str], str]) -> None:
+    done = ros2("launch", write("ExecuteProcess(cmd=['false'], respawn=True, respawn_max_retries=2),"))
+    assert done.stdout.count("[false-1]: process started") == 3
+
+
+def test_a_timer_does_not_hold_up_the_end(start: Start, write: Callable[[str], str]) -> None:
+    running = start(
+        "launch", write("TimerAction(period=100.0, actions=[LogInfo(msg='late')]), LogInfo(msg='now'),")
+    )
+    running.wait_for("now")
+    running.send(signal.SIGINT)
+    assert running.end() == 0
+    assert "late" not in running.text
+
+
+def test_a_terminal_can_be_emulated(ros2: Ros2, write: Callable[[str], str]) -> None:
+    actions = """
+        ExecuteProcess(cmd=['sh', '-c', 'test -t 1 && echo True || echo False'], output='screen', name=name,
+                       emulate_tty=tty) for name, tty in (('plain', False), ('tty', True))
+    """
+    text = ros2("launch", write(f"*[{actions.strip()}]")).stdout
+    assert "[plain-1] False" in text
+    assert "[tty-2] True" in text
+
+
+def test_a_line_without_an_end_is_shown_too(ros2: Ros2, write: Callable[[str], str]) -> None:
+    text = ros2("launch", write("ExecuteProcess(cmd=['printf', 'a\\nb'], output='screen'),")).stdout
+    assert "[printf-1] a\n[printf-1] b\n" in text
+
+
+def test_arguments_of_a_launch_file(ros2: Ros2, write: Callable[[str], str]) -> None:
+    path = write(
+        """
+        DeclareLaunchArgument('rate', default_value='2', description='messages in a second'),
+        DeclareLaunchArgument('mode', choices=['a', 'b'], default_value=['a'], description='how'),
+        GroupAction([DeclareLaunchArgument('more', default_value=LaunchConfiguration('rate'))]),
+        LogInfo(msg=['rate ', LaunchConfiguration('rate')]),
+        """
+    )
+    assert ros2("launch", path, "--show-args").stdout == textwrap.dedent(
+        """\
+        Arguments (pass arguments as '<name>:=<value>'):
+
+            'rate':
+                messages in a second
+                (default: '2')
+
+            'mode':
+                how. Valid choices are: ['a', 'b']
+                (default: 'a')
+
+            'more':
+                no description given
+                (default: LaunchConfig('rate'))
+        """
+    )
+    assert "rate 5" in ros2("launch", path, "rate:=4", "rate:=5").stdout
+    assert "is not valid" in ros2("launch", path, "mode:=c").stdout
+    wrong = ros2("launch", path, "rate=5")
+    assert wrong.stderr == "malformed launch argument 'rate=5', expected format '<name>:=<value>'\n"
+    assert wrong.returncode == 1
+
+
+def test_no_arguments(ros2: Ros2, write: Callable[[str], str]) -> None:
+    shown = ros2("launch", "-s", write("LogInfo(msg='x'),")).stdout
+    assert shown == "Arguments (pass arguments as '<name>:=<value>'):\n\n  No arguments.\n"
+
+
+def test_print_describes_without_launching(ros2: Ros2, write: Callable[[str], str]) -> None:
+    shown = ros2("launch", "--print", write("LogInfo(msg='x'), ExecuteProcess(cmd=['false']),")).stdout
+    assert shown.splitlines()[1:] == [
+        "├── LogInfo('x')",
+        "└── ExecuteProcess(cmd=['false'], cwd=None, env=None, shell=False)",
+    ]
+
+
+def test_a_launch_file_of_a_package(ros2: Ros2, prefix: Path) -> None:
+    folder = prefix / "share/demo_pkg/launch"
+    (folder / "one.launch.xml").write_text(
+        '<launch><arg name="who" default="you"/><log message="$(dirname) $(var who)"/></launch>'
+    )
+    done = ros2("launch", "demo_pkg", "one.launch.xml", "who:=me")
+    assert f"[INFO] [launch.user]: {folder} me" in done.stdout
+    missing = ros2("launch", "demo_pkg", "two.launch.xml")
+    assert missing.stderr.startswith("file 'two.launch.xml' was not found in the share directory of package")
+    assert missing.returncode == 1
+    assert ros2("launch", "no_such_pkg", "x.launch.py").stderr.startswith("Package 'no_such_pkg' not found: ")
+
+
+def test_files_include_each_other(ros2: Ros2, tmp_path: Path) -> None:
+    (tmp_path / "inner.launch.py").write_text(
+        HEAD
+        + "DeclareLaunchArgument('who'),"
+        + "LogInfo(msg=['py ', ThisLaunchFileDir(), LaunchConfiguration('who')])])"
+    )
+    (tmp_path / "middle.launch.yaml").write_text(
+        "launch:\n- arg: {name: who}\n- include:\n    file: $(dirname)/inner.launch.py\n"
+        "    arg:\n    - {name: who, value: $(var who)!}\n- log: {message: yaml $(var who)}\n"
+    )
+    (tmp_path / "outer.launch.xml").write_text(
+        '<launch><group><include file="$(dirname)/middle.launch.yaml">'
+        '<arg name="who" value="ada"/></include></group>'
+        '<log message="xml $(var who nobody)"/></launch>'
+    )
+    text = ros2("launch", str(tmp_path / "outer.launch.xml")).stdout
+    said = [
+        line.removeprefix("[INFO] [launch.user]: ") for line in text.splitlines() if "launch.user" in line
+    ]
+    # What an included file sets is known to what follows, up to the end of the group.
+    assert said == [f"py {tmp_path}ada!", "yaml ada!", "xml nobody"]
+    assert "'who'" in ros2("launch", "--show-args", str(tmp_path / "middle.launch.yaml")).stdout
+
+
+def test_a_log_folder_that_can_not_be_made_is_named(
+    ros2: Ros2, write: Callable[[str], str], tmp_path: Path
+) -> None:
+    (tmp_path / "file").touch()
+    done = ros2("launch", write("LogInfo(msg='x'),"), ROS_LOG_DIR=str(tmp_path / "file"))
+    assert "set ROS_LOG_DIR to a folder that can be written" in done.stderr
+    assert done.returncode == 1

@@ -1,0 +1,200 @@
+"""Texts, values and tags of XML and YAML launch files."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from launch.frontend.entity import FrontendError, from_xml, from_yaml
+from launch.frontend.loader import load
+from launch.frontend.texts import parse_command, parse_text
+from launch.launch_context import LaunchContext
+from launch.substitution import SubstitutionFailure, perform
+from launch.typed import InvalidConditionExpressionError, truth, value_of_text
+from launch_ros.names import check_namespace, check_node_name, inner_namespace
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.fixture
+def context() -> LaunchContext:
+    made = LaunchContext(
+        environment={"ROBOT": "r2", "PATH": "/bin"}, current_launch_file="/w/launch/a.launch.xml"
+    )
+    made.launch_configurations.update(name="talker", rate="2.5", yes="true")
+    return made
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("", ""),
+        ("plain", "plain"),
+        ("$(var name)", "talker"),
+        ("a/$(var name)/b", "a/talker/b"),
+        ("$(var nothing fallback)", "fallback"),
+        ("$(var nothing 'two words')", "two words"),
+        ("$(var nothing '')", ""),
+        ("$(env ROBOT)", "r2"),
+        ("$(env NOTHING none)", "none"),
+        ("$(dirname)/b.yaml", "/w/launch/b.yaml"),
+        ("$(var $(env KEY name))", "talker"),
+        ("$(eval '$(var rate) * 2')", "5.0"),
+        ("$(eval 1 + 1)", "2"),
+        ('$(eval \'"$(var name)" == "talker"\')', "True"),
+        ("$(not $(var yes))", "false"),
+        ("$(and true $(var yes))", "true"),
+        ("$(equals $(var name) talker)", "true"),
+        ("$(if $(var yes) a b)", "a"),
+        ("cost: $5", "cost: $5"),
+        (r"\$(var name)", "$(var name)"),
+        ("$(command 'echo hello there')", "hello there\n"),
+    ],
+)
+def test_substitutions_in_texts(text: str, value: str, context: LaunchContext) -> None:
+    assert perform(context, parse_text(text)) == value
+
+
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        ("$(var name", "is not closed"),
+        ("$(what name)", "Unknown substitution: what"),
+        ("$(var)", "expects 1 to 2 argument"),
+        ("$(dirname x)", "expects 0 argument"),
+        ("$(var 'x)", "a ' is missing"),
+    ],
+)
+def test_wrong_texts(text: str, error: str) -> None:
+    with pytest.raises(FrontendError, match=error):
+        parse_text(text)
+
+
+def test_what_has_no_value_is_named(context: LaunchContext) -> None:
+    with pytest.raises(SubstitutionFailure, match="launch configuration 'nothing' does not exist"):
+        perform(context, parse_text("$(var nothing)"))
+    with pytest.raises(SubstitutionFailure, match="environment variable 'NOTHING' does not exist"):
+        perform(context, parse_text("$(env NOTHING)"))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("echo  a 'b c'", ["echo", "a", "b c"]),
+        ("run --name=$(var name) x", ["run", "--name=talker", "x"]),
+        ("$(var name)", ["talker"]),
+        ("a $(var nothing 'b c') d", ["a", "b c", "d"]),
+        ("--rate $(var rate)", ["--rate", "2.5"]),
+    ],
+)
+def test_command_lines_are_split_at_spaces(text: str, words: list[str], context: LaunchContext) -> None:
+    assert [perform(context, word) for word in parse_command(text)] == words
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "value"),
+    [
+        ("5", None, 5),
+        ("5.0", None, 5.0),
+        ("true", None, True),
+        ("hello", None, "hello"),
+        ("[1, 2]", None, [1, 2]),
+        ("5", str, "5"),
+        ("5", float, 5.0),
+        ("1", bool, True),
+        ("[1, 2]", list[int], [1, 2]),
+        ("[a]", list[str], ["a"]),
+    ],
+)
+def test_values_of_texts(text: str, kind: Any, value: object) -> None:
+    found = value_of_text(text, kind)
+    assert found == value
+    assert type(found) is type(value)
+
+
+@pytest.mark.parametrize(("text", "kind"), [("x", int), ("[1, a]", None), ("maybe", bool), ("5", list[int])])
+def test_values_that_do_not_fit(text: str, kind: Any) -> None:
+    with pytest.raises(ValueError):  # noqa: PT011 (the texts differ, the kind is what matters)
+        value_of_text(text, kind)
+
+
+def test_only_four_words_are_truth_values() -> None:
+    assert [truth(word) for word in ("true", "True", "1", " false ", "0")] == [True, True, True, False, False]
+    with pytest.raises(InvalidConditionExpressionError, match="must be true, false, 1 or 0"):
+        truth("yes")
+
+
+def test_both_formats_give_the_same_entities() -> None:
+    xml = from_xml(
+        '<launch><node pkg="p" exec="e"><remap from="a" to="b"/></node>'
+        '<group scoped="false"><log message="m"/></group></launch>'
+    )
+    yaml = from_yaml(
+        "launch:\n- node:\n    pkg: p\n    exec: e\n    remap:\n    - {from: a, to: b}\n"
+        "- group:\n    scoped: 'false'\n    children:\n    - log: {message: m}\n"
+    )
+    assert xml == yaml
+
+
+@pytest.mark.parametrize(
+    ("body", "error"),
+    [
+        ('<node pkg="p" exec="e" nmae="x"/>', "Unexpected attribute.* found in `node`: nmae"),
+        ('<node pkg="p"/>', "Attribute 'exec' not found in Entity 'node'"),
+        ('<node pkg="p" exec="e"><remap from="a"/></node>', "Attribute 'to' not found in Entity 'remap'"),
+        ('<node pkg="p" exec="e"><parm name="a"/></node>', "Unexpected nested tag.* found in `node`: parm"),
+        ('<node pkg="p" exec="e"><param name="a"/></node>', "needs either a value or nested params"),
+        ('<nod pkg="p"/>', "Unrecognized entity of the type: nod"),
+        ("<node_container/>", "needs the full launch"),
+        ('<log message="a" if="1" unless="0"/>', "can't be used simultaneously"),
+        ('<group scoped="maybe"/>', "must be true or false"),
+        ("<log", "not well-formed"),
+    ],
+)
+def test_wrong_tags_are_named(body: str, error: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.launch.xml"
+    path.write_text(f"<launch>{body}</launch>")
+    with pytest.raises(FrontendError, match=error):
+        load(str(path))
+
+
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        ("launch: [node: {pkg: p, exec: e, nmae: x}]", "Unexpected attribute"),
+        ("lunch: []", "Expected 'launch' as root tag"),
+        ("launch: []\nmore: []", "Expected only one root"),
+        ("launch: [{node: {}, log: {}}]", "only one key"),
+        ("launch: [", "can not be read"),
+    ],
+)
+def test_wrong_yaml_is_named(text: str, error: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.launch.yaml"
+    path.write_text(text)
+    with pytest.raises(FrontendError, match=error):
+        load(str(path))
+
+
+@pytest.mark.parametrize(
+    ("outer", "inner", "full"),
+    [
+        (None, None, None),
+        (None, "a", "/a"),
+        ("/a", None, "/a"),
+        ("/a", "b", "/a/b"),
+        ("/a", "/b/", "/b"),
+        ("/", "b", "/b"),
+        ("/a", "/", "/"),
+    ],
+)
+def test_namespaces(outer: str | None, inner: str | None, full: str | None) -> None:
+    assert inner_namespace(outer, inner) == full
+
+
+@pytest.mark.parametrize("name", ["1st", "my node", "a/b", ""])
+def test_wrong_names(name: str) -> None:
+    with pytest.raises(ValueError, match="Invalid node name"):
+        check_node_name(name)
+    with pytest.raises(ValueError, match="Invalid namespace"):
+        check_namespace(f"/{name}/x" if name != "a/b" else "/a//b")
