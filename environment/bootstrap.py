@@ -29,6 +29,8 @@ ROOT = Path(__file__).resolve().parent.parent
 # What the environment with everything takes, and some air for the build, in bytes.
 _SPACE_NEEDED = 1_600_000_000
 _LOG_LINES_SHOWN = 25
+# pip names all of its packages in one line.
+_LOG_COLUMNS_SHOWN = 200
 
 
 def say(line: str) -> None:
@@ -88,7 +90,8 @@ def _explain_failure(log_path: Path) -> None:
     except OSError:
         return
     text = "".join(lines)
-    print(text.rstrip(), file=sys.stderr)
+    for line in lines:
+        print(f"  | {line.rstrip()[:_LOG_COLUMNS_SHOWN]}", file=sys.stderr)
     if "No space left on device" in text:
         say("the disk is full.")
     elif "HASHES" in text:

@@ -229,3 +229,10 @@ def test_an_old_python_is_told_to_the_user(course: Course, tmp_path: Path) -> No
     assert done.returncode == 2
     assert "Python 3.11 or newer is needed" in done.stderr
     assert course.ran() == []
+
+
+def test_a_named_python_that_is_none_is_an_error_and_no_other_is_taken(course: Course) -> None:
+    done = course.run("check", PYTHON="/nowhere/my python")
+    assert done.returncode == 2
+    assert "/nowhere/my python" in done.stderr
+    assert course.ran() == []

@@ -153,9 +153,10 @@ def test_a_failure_shows_the_end_of_the_log_and_the_usual_cause(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, said: str
 ) -> None:
     log = tmp_path / "setup.log"
-    log.write_text("\n".join([*(f"line {number}" for number in range(100)), line]) + "\n")
+    log.write_text("\n".join([*(f"line {number}" for number in range(100)), "x" * 5000, line]) + "\n")
     bootstrap._explain_failure(log)
     shown = capsys.readouterr().err
     assert line in shown
     assert "line 10\n" not in shown
+    assert max(len(shown_line) for shown_line in shown.splitlines()) < 300
     assert said.lower() in shown.lower()
