@@ -71,7 +71,8 @@ class CellRun:
     Attributes:
         ended: How it ended.
         outputs: nbformat outputs, capped and stripped of what a browser would execute.
-        error: ``"NameError: name 'x' is not defined"`` for a cell that raised, else empty. The student's own words.
+        error: ``"NameError: name 'x' is not defined"`` for a cell that raised, else empty. The student's own
+            words.
         seconds: Wall time.
     """
 

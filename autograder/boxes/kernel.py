@@ -1,8 +1,9 @@
 """A Jupyter kernel as a child process, spoken to over Unix sockets with nothing but polling and deadlines.
 
-nbclient is made for notebooks one trusts: it keeps all output, believes each message's form and learns of a dead
-kernel from a heartbeat. Here every wait ends at a message, at the process's end or at a deadline, whichever is
-first, and what arrives is only looked at as far as it has the right form (Jupyter messaging specification 5.4).
+nbclient is made for notebooks one trusts: it keeps all output, believes each message's form and learns of a
+dead kernel from a heartbeat. Here every wait ends at a message, at the process's end or at a deadline,
+whichever is first, and what arrives is only looked at as far as it has the right form (Jupyter messaging
+specification 5.4).
 """
 
 from __future__ import annotations
@@ -300,7 +301,8 @@ def _command(connection: Path) -> Sequence[str]:
         "ipykernel_launcher",
         "-f",
         str(connection),
-        # No history file: two kernels would wait for each other's lock, and a student's words belong in no home.
+        # No history file: two kernels would wait for each other's lock, and a student's words belong in no
+        # home.
         "--HistoryManager.hist_file=:memory:",
         "--HistoryManager.enabled=False",
     )

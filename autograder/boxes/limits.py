@@ -10,8 +10,10 @@ class Limits:
     """Every limit has its own clear word in the feedback.
 
     Attributes:
-        cell_seconds: Wall time of one cell. A check cell gets its exercise's limit and ``check_margin`` instead.
-        check_margin: Seconds beyond the judge's own limit, so that its verdict arrives before the cell is stopped.
+        cell_seconds: Wall time of one cell. A check cell gets its exercise's limit and ``check_margin``
+            instead.
+        check_margin: Seconds beyond the judge's own limit, so that its verdict arrives before the cell is
+            stopped.
         notebook_seconds: Wall time of all cells together, checks included.
         interrupt_grace: Seconds that an interrupted cell has to end before its kernel is killed.
         start_seconds: Wall time until a kernel must have answered.

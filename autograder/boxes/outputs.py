@@ -156,7 +156,7 @@ class OutputCollector:
 
 
 def _text(value: Any) -> str:
-    """``value`` as text that can be written as UTF-8; a lone surrogate would end the conversion of the notebook."""
+    """``value`` as text that UTF-8 can hold; a lone surrogate would end the conversion of the notebook."""
     text = value if isinstance(value, str) else "" if value is None else repr(value)[:1000]
     return text.encode("utf-8", "replace").decode("utf-8")
 
@@ -175,7 +175,7 @@ def _is_base64(text: str) -> bool:
 
 
 def _without_overwritten_lines(output: dict[str, Any]) -> dict[str, Any]:
-    """Join a stream's pieces; of a line that was overwritten with carriage returns keep what a terminal would show."""
+    """Join a stream's pieces; of a line overwritten with carriage returns keep what a terminal would show."""
     if output["output_type"] != "stream":
         return output
     lines = "".join(output["text"]).replace("\r\n", "\n").split("\n")

@@ -44,10 +44,12 @@ def end_tree(pid: int) -> None:
 def end_descendants(within: float = 3.0) -> int:
     """Kill every descendant of this process and reap it.
 
-    Meant for a worker between two submissions, when nothing of its own is running and :func:`adopt_orphans` holds.
+    Meant for a worker between two submissions, when nothing of its own is running and :func:`adopt_orphans`
+    holds.
 
     Args:
-        within: Seconds after which to give up; a process in an uninterruptible system call dies when that ends.
+        within: Seconds after which to give up; a process in an uninterruptible system call dies when that
+            ends.
 
     Returns:
         How many processes were found.
@@ -60,7 +62,8 @@ def end_descendants(within: float = 3.0) -> int:
             break
         seen.update(process.pid for process in alive if not _is_zombie(process))
         _kill(alive)
-        # A killed process becomes our own child when its parent dies; there is no event for "one of these ended".
+        # A killed process becomes our own child when its parent dies; there is no event for "one of these
+        # ended".
         if not _reap():
             time.sleep(0.005)
     return len(seen)

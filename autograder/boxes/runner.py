@@ -1,7 +1,7 @@
 """Executing a rebuilt notebook cell by cell, with the judge looking at each check cell.
 
-What the notebook prints, raises or returns decides nothing. A check cell's result is what the judge has to say
-once the cell has run, and where the judge has nothing to say it is zero, with the reason.
+What the notebook prints, raises or returns decides nothing. A check cell's result is what the judge has to
+say once the cell has run, and where the judge has nothing to say it is zero, with the reason.
 """
 
 from __future__ import annotations
@@ -115,13 +115,18 @@ class _Run:
         runs = [self._cell_run(index) for index in range(len(self._cells))]
         for index, cell in enumerate(self._cells):
             if cell.check is not None and index not in self._verdicts:
-                before = [
-                    (_title(self._cells[i]), runs[i])
-                    for i in range(index)
-                    if self._cells[i].kind is Kind.CODE
-                ]
+                before = self._what_led_to(index, runs)
                 self._verdicts[index] = without_verdict(cell.check, runs[index], before, self._limit(cell))
         return Execution(tuple(runs), self._verdicts, self._trouble, seconds, start_seconds)
+
+    def _what_led_to(self, check: int, runs: list[CellRun]) -> list[tuple[str, CellRun]]:
+        """The code cells before a check, with titles: those since the last one, or all if none went wrong."""
+        code = [index for index in range(check) if self._cells[index].kind is Kind.CODE]
+        checks = [index for index in code if self._cells[index].check is not None]
+        recent = [index for index in code if index > (checks[-1] if checks else -1)]
+        if all(runs[index].ended is Ended.DONE or runs[index].ended is Ended.NOT_RUN for index in recent):
+            recent = [index for index in code if index not in checks]
+        return [(_title(self._cells[index]), runs[index]) for index in recent]
 
     def failed(self, reason: str, seconds: float) -> Execution:
         """The execution where the grader's own side failed: no check of it says anything."""

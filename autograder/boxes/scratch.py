@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import shutil
 import stat
 import tempfile
@@ -34,9 +33,10 @@ def remove_tree(folder: Path) -> None:
     shutil.rmtree(folder, onerror=_make_writable)
 
 
-def _make_writable(function: Callable[[str], Any], path: str, _: Any) -> None:
+def _make_writable(function: Callable[[str], Any], name: str, _: Any) -> None:
+    path = Path(name)
     with contextlib.suppress(OSError):
-        os.chmod(os.path.dirname(path), stat.S_IRWXU)  # noqa: PTH101, PTH120  (shutil hands us a str)
-        if not os.path.islink(path):  # noqa: PTH114
-            os.chmod(path, stat.S_IRWXU)  # noqa: PTH101
-        function(path)
+        path.parent.chmod(stat.S_IRWXU)
+        if not path.is_symlink():
+            path.chmod(stat.S_IRWXU)
+        function(name)

@@ -46,7 +46,7 @@ def without_verdict(check: Check, run: CellRun, before: list[tuple[str, CellRun]
     Args:
         check: The check that was to be made.
         run: What came of the check cell.
-        before: The cells before it, each with its first line, in order.
+        before: The cells since the last check, each with its first line, in order.
         limit: Seconds of wall time that the check cell had.
     """
     match run.ended:
@@ -91,36 +91,38 @@ def _out_of_time(check: Check, before: list[tuple[str, CellRun]]) -> Verdict:
     slow = [title for title, cell in before if cell.ended is Ended.TIMED_OUT]
     reason = "The notebook's time was up before this check cell had its turn."
     if slow:
-        reason = f"The cell that begins with `{slow[-1]}` did not end within its time limit, nor when it was interrupted."
+        reason = (
+            f"The cell that begins with `{slow[-1]}` did not end at its time limit, nor when interrupted."
+        )
     return zero(
         check,
         "notebook_timed_out",
         reason,
-        "Look for a loop that never ends. Restart the kernel and run all cells: every cell must come to its end.",
+        "Look for a loop that never ends. Restart the kernel and run all cells: each must come to its end.",
     )
 
 
 def _stopped_by_error(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:
-    """The cell raised, most often because what it names was never defined; the cause then lies in an earlier cell."""
-    cause = next(((title, cell) for title, cell in reversed(before) if cell.ended is Ended.TIMED_OUT), None)
-    if cause:
+    """The cell raised, mostly because what it names was never defined: the cause is in an earlier cell."""
+    title, cause = next(
+        ((title, cell) for title, cell in before if cell.ended in (Ended.RAISED, Ended.TIMED_OUT)), ("", None)
+    )
+    if cause is not None and cause.ended is Ended.TIMED_OUT:
         return zero(
             check,
             "cell_timed_out",
-            f"The cell that begins with `{cause[0]}` was stopped at its time limit. Then the check cell could not "
-            f"begin: {run.error}",
+            f"The cell that begins with `{title}` was stopped at its time limit. "
+            f"Then the check cell could not begin: {run.error}",
             "Look for a loop that never ends. To keep a node running, spin it in the background.",
         )
-    cause = next(((title, cell) for title, cell in reversed(before) if cell.ended is Ended.RAISED), None)
-    where = f" The cell that begins with `{cause[0]}` had ended with {cause[1].error}." if cause else ""
-    earlier = cause[1].error if cause else run.error
-    key = "syntax_error" if earlier.startswith(_SYNTAX_ERRORS) else "crashed"
+    first = cause or run
+    where = f" It began in the cell that begins with `{title}`: {first.error}." if cause else ""
     return zero(
         check,
-        key,
+        "syntax_error" if first.error.startswith(_SYNTAX_ERRORS) else "crashed",
         f"The check cell stopped before the check could begin: {run.error}.{where}",
         "Mend the first cell that shows an error, then restart the kernel and run all cells.",
-        detail=_end_of_traceback(cause[1] if cause else run),
+        detail=_end_of_traceback(first),
     )
 
 

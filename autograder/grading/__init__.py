@@ -1,1 +1,69 @@
-"""Grading a class: an nbgrader course directory whose notebooks are judged on the wire."""
+"""Grading a class: an nbgrader course directory whose notebooks are judged on the wire.
+
+The commands come in here. Imports are inside the functions: nbgrader alone takes more than a second.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from rich.console import Console
+
+    from autograder.grading.new_class import NewClass
+    from autograder.grading.report import GradeReport
+
+
+def new_class(path: Path, course_root: Path, *, assignments: Sequence[str] = ()) -> NewClass:
+    """Make a class directory; see :func:`autograder.grading.new_class.new_class`.
+
+    Raises:
+        GradingError: It cannot be made; the message says what to do.
+    """
+    from autograder.grading.new_class import new_class as make
+
+    return make(path, course_root, assignments=assignments)
+
+
+def grade(
+    path: Path,
+    *,
+    assignments: Sequence[str] = (),
+    students: Sequence[str] = (),
+    again: bool = False,
+    jobs: int | None = None,
+    console: Console | None = None,
+) -> GradeReport:
+    """Grade a class and print what came of it; see :func:`autograder.grading.batch.grade`.
+
+    Args:
+        path: The class directory.
+        assignments: Only these; all by default.
+        students: Only these; all by default.
+        again: Execute everything anew, also what is unchanged.
+        jobs: Notebooks executed at once; as many as there are processors by default.
+        console: Where the result is printed; standard output by default. Progress goes to standard error.
+
+    Raises:
+        GradingError: The class cannot be graded; the message says what to do.
+    """
+    from autograder.grading.batch import grade as grade_class
+    from autograder.grading.showing import show
+
+    report = grade_class(path, assignments=assignments, students=students, again=again, jobs=jobs)
+    show(report, console)
+    return report
+
+
+def demo(path: Path, *, console: Console | None = None) -> GradeReport:
+    """Make the sample class where it is not there yet, grade it and print the result.
+
+    Raises:
+        GradingError: It cannot be made or graded; the message says what to do.
+    """
+    from autograder.grading.sample_class import demo as show_sample
+
+    return show_sample(path, console=console)

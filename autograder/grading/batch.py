@@ -1,8 +1,8 @@
 """Grading a class: rebuild, execute in parallel, write one after the other.
 
-The order makes it fail closed. What is not known to be right in the gradebook is taken back first; then each result
-goes into the journal and from there, by one writer, into the gradebook. A run that is killed has left zeros and
-results, never a wrong grade, and the next run goes on from there.
+The order makes it fail closed. What is not known to be right in the gradebook is taken back first; then each
+result goes into the journal and from there, by one writer, into the gradebook. A run that is killed has left
+zeros and results, never a wrong grade, and the next run goes on from there.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def grade(
     *,
     assignments: Sequence[str] = (),
     students: Sequence[str] = (),
-    workers: int | None = None,
+    jobs: int | None = None,
     again: bool = False,
     feedback: bool = True,
     console: Console | None = None,
@@ -72,7 +72,7 @@ def grade(
         path: The class directory.
         assignments: Only these; all by default.
         students: Only these; all by default.
-        workers: Notebooks executed at once; as many as there are processors by default.
+        jobs: Notebooks executed at once; as many as there are processors by default.
         again: Execute everything anew, also what is unchanged.
         feedback: Make the pages that go back to the students.
         console: Where progress is shown; standard error by default.
@@ -89,7 +89,7 @@ def grade(
     console = console or Console(stderr=True)
     with directory.lock(), _disk_full_is_clear(directory.path):
         _check_release(directory)
-        batch = _Batch(directory, console, workers or os.cpu_count() or 1, judge)
+        batch = _Batch(directory, console, jobs or os.cpu_count() or 1, judge)
         batch.collect(assignments, students)
         batch.plan(again)
         batch.run()
@@ -288,8 +288,9 @@ def _check_release(directory: ClassDirectory) -> None:
             have = entered.get(notebook, {})
             if any(have.get(name) != worth for name, worth in wanted.items()):
                 raise ClassIncomplete(
-                    f"The gradebook does not know {notebook} as it is in {directory.path / 'source' / assignment}. "
-                    f"Enter it: cd {directory.path} && nbgrader generate_assignment {assignment} --force"
+                    f"The gradebook does not know {notebook} as it is in "
+                    f"{directory.path / 'source' / assignment}. Enter it: "
+                    f"cd {directory.path} && nbgrader generate_assignment {assignment} --force"
                 )
 
 

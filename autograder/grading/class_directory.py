@@ -80,7 +80,7 @@ class ClassDirectory:
 
     @property
     def state(self) -> Path:
-        """The folder of the autograder's own files: secret, lock, journal, log. Never released to students."""
+        """The folder of the autograder's own files: secret, lock, journal, log. Nothing for students."""
         return self.path / STATE_NAME
 
     @property
@@ -105,8 +105,8 @@ class ClassDirectory:
         steps = [str(step) for step in config.Autograde.get("autograde_preprocessors", ())]
         if not any("WireExecute" in step for step in steps):
             raise ClassIncomplete(
-                f"{self.path / CONFIG_NAME} does not grade with the judge. Make a class with `autograder new-class` "
-                f"and copy the lines on Autograde from its {CONFIG_NAME}."
+                f"{self.path / CONFIG_NAME} does not grade with the judge. Make a class with "
+                f"`autograder new-class` and copy the lines on Autograde from its {CONFIG_NAME}."
             )
         config.CourseDirectory.root = str(self.path)
         return config
@@ -126,7 +126,8 @@ class ClassDirectory:
             return read_secret(path)
         except ValueError as error:
             raise ClassIncomplete(
-                f"{path} is damaged ({error}). Put back a copy of it, or delete it: then every student gets new inputs."
+                f"{path} is damaged ({error}). Put back a copy of it, or delete it: "
+                "then every student gets new inputs."
             ) from error
 
     def assignments(self) -> list[str]:
@@ -203,8 +204,8 @@ class ClassDirectory:
 def reason_against_name(name: str) -> str:
     """Why a folder's name cannot be a student's id; empty where it can.
 
-    nbgrader looks for folders with wildcards and splits paths at separators, so that some characters would find a
-    neighbour's folder or none; control characters would forge lines in a terminal or a log.
+    nbgrader looks for folders with wildcards and splits paths at separators, so that some characters would
+    find a neighbour's folder or none; control characters would forge lines in a terminal or a log.
     """
     if len(name.encode("utf-8", "surrogateescape")) > _LONGEST_NAME:
         return f"the name is longer than {_LONGEST_NAME} bytes"
@@ -216,7 +217,7 @@ def reason_against_name(name: str) -> str:
 
 
 def _folders(parent: Path, refused: list[Refused]) -> list[Path]:
-    """The folders in ``parent`` with usable names; hidden entries and plain files beside them are nobody's work."""
+    """The folders in ``parent`` with usable names; hidden entries and plain files are nobody's work."""
     found = []
     for entry in sorted(parent.iterdir()) if parent.is_dir() else []:
         if entry.name.startswith("."):

@@ -1,4 +1,4 @@
-"""Executing tasks in worker processes. A worker that dies costs only its task, and that is tried once more."""
+"""Executing tasks in worker processes. A worker that dies costs only its task, which is tried once more."""
 
 from __future__ import annotations
 
@@ -106,8 +106,9 @@ class _Lane(threading.Thread):
         self._waiting, self._done = waiting, done
         self._command = [sys.executable, "-m", "autograder.grading.worker", str(scratch), judge]
         self._on_start = on_start
-        # What a worker says on its way down; kept in a file, since a pipe that nobody reads would fill up.
-        self._log = tempfile.TemporaryFile()  # noqa: SIM115  (lives as long as the lane)
+        # What a worker says on its way down, in a file: a pipe that nobody reads would fill up. Lives with
+        # the lane.
+        self._log = tempfile.TemporaryFile()  # noqa: SIM115
         self._worker: subprocess.Popen[bytes] | None = None
         self._stopping = False
         self._changing = threading.Lock()

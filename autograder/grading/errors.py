@@ -1,4 +1,4 @@
-"""What can be wrong with a class, each with what to do about it. The command line ends with exit code 2 on these."""
+"""What can be wrong with a class, and what to do. The command line ends with exit code 2 on these."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """The door through which nbgrader reads a submission.
 
-nbgrader's own door is nbformat, which raises on a file that is no notebook: the batch then goes on without the
-student and an earlier grade stays where it was. Here a submission that cannot be read is a notebook like any other,
-with the reason in it, and the grades are reset before anything else happens.
+nbgrader's own door is nbformat, which raises on a file that is no notebook: the batch then goes on without
+the student and an earlier grade stays where it was. Here a submission that cannot be read is a notebook like
+any other, with the reason in it, and the grades are reset before anything else happens.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class SubmissionExporter(NotebookExporter):
 
 
 def _drop_copies(target: Path, given: Mapping[str, bytes]) -> None:
-    """Remove what nbgrader copied from beside the notebook, following links; none of it goes into feedback."""
+    """Remove what nbgrader copied from beside the notebook, links and all; none of it goes into feedback."""
     for path in sorted(target.rglob("*"), reverse=True):
         if path.is_dir() and not path.is_symlink():
             if not any(path.iterdir()):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from nbgrader.api import Gradebook, MissingEntry
+from nbgrader.api import Gradebook, MissingEntry, SubmittedAssignment
 
 Scores = Mapping[str, float | None]
 """By grade_id; None where there is no automatic score."""
@@ -13,8 +13,8 @@ Scores = Mapping[str, float | None]
 def reset(url: str, submissions: Iterable[tuple[str, str]]) -> None:
     """Take back the automatic grades of these submissions, in one transaction.
 
-    Zero, and marked as to be looked at: whatever happens from here on, no earlier score is left. A grade that an
-    instructor gave by hand is the instructor's and stays.
+    Zero, and marked as to be looked at: whatever happens from here on, no earlier score is left. A grade that
+    an instructor gave by hand is the instructor's and stays.
 
     Args:
         url: What SQLAlchemy opens the gradebook by.
@@ -35,18 +35,28 @@ def reset(url: str, submissions: Iterable[tuple[str, str]]) -> None:
 
 def scores(url: str, assignment: str) -> dict[str, dict[str, Scores]]:
     """The automatic scores of an assignment: by student, by notebook, by grade_id."""
-    found: dict[str, dict[str, Scores]] = {}
     with Gradebook(url) as book:
         try:
             submissions = book.find_assignment(assignment).submissions
         except MissingEntry:
             return {}
-        for submission in submissions:
-            found[submission.student.id] = {
-                notebook.name: {grade.name: grade.auto_score for grade in notebook.grades}
-                for notebook in submission.notebooks
-            }
-    return found
+        return {submission.student.id: _scores(submission) for submission in submissions}
+
+
+def scores_of_student(url: str, assignment: str, student: str) -> dict[str, Scores]:
+    """The automatic scores of one submission: by notebook, by grade_id."""
+    with Gradebook(url) as book:
+        try:
+            return _scores(book.find_submission(assignment, student))
+        except MissingEntry:
+            return {}
+
+
+def _scores(submission: SubmittedAssignment) -> dict[str, Scores]:
+    return {
+        notebook.name: {grade.name: grade.auto_score for grade in notebook.grades}
+        for notebook in submission.notebooks
+    }
 
 
 def worth(url: str, assignment: str) -> dict[str, dict[str, float]]:

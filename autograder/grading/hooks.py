@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 def before_autograde(notebooks: Sequence[str], **_: Any) -> None:
     """Take back the grades of the submission that is about to be graded.
 
-    nbgrader may still fail before it reads the first notebook (a file that cannot be copied, say), and would then
-    leave yesterday's score in the gradebook.
+    nbgrader may still fail before it reads the first notebook (a file that cannot be copied, say), and would
+    then leave yesterday's score in the gradebook.
 
     Args:
         notebooks: Full paths ``.../submitted/<student>/<assignment>/<notebook>.ipynb`` of one submission.

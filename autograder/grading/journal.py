@@ -1,4 +1,4 @@
-"""The results that are final, each under the hash of all it depends on; what is here is not executed again."""
+"""Results that are final, each under the hash of all it depends on; what is here is not executed again."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class _Entry:
 
 
 class Journal:
-    """One file a student's notebook, replaced as a whole, so that a killed run leaves old or new and nothing between.
+    """One file a student's notebook, replaced as a whole: a killed run leaves old or new, nothing between.
 
     Args:
         folder: Made when the first result is written.

@@ -1,4 +1,4 @@
-"""The trusted master that a submission is rebuilt from: the class's source notebook with stubs for solutions."""
+"""The trusted master of a submission: the class's source notebook with stubs for solutions."""
 
 from __future__ import annotations
 
@@ -89,8 +89,8 @@ def _check_cells(source: Path, notebook: NotebookNode) -> None:
             check_of(cell)
         except LookupError as error:
             raise MasterUnusable(
-                f"{source}: the cell {name!r} carries points, but {error}. Only the judge's verdict earns points: "
-                "name the cell after its exercise, or mark it as manually graded."
+                f"{source}: the cell {name!r} carries points, but {error}. Only the judge's verdict earns "
+                "points: name the cell after its exercise, or mark it as manually graded."
             ) from error
 
 

@@ -14,6 +14,7 @@ from autograder.grading.class_directory import CONFIG_NAME, STATE_NAME, ClassDir
 from autograder.grading.errors import ClassExists, GradingError
 from autograder.grading.seeds import create_secret
 from autograder.grading.writer import quiet
+from autograder.masters.errors import MasterError
 from autograder.masters.layout import masters
 from autograder.masters.source import source_notebook
 
@@ -38,7 +39,7 @@ c.CourseDirectory.root = os.path.dirname(os.path.abspath(__file__))
 # What students get: each solution replaced by its TODO comment, given cells locked.
 c.GenerateAssignment.preprocessors = release_preprocessors()
 
-# How a submission is read: rebuilt from the source notebook, with nothing but the text of the student's cells.
+# How a submission is read: rebuilt from the source notebook, with only the text of the student's cells.
 c.Autograde.exporter_class = "autograder.grading.exporter.SubmissionExporter"
 c.Autograde.pre_convert_hook = "autograder.grading.hooks.before_autograde"
 c.Autograde.sanitize_preprocessors = ["nbgrader.preprocessors.CheckCellMetadata"]
@@ -56,12 +57,12 @@ c.OverwriteCells.add_missing_cells = True
 # `nbgrader export` and `autograder grade` each write a table: give nbgrader's a name of its own.
 c.ExportPlugin.to = "nbgrader_export.csv"
 
-# Wall time in seconds: of one cell, and of all cells of a notebook. Check cells have their exercise's own limit.
+# Wall time in seconds, of one cell and of a whole notebook. Check cells have their exercise's own limit.
 c.WireExecute.cell_seconds = {cell_seconds:g}
 c.WireExecute.notebook_seconds = {notebook_seconds:g}
 
-# For `nbgrader validate`, which runs a notebook without the judge's box: nbgrader takes 0 points for a log line on
-# stderr, where ROS writes them by default.
+# For `nbgrader validate`, which runs a notebook without the judge's box: nbgrader takes 0 points for a log
+# line on stderr, where ROS writes them by default.
 os.environ.setdefault("RCUTILS_LOGGING_USE_STDOUT", "1")
 os.environ.setdefault("RCUTILS_COLORIZED_OUTPUT", "0")
 '''
@@ -78,6 +79,17 @@ class NewClass:
 
     path: Path
     assignments: tuple[str, ...]
+
+    def summary(self) -> str:
+        """What was made and what comes next, in a few lines."""
+        return "\n".join(
+            (
+                f"{self.path} is a class with these assignments: {', '.join(self.assignments)}.",
+                f"Hand out       {self.path / 'release'}",
+                f"Put work into  {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
+                f"Then           autograder grade {self.path}",
+            )
+        )
 
 
 def new_class(
@@ -99,8 +111,7 @@ def new_class(
 
     Raises:
         ClassExists: There is something already, or the place lies inside the repository.
-        GradingError: An assignment is not known, or nbgrader could not make it.
-        MasterError: A master cannot be used.
+        GradingError: An assignment is not known, its master cannot be used, or nbgrader could not make it.
     """
     path = path.absolute()
     _check_place(path, course_root)
@@ -130,17 +141,23 @@ def _check_place(path: Path, course_root: Path) -> None:
     place = path.resolve()
     if place.is_relative_to(repository) and place != repository / DEMO_NAME:
         raise ClassExists(
-            f"{path} lies inside the course's repository, where students' work could be committed by mistake. "
-            f"Choose a place outside of {repository}."
+            f"{path} lies inside the course's repository, where students' work could be committed "
+            f"by mistake. Choose a place outside of {repository}."
         )
 
 
 def _sources(course_root: Path, wanted: Sequence[str]) -> dict[str, NotebookNode]:
-    known = {master.stem: master for master in masters(course_root)}
+    try:
+        known = {master.stem: master for master in masters(course_root)}
+    except MasterError as error:
+        raise GradingError(str(error)) from error
     for name in wanted:
         if name not in known:
             raise GradingError(f"There is no master named {name}. The course has: {', '.join(known)}.")
-    notebooks = {name: source_notebook(known[name]) for name in wanted or known}
+    try:
+        notebooks = {name: source_notebook(known[name]) for name in wanted or known}
+    except MasterError as error:
+        raise GradingError(str(error)) from error
     return {name: nb for name, nb in notebooks.items() if wanted or _is_graded(nb)}
 
 
@@ -178,5 +195,6 @@ def release(directory: ClassDirectory) -> None:
                 converter.start()
         except Exception as error:
             raise GradingError(
-                f"nbgrader could not generate the assignment {assignment}: {error}. See {directory.state / 'nbgrader.log'}."
+                f"nbgrader could not generate the assignment {assignment}: {error}. "
+                f"See {directory.state / 'nbgrader.log'}."
             ) from error

@@ -1,8 +1,8 @@
 """The notebook that is executed: built from the trusted master, with nothing but text from the submission.
 
-Locked cells and check cells come from the master, in its order. From the submission come the text of the solution
-cells and the student's own cells, which keep their place relative to their neighbours. Everything else that a
-submission brings (metadata, tags, outputs, attachments, ids) is left behind.
+Locked cells and check cells come from the master, in its order. From the submission come the text of the
+solution cells and the student's own cells, which keep their place relative to their neighbours. Everything
+else that a submission brings (metadata, tags, outputs, attachments, ids) is left behind.
 """
 
 from __future__ import annotations
@@ -41,7 +41,8 @@ def rebuild(master: NotebookNode, submitted: Sequence[SubmittedCell], left_out: 
     """Build the notebook from the master and the submitted cells.
 
     Args:
-        master: As it was released: stubs in place of solutions, every cell that matters named by its grade_id.
+        master: As it was released: stubs in place of solutions, every cell that matters named by its
+            grade_id.
         submitted: The submission's cells.
         left_out: How many cells could not be read.
     """
@@ -53,7 +54,7 @@ def rebuild(master: NotebookNode, submitted: Sequence[SubmittedCell], left_out: 
 
 
 def rebuild_unreadable(master: NotebookNode, problem: str) -> Rebuilt:
-    """What stands in the gradebook for a submission that is no notebook: the unanswered master and the reason."""
+    """What stands for a submission that is no notebook: the unanswered master and the reason."""
     remarks = [f"This submission could not be graded. {problem}"]
     return _finished([nodes.copied(cell) for cell in master.cells], remarks)
 
@@ -82,7 +83,8 @@ class _Sorting:
                 built += pending
                 pending = []
             built.append(self._filled(name, cell))
-            # Any other deleted cell comes back before them: its stub must not replace an answer given elsewhere.
+            # Any other deleted cell comes back before them: its stub must not replace an answer given
+            # elsewhere.
             pending += [_extra(extra) for extra in groups.get(name, [])]
         return built + pending
 
@@ -112,14 +114,15 @@ class _Sorting:
         found = []
         if len(places) > 1 and is_answer(master):
             found.append(
-                f"The cell {_quoted(name)} was there {len(places)} times. The last one that you changed counts as "
-                "your answer; the others run as cells of your own."
+                f"The cell {_quoted(name)} was there {len(places)} times. The last one that you changed "
+                "counts as your answer; the others run as cells of your own."
             )
         elif len(places) > 1:
             found.append(f"The cell {_quoted(name)} was there {len(places)} times. It runs once.")
         if cell.kind != master.cell_type:
             found.append(
-                f"The cell {_quoted(name)} had become a {cell.kind} cell. It is a {master.cell_type} cell again."
+                f"The cell {_quoted(name)} had become a {cell.kind} cell. "
+                f"It is a {master.cell_type} cell again."
             )
         if not is_answer(master) and cell.source.strip() != master.source.strip():
             found.append(f"The cell {_quoted(name)} is not yours to change. The original was used.")

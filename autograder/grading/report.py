@@ -7,15 +7,12 @@ import io
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rich.table import Table
-from rich.text import Text
-
 from autograder.grading.journal import write_whole
 from autograder.grading.points import points
 from autograder.verdict import State
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from pathlib import Path
 
     from autograder.boxes.execution import Execution
@@ -137,42 +134,6 @@ def write_csv(path: Path, rows: Iterable[Row]) -> None:
             [*map(_defused, words), *numbers, *map(_defused, (row.state, row.diagnosis, row.reason))]
         )
     write_whole(path, text.getvalue().encode())
-
-
-def table(rows: Sequence[Row]) -> Table:
-    """Students down, exercises across: points, and the diagnosis where some are missing."""
-    exercises = list(dict.fromkeys(row.exercise for row in rows))
-    results = {(row.student, row.exercise): row for row in rows}
-    shown = Table(title=None, header_style="bold", pad_edge=False)
-    shown.add_column("student", no_wrap=True)
-    for exercise in exercises:
-        shown.add_column(exercise)
-    shown.add_column("total", justify="right", no_wrap=True)
-    for student in dict.fromkeys(row.student for row in rows):
-        own = [results.get((student, exercise)) for exercise in exercises]
-        total = sum(row.score for row in own if row)
-        most = sum(row.max_score for row in own if row)
-        shown.add_row(Text(printable(student)), *map(_cell, own), f"{total:g}/{most:g}")
-    return shown
-
-
-def printable(text: str) -> str:
-    """``text`` with whatever could forge a line or move the cursor shown as an escape."""
-    return "".join(
-        c if c.isprintable() else c.encode("unicode_escape", "surrogatepass").decode() for c in text
-    )
-
-
-def _cell(row: Row | None) -> Text:
-    if row is None or row.state == NOT_SUBMITTED:
-        return Text("–", style="dim")
-    style = {State.PASSED: "green", State.FAILED: "red", State.NOT_CHECKED: "yellow"}.get(
-        State(row.state), ""
-    )
-    text = Text(f"{row.score:g}/{row.max_score:g}", style=style)
-    if row.diagnosis:
-        text.append(f" {row.diagnosis}", style="default")
-    return text
 
 
 def _defused(text: str) -> str:

@@ -39,7 +39,7 @@ def read_secret(path: Path) -> bytes:
 
 
 def seed_for(secret: bytes, student: str, assignment: str, notebook: str) -> str:
-    """The seed of one student's notebook; the judge draws each exercise's inputs from it and the exercise's id."""
+    """The seed of one student's notebook; the judge mixes each exercise's id into it."""
     # Lengths are in the message, so that ("ab", "c") and ("a", "bc") never share a seed.
     message = "".join(f"{len(part)}:{part};" for part in (student, assignment, notebook))
     return hmac.new(secret, message.encode(), hashlib.sha256).hexdigest()[:32]

@@ -44,8 +44,8 @@ def read_bytes(path: Path) -> bytes:
     """The bytes of a submitted notebook.
 
     Raises:
-        UnreadableSubmission: It is missing, no regular file, or too large. Links are not followed: one could point
-            at a neighbour's work.
+        UnreadableSubmission: It is missing, no regular file, or too large. Links are not followed: one could
+            point at a neighbour's work.
     """
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
@@ -61,7 +61,7 @@ def read_bytes(path: Path) -> bytes:
         if error.errno == errno.ELOOP:
             raise UnreadableSubmission(f"{path.name} is a link; hand in the notebook itself.") from None
         raise UnreadableSubmission(f"{path.name} could not be opened: {error.strerror}.") from None
-    with os.fdopen(descriptor, "rb") as file:
+    try:
         status = os.fstat(descriptor)
         if not stat.S_ISREG(status.st_mode):
             raise UnreadableSubmission(f"{path.name} is not a file.")
@@ -70,7 +70,10 @@ def read_bytes(path: Path) -> bytes:
                 f"{path.name} has {status.st_size / 1e6:.0f} MB; the limit is {MAX_BYTES / 1e6:.0f} MB. "
                 "Clear its outputs and hand it in again."
             )
-        return file.read(MAX_BYTES + 1)
+        with os.fdopen(descriptor, "rb", closefd=False) as file:
+            return file.read(MAX_BYTES + 1)
+    finally:
+        os.close(descriptor)
 
 
 def parse(data: bytes) -> tuple[list[SubmittedCell], int]:
@@ -106,7 +109,8 @@ def _decoded(data: bytes) -> Any:
         raise UnreadableSubmission("The file is not a notebook: its JSON is nested too deeply.") from None
     except ValueError as error:
         raise UnreadableSubmission(
-            f"The file is not a notebook: it is not JSON ({error}). Save the notebook in JupyterLab and hand in that file."
+            f"The file is not a notebook: it is not JSON ({error}). "
+            "Save the notebook in JupyterLab and hand in that file."
         ) from None
 
 

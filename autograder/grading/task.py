@@ -1,4 +1,4 @@
-"""One notebook of one student, ready to be executed anywhere: plain data, with no path and no secret in it."""
+"""One notebook of one student, ready to be executed anywhere: plain data without a path or a secret."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Task:
         return f"{self.student}/{self.assignment}/{self.notebook}"
 
     def key(self) -> str:
-        """Equal for two tasks whose execution would be the same; a change of anything that matters changes it."""
+        """Equal for two tasks whose execution would be the same; whatever matters changes it."""
         return hashlib.sha256(msgspec.json.encode(self, order="deterministic")).hexdigest()
 
     def without_execution(self) -> Execution:

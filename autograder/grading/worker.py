@@ -1,7 +1,8 @@
 """A process that executes tasks one after the other: JSON lines in, JSON lines out.
 
-It is a process of its own also when there is only one notebook to grade, because it makes itself the parent of
-every daemon that a submission starts, and ends them all. When the grader that started it goes away, so does it.
+It is a process of its own also when there is only one notebook to grade, because it makes itself the parent
+of every daemon that a submission starts, and ends them all. When the grader that started it goes away, so
+does it.
 """
 
 from __future__ import annotations
@@ -113,7 +114,7 @@ class _TellingJudge:
 
 
 def _ros_variables(stack: contextlib.ExitStack) -> Mapping[str, str]:
-    """Loopback only, plain logs on stdout, and a domain of this notebook's own for its demonstration cells."""
+    """Loopback only, plain logs on stdout, and a domain of its own for the notebook's demonstrations."""
     from autograder.judge.domain import lease
     from autograder.judge.settings import ros_environment
 
@@ -133,7 +134,7 @@ def _private_stdout() -> BinaryIO:
 
 
 def _lines() -> Iterator[bytes]:
-    """Tasks as they come. When the grader goes away in the middle of one, end this process and what it started."""
+    """Tasks as they come. When the grader goes away in the middle of one, end this process."""
     lines: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
     idle = threading.Event()
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import logging
-import os
 import shutil
 import warnings
 from dataclasses import dataclass
@@ -117,8 +116,8 @@ class Writer:
     def write_feedback(self, assignment: str, submissions: Sequence[Submission]) -> None:
         """Make the HTML pages that go back to the students.
 
-        One conversion for all of them, since most of its time goes into reading templates. nbgrader goes on after a
-        submission that it cannot convert: ask :meth:`has_feedback` afterwards.
+        One conversion for all of them, since most of its time goes into reading templates. nbgrader goes on
+        after a submission that it cannot convert: ask :meth:`has_feedback` afterwards.
 
         Raises:
             OSError: There is no room on the disk.
@@ -132,8 +131,8 @@ class Writer:
         return all((folder / f"{task.notebook}.html").is_file() for task in tasks)
 
     def _verify(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
-        found = gradebook.scores(self._directory.gradebook_url, submission.assignment).get(
-            submission.student, {}
+        found = gradebook.scores_of_student(
+            self._directory.gradebook_url, submission.assignment, submission.student
         )
         for task, execution in results:
             for name, score in scores_of(task, execution).items():
@@ -153,8 +152,8 @@ class Writer:
 class _Autograde(Autograde):
     """nbgrader's conversion of one submission.
 
-    It expects the notebooks of the assignment, not those that happen to be in the folder: a notebook that was not
-    handed in is graded, with zero.
+    It expects the notebooks of the assignment, not those that happen to be in the folder: a notebook that was
+    not handed in is graded, with zero.
     """
 
     def __init__(
@@ -225,5 +224,5 @@ def quiet(state: Path) -> Iterator[None]:
 def _remove(folder: Path) -> None:
     """Remove a folder of read-only files."""
     if folder.is_dir():
-        os.chmod(folder, 0o700)  # noqa: PTH101
+        folder.chmod(0o700)
         shutil.rmtree(folder)

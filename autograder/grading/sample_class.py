@@ -1,0 +1,172 @@
+"""The sample class: submissions right, wrong and broken, made by this program from one data file."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+from rich.console import Console
+
+from autograder import course
+from autograder.boxes.execution import Kind
+from autograder.grading import nodes
+from autograder.grading.batch import grade
+from autograder.grading.class_directory import CONFIG_NAME, STATE_NAME, SUFFIX
+from autograder.grading.errors import ClassExists
+from autograder.grading.new_class import new_class
+from autograder.grading.rebuild import grade_id
+from autograder.grading.showing import show
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
+
+    from autograder.grading.report import GradeReport
+
+DATA = Path(__file__).with_suffix(".toml")
+CELL_SECONDS = 8.0
+"""Short, so that the student with the endless loop does not make the demonstration long."""
+NOTEBOOK_SECONDS = 120.0
+_STAMP = "sample"
+
+
+@dataclass(frozen=True)
+class Extra:
+    """A cell of the student's own.
+
+    Attributes:
+        before: The grade_id of the cell that it stands before.
+        answer: The name of its text.
+    """
+
+    before: str
+    answer: str
+
+
+@dataclass(frozen=True)
+class SampleNotebook:
+    """One notebook that one student hands in; the data file says what the fields mean."""
+
+    student: str
+    assignment: str
+    about: str
+    expected: dict[str, tuple[float, str]]
+    answers: dict[str, str] = field(default_factory=dict)
+    extra: tuple[Extra, ...] = ()
+    delete: tuple[str, ...] = ()
+    duplicate: tuple[str, ...] = ()
+    retype: dict[str, Kind] = field(default_factory=dict)
+    unsolved: bool = False
+    file: str = ""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """The whole data file."""
+
+    notebook: tuple[SampleNotebook, ...]
+    answers: dict[str, str]
+
+
+def read_sample() -> Sample:
+    """The data of the sample class."""
+    data: Any = tomllib.loads(DATA.read_text(encoding="utf-8"))
+    return msgspec.convert(data, Sample)
+
+
+def submit_sample(path: Path) -> None:
+    """Hand in every sample notebook in the class at ``path``."""
+    sample = read_sample()
+    for notebook in sample.notebook:
+        folder = path / "submitted" / notebook.student / notebook.assignment
+        folder.mkdir(parents=True, exist_ok=True)
+        text = notebook.file or nodes.text(_made(path, notebook, sample.answers))
+        (folder / f"{notebook.assignment}{SUFFIX}").write_text(text, encoding="utf-8")
+
+
+def demo(path: Path, *, console: Console | None = None) -> GradeReport:
+    """Make the sample class, grade it, print the table and where everything is.
+
+    A class that this made before from the same course is graded as it stands, which takes seconds.
+
+    Args:
+        path: Where the class is or will be.
+        console: Standard output by default.
+
+    Raises:
+        GradingError: There is something else at ``path``, or grading is not possible.
+    """
+    console = console or Console()
+    _make(path, console)
+    # Sample notebooks mostly wait, for a timer or for a time-out: two at once keep a processor busy.
+    report = grade(path, jobs=2 * (os.cpu_count() or 1))
+    show(report, console)
+    return report
+
+
+def _make(path: Path, console: Console) -> None:
+    stamp = path / STATE_NAME / _STAMP
+    version = _version(course.root())
+    if stamp.is_file():
+        if stamp.read_text() == version:
+            return
+        console.print(f"The course has changed: making {path} anew.", highlight=False)
+        shutil.rmtree(path)
+    elif (path / CONFIG_NAME).exists():
+        raise ClassExists(f"{path} is a class of your own. Name another folder: autograder demo FOLDER")
+    new_class(path, course.root(), cell_seconds=CELL_SECONDS, notebook_seconds=NOTEBOOK_SECONDS)
+    submit_sample(path)
+    stamp.write_text(version)
+
+
+def _version(root: Path) -> str:
+    """Changes with the masters and with the sample."""
+    digest = hashlib.sha256(DATA.read_bytes())
+    for master in sorted((root / "solutions").glob("*/*.md")):
+        digest.update(master.read_bytes())
+    return digest.hexdigest()
+
+
+def _made(path: Path, wanted: SampleNotebook, answers: dict[str, str]) -> NotebookNode:
+    """The notebook as the student saved it."""
+    name = f"{wanted.assignment}{SUFFIX}"
+    released = nodes.read((path / "release" / wanted.assignment / name).read_text(encoding="utf-8"))
+    if not wanted.unsolved:
+        source = nodes.read((path / "source" / wanted.assignment / name).read_text(encoding="utf-8"))
+        right = {grade_id(cell): _without_markers(cell.source) for cell in source.cells}
+        for cell in released.cells:
+            if grade_id(cell):
+                cell.source = right[grade_id(cell)]
+    for cell in released.cells:
+        if grade_id(cell) in wanted.answers:
+            cell.source = answers[wanted.answers[grade_id(cell)]].strip()
+    released.cells = [changed for cell in released.cells for changed in _changed(cell, wanted, answers)]
+    return released
+
+
+def _changed(cell: NotebookNode, wanted: SampleNotebook, answers: dict[str, str]) -> list[NotebookNode]:
+    """What stands in the place of one cell."""
+    name = grade_id(cell)
+    before = [
+        nodes.cell(Kind.CODE, answers[e.answer].strip()) for e in wanted.extra if name and e.before == name
+    ]
+    if name in wanted.delete:
+        return before
+    if name in wanted.retype:
+        retyped = nodes.cell(wanted.retype[name], cell.source)
+        retyped.metadata = cell.metadata
+        return [*before, retyped]
+    if name in wanted.duplicate:
+        twin = nodes.copied(cell)
+        twin.id = f"{cell.id}-again"[:64]
+        return [*before, cell, twin]
+    return [*before, cell]
+
+
+def _without_markers(source: str) -> str:
+    return "\n".join(line for line in source.split("\n") if not line.strip().startswith("### "))

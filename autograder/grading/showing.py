@@ -1,0 +1,114 @@
+"""The end of a grading run, for the person who started it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from autograder.grading.report import NOT_SUBMITTED
+from autograder.verdict import State
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from autograder.grading.report import GradeReport, Row
+
+
+_WIDE = 130
+
+
+def show(report: GradeReport, console: Console | None = None) -> None:
+    """Print the table, what could not be graded, and where everything is.
+
+    Args:
+        report: What came of the batch.
+        console: Standard output by default.
+    """
+    console = console or Console()
+    if not report.rows:
+        submitted = _near(report.path / "submitted")
+        _line(console, f"Nothing was submitted: put notebooks into {submitted}/<student>/<assignment>/.")
+    elif console.width >= _WIDE:
+        console.print(table(report.rows, diagnoses=True))
+    else:
+        console.print(table(report.rows, diagnoses=False))
+        console.print(_diagnoses(report.rows))
+    for refused in report.refused:
+        _line(console, f"refused      {printable(str(refused.path))}: {refused.reason}", "yellow")
+    for problem in report.problems:
+        _line(console, f"not written  {printable(problem)}", "red")
+    counts = (
+        f"{report.executed} notebooks run, {report.reused} unchanged, {report.written} submissions entered"
+    )
+    _line(console, f"{counts}, {report.seconds:.1f} s")
+    for name, path in (
+        ("gradebook", report.gradebook),
+        ("grades", report.csv),
+        ("feedback", report.feedback),
+    ):
+        if path.exists():
+            _line(console, f"{name:<10} {_near(path)}")
+
+
+def table(rows: Sequence[Row], *, diagnoses: bool) -> Table:
+    """Students down, exercises across.
+
+    Args:
+        rows: What is to be shown.
+        diagnoses: Also what is wrong where points are missing; takes about 130 columns.
+    """
+    exercises = list(dict.fromkeys(row.exercise for row in rows))
+    results = {(row.student, row.exercise): row for row in rows}
+    shown = Table(header_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
+    shown.add_column("student", overflow="fold")
+    for exercise in exercises:
+        # In two lines, so that four exercises fit a terminal of 80 columns.
+        shown.add_column(exercise.replace(".", "\n."), no_wrap=True)
+    shown.add_column("total", justify="right", no_wrap=True)
+    for student in dict.fromkeys(row.student for row in rows):
+        own = [results.get((student, exercise)) for exercise in exercises]
+        total = sum(row.score for row in own if row)
+        most = sum(row.max_score for row in own if row)
+        shown.add_row(
+            Text(printable(student)), *(_cell(row, diagnoses) for row in own), f"{total:g}/{most:g}"
+        )
+    return shown
+
+
+def _diagnoses(rows: Sequence[Row]) -> Table:
+    """A line for each exercise in which a mistake was recognised."""
+    shown = Table.grid(padding=(0, 2))
+    for row in rows:
+        if row.diagnosis:
+            shown.add_row(Text(printable(row.student)), row.exercise, row.diagnosis)
+    return shown
+
+
+def printable(text: str) -> str:
+    """``text`` with whatever could forge a line or move the cursor shown as an escape."""
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
+
+
+def _cell(row: Row | None, diagnoses: bool) -> Text:
+    if row is None or row.state == NOT_SUBMITTED:
+        return Text("–", style="dim")
+    style = {State.PASSED: "green", State.FAILED: "red", State.NOT_CHECKED: "yellow"}[State(row.state)]
+    text = Text(f"{row.score:g}/{row.max_score:g}", style=style)
+    if row.diagnosis and diagnoses:
+        text.append(f" {row.diagnosis}", style="default")
+    return text
+
+
+def _line(console: Console, text: str, style: str = "") -> None:
+    console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+
+
+def _near(path: Path) -> Path:
+    """A path as short as it can be typed from here."""
+    here = path.cwd()
+    return path.relative_to(here) if path.is_relative_to(here) else path

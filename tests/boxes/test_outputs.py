@@ -1,0 +1,117 @@
+from __future__ import annotations
+
+import base64
+
+from autograder.boxes.outputs import Budget, OutputCollector
+
+
+def collector(cell: int = 10_000, notebook: int = 100_000) -> OutputCollector:
+    return OutputCollector(cell, Budget(notebook))
+
+
+def test_joins_pieces_of_one_stream_and_keeps_the_order_of_two() -> None:
+    collected = collector()
+    for name, text in (("stdout", "a"), ("stdout", "b\n"), ("stderr", "oh"), ("stdout", "c")):
+        collected.handle("stream", {"name": name, "text": text})
+    assert [(o["name"], o["text"]) for o in collected.outputs()] == [
+        ("stdout", "ab\n"),
+        ("stderr", "oh"),
+        ("stdout", "c"),
+    ]
+
+
+def test_keeps_no_more_than_the_cell_may_have_and_says_so() -> None:
+    collected = collector(cell=10)
+    collected.handle("stream", {"name": "stdout", "text": "x" * 25})
+    kept, note = collected.outputs()
+    assert kept["text"] == "x" * 10
+    assert "15 bytes of output were dropped" in note["text"]
+
+
+def test_a_talkative_cell_leaves_nothing_for_the_next_once_the_notebook_is_full() -> None:
+    budget = Budget(12)
+    first, second = OutputCollector(10, budget), OutputCollector(10, budget)
+    first.handle("stream", {"name": "stdout", "text": "x" * 20})
+    second.handle("stream", {"name": "stdout", "text": "y" * 20})
+    assert second.outputs()[0]["text"] == "yy"
+
+
+def test_drops_what_a_browser_would_execute_and_keeps_its_plain_twin() -> None:
+    collected = collector()
+    collected.handle(
+        "display_data",
+        {
+            "data": {
+                "text/html": "<script>1</script>",
+                "image/svg+xml": "<svg onload=1>",
+                "text/plain": "twin",
+            }
+        },
+    )
+    assert [o["data"] for o in collected.outputs()] == [{"text/plain": "twin"}]
+
+
+def test_keeps_a_bitmap_whole_or_not_at_all() -> None:
+    picture = base64.b64encode(b"p" * 60).decode()
+    roomy, tight = collector(), collector(cell=40)
+    for collected in (roomy, tight):
+        collected.handle("display_data", {"data": {"image/png": picture, "text/plain": "fig"}})
+    assert roomy.outputs()[0]["data"]["image/png"] == picture
+    assert "image/png" not in tight.outputs()[0]["data"]
+
+
+def test_an_image_that_is_markup_is_no_image() -> None:
+    collected = collector()
+    collected.handle("display_data", {"data": {"image/png": '"><script>alert(1)</script>'}})
+    assert collected.outputs() == ()
+
+
+def test_a_progress_bar_shows_its_last_state() -> None:
+    collected = collector()
+    collected.handle("stream", {"name": "stdout", "text": "10 %\r50 %\r100 %\nready\r\n"})
+    assert collected.outputs()[0]["text"] == "100 %\nready\n"
+
+
+def test_clear_output_now_and_at_the_next_output() -> None:
+    collected = collector()
+    collected.handle("stream", {"name": "stdout", "text": "old"})
+    collected.handle("clear_output", {"wait": True})
+    assert collected.outputs()[0]["text"] == "old"
+    collected.handle("stream", {"name": "stdout", "text": "new"})
+    assert [o["text"] for o in collected.outputs()] == ["new"]
+    collected.handle("clear_output", {"wait": False})
+    assert collected.outputs() == ()
+
+
+def test_a_display_is_updated_in_place() -> None:
+    collected = collector()
+    collected.handle("display_data", {"data": {"text/plain": "1"}, "transient": {"display_id": "d"}})
+    collected.handle("update_display_data", {"data": {"text/plain": "2"}, "transient": {"display_id": "d"}})
+    assert [o["data"]["text/plain"] for o in collected.outputs()] == ["2"]
+
+
+def test_messages_of_any_form_do_no_harm() -> None:
+    collected = collector()
+    for kind in (
+        "stream",
+        "display_data",
+        "execute_result",
+        "error",
+        "update_display_data",
+        "clear_output",
+        "?",
+    ):
+        for content in (
+            {},
+            {"data": 3, "text": {}, "traceback": "x", "transient": []},
+            {"data": {"text/plain": None}},
+        ):
+            collected.handle(kind, content)
+    for output in collected.outputs():
+        assert output["output_type"] in {"stream", "display_data", "execute_result", "error"}
+
+
+def test_a_lone_surrogate_becomes_writable_text() -> None:
+    collected = collector()
+    collected.handle("stream", {"name": "stdout", "text": "a\ud800b"})
+    assert collected.outputs()[0]["text"].encode("utf-8") == b"a?b"

@@ -1,0 +1,212 @@
+"""Notebooks in a real kernel, with a judge that says what the test wants."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+import psutil
+import pytest
+
+from autograder.boxes.environment import kernel_environment
+from autograder.boxes.execution import Cell, Check, Ended, Execution, Kind
+from autograder.boxes.limits import Limits
+from autograder.boxes.runner import run_notebook
+from autograder.boxes.scratch import scratch_folder
+from autograder.verdict import State, Verdict
+
+CHECK = Check("lab.one", "One", points=10, worth=10, limit=2)
+
+
+class SayingJudge:
+    """Says what it was told to say, whatever happens."""
+
+    def __init__(self, says: Verdict | Exception | None) -> None:
+        self._says = says
+        self.asked: list[str] = []
+
+    def open(self, exercise_id: str) -> None:
+        self.asked.append(exercise_id)
+
+    def close(self) -> Verdict | None:
+        if isinstance(self._says, Exception):
+            raise self._says
+        return self._says
+
+
+Run = Callable[..., Execution]
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Run:
+    def go(
+        cells: Sequence[Cell | str], says: Verdict | Exception | None = None, **limits: float
+    ) -> Execution:
+        @contextlib.contextmanager
+        def judge() -> Iterator[SayingJudge]:
+            yield SayingJudge(says)
+
+        with scratch_folder(tmp_path) as folder:
+            (folder / "work").mkdir()
+            return run_notebook(
+                [Cell(cell) if isinstance(cell, str) else cell for cell in cells],
+                judge=judge(),
+                environment=kernel_environment(folder, {}),
+                folder=folder,
+                cwd=folder / "work",
+                limits=Limits(**limits),  # type: ignore[arg-type]
+            )
+
+    return go
+
+
+def passed(score: float = 10.0, exercise: str = "lab.one") -> Verdict:
+    return Verdict(exercise, "One", State.PASSED, score, 10.0)
+
+
+def check(source: str = "1") -> Cell:
+    return Cell(source, check=CHECK, name="lab-one")
+
+
+def key(execution: Execution, index: int = -1) -> str:
+    verdicts = list(execution.verdicts.values())
+    diagnosis = verdicts[index].diagnosis
+    return diagnosis.key if diagnosis else ""
+
+
+def test_only_the_judge_gives_points(run: Run) -> None:
+    execution = run(["x = 1", check("raise SystemError('but the judge has seen enough')")], passed(7))
+    assert execution.verdicts[1].score == 7
+    assert execution.trouble == ""
+
+
+def test_what_the_cell_says_is_worth_nothing(run: Run) -> None:
+    execution = run([check("print(10.0); 10.0")])
+    assert execution.verdicts[0].score == 0
+    assert key(execution) == "not_asked"
+
+
+def test_an_error_before_the_check_is_named_as_the_cause(run: Run) -> None:
+    execution = run(["class Talker:\n    def", "print('on it goes')", check("check(Talker)")])
+    verdict = execution.verdicts[2]
+    assert key(execution) == "syntax_error"
+    assert verdict.state is State.FAILED
+    assert "class Talker:" in verdict.diagnosis.text  # type: ignore[union-attr]
+    assert execution.cells[1].ended is Ended.DONE
+
+
+def test_an_endless_loop_is_stopped_and_the_rest_still_runs(run: Run) -> None:
+    execution = run(["while True:\n    pass", "print('alive')", check("talker")], cell_seconds=0.5)
+    assert [cell.ended for cell in execution.cells[:2]] == [Ended.TIMED_OUT, Ended.DONE]
+    assert key(execution) == "cell_timed_out"
+
+
+def test_a_loop_that_will_not_be_interrupted_costs_the_kernel(run: Run) -> None:
+    stubborn = (
+        "import signal, time\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\nwhile True:\n    time.sleep(1)"
+    )
+    execution = run([stubborn, check()], passed(), cell_seconds=0.5, interrupt_grace=0.5)
+    assert [cell.ended for cell in execution.cells] == [Ended.TIMED_OUT, Ended.NOT_RUN]
+    assert key(execution) == "notebook_timed_out"
+    assert execution.verdicts[1].score == 0
+
+
+@pytest.mark.parametrize("end", ["exit()", "import os; os._exit(0)", "import os; os.kill(os.getpid(), 9)"])
+def test_a_kernel_that_ends_is_named_with_its_cell(run: Run, end: str) -> None:
+    execution = run(["x = 1", end, check()], passed())
+    assert [cell.ended for cell in execution.cells] == [Ended.DONE, Ended.KERNEL_DIED, Ended.NOT_RUN]
+    assert key(execution) == "kernel_died"
+    assert end in execution.verdicts[2].diagnosis.text  # type: ignore[union-attr]
+
+
+def test_sys_exit_ends_the_cell_and_not_the_notebook(run: Run) -> None:
+    execution = run(["import sys; sys.exit()", check()], passed())
+    assert [cell.ended for cell in execution.cells] == [Ended.RAISED, Ended.DONE]
+    assert execution.verdicts[1].passed
+
+
+def test_the_notebook_as_a_whole_has_a_limit(run: Run) -> None:
+    nap = "import time; time.sleep(0.6)"
+    execution = run([nap, nap, nap, nap, check()], passed(), notebook_seconds=1.0)
+    assert execution.cells[0].ended is Ended.DONE
+    assert execution.cells[-1].ended is Ended.NOT_RUN
+    assert key(execution) in {"notebook_timed_out", "cell_timed_out"}
+
+
+def test_a_log_line_on_stderr_costs_nothing(run: Run) -> None:
+    execution = run(["import sys; print('[INFO] up', file=sys.stderr)", check()], passed())
+    assert execution.cells[0].outputs[0]["name"] == "stderr"
+    assert execution.verdicts[1].score == 10
+
+
+def test_output_of_a_thread_is_not_lost(run: Run) -> None:
+    thread = (
+        "import threading\ngo = threading.Event()\n"
+        "t = threading.Thread(target=lambda: (go.wait(), print('late', flush=True)))\nt.start()"
+    )
+    execution = run([thread, "go.set(); t.join(); print('now')"])
+    texts = ["".join(o.get("text", "") for o in cell.outputs) for cell in execution.cells]
+    assert "late" in "".join(texts)
+    assert "now" in texts[1]
+
+
+def test_a_message_larger_than_allowed_is_dropped_and_the_next_cell_is_heard(run: Run) -> None:
+    execution = run(["print('x' * 3_000_000)", "print('small')"], message_bytes=1_000_000)
+    assert "too large" in execution.cells[0].outputs[0]["text"]
+    assert execution.cells[1].outputs[0]["text"] == "small\n"
+
+
+def test_input_is_refused_at_once(run: Run) -> None:
+    execution = run(["input('name? ')"])
+    assert execution.cells[0].ended is Ended.RAISED
+    assert "StdinNotImplementedError" in execution.cells[0].error
+
+
+def test_no_process_of_the_notebook_survives(run: Run) -> None:
+    execution = run(
+        [
+            "import os, subprocess\nchild = subprocess.Popen(['sleep', '600'], start_new_session=True)\n"
+            "print(os.getpid(), child.pid)"
+        ]
+    )
+    kernel, child = map(int, execution.cells[0].outputs[0]["text"].split())
+    for pid in (kernel, child):
+        assert not psutil.pid_exists(pid) or psutil.Process(pid).status() == psutil.STATUS_ZOMBIE
+
+
+def test_a_judge_that_dies_is_the_graders_trouble(run: Run) -> None:
+    execution = run([check(), "print('goes on')"], RuntimeError("the judge is gone"))
+    verdict = execution.verdicts[0]
+    assert verdict.state is State.NOT_CHECKED
+    assert verdict.score == 0
+    assert "the judge is gone" in execution.trouble
+    assert execution.cells[1].ended is Ended.DONE
+
+
+def test_a_verdict_on_another_exercise_does_not_count(run: Run) -> None:
+    execution = run([check()], passed(exercise="lab.easy"))
+    assert execution.verdicts[0].state is State.NOT_CHECKED
+    assert execution.verdicts[0].score == 0
+
+
+def test_markdown_is_not_executed(run: Run) -> None:
+    execution = run([Cell("raise SystemExit", Kind.MARKDOWN), "1"])
+    assert [cell.ended for cell in execution.cells] == [Ended.DONE, Ended.DONE]
+
+
+def test_the_kernel_knows_nothing_of_the_host(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COURSE_TOKEN", "secret")
+    execution = run(["import os; print(os.environ.get('COURSE_TOKEN'), os.environ['HOME'], os.getcwd())"])
+    token, home, cwd = execution.cells[0].outputs[0]["text"].split()
+    assert token == "None"
+    assert home != os.environ.get("HOME")
+    assert cwd != str(Path.cwd())
+
+
+def test_a_kernel_that_cannot_start_is_the_graders_trouble(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.executable", "/nonexistent/python")
+    execution = run([check()], passed())
+    assert "could not be started" in execution.trouble
+    assert execution.verdicts[0].state is State.NOT_CHECKED

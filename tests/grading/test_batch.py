@@ -1,0 +1,514 @@
+"""Grading a class of which nothing is executed: what is asked here is what ends up in the gradebook."""
+
+from __future__ import annotations
+
+import csv
+import errno
+import io
+from typing import TYPE_CHECKING, Any
+
+import nbformat
+import pytest
+from conftest import LISTENER, TALKER, FakeEngine, TinyClass
+from nbgrader.api import Gradebook
+from nbgrader.preprocessors import SaveAutoGrades
+
+from autograder.grading import gradebook
+from autograder.grading.class_directory import ClassDirectory
+from autograder.grading.errors import (
+    ClassBusy,
+    ClassIncomplete,
+    DiskFull,
+    GradingError,
+    MasterUnusable,
+    NotAClass,
+)
+from autograder.grading.journal import Journal
+from autograder.grading.new_class import release
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from autograder.grading.report import GradeReport, Row
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+
+
+def states(report: GradeReport, student: str) -> list[str]:
+    return [row.state for row in report.rows if row.student == student]
+
+
+def row(report: GradeReport, student: str, exercise: str = "lab_1_2.talker") -> Row:
+    return next(row for row in report.rows if (row.student, row.exercise) == (student, exercise))
+
+
+def test_the_gradebook_holds_exactly_the_judges_points(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada", 10, 10)
+    tiny.submit("ben", 4, 0)
+    report = tiny.grade()
+    assert tiny.scores("ada") == {TALKER: 10, LISTENER: 10}
+    assert tiny.scores("ben") == {TALKER: 4, LISTENER: 0}
+    assert states(report, "ben") == ["failed", "failed"]
+    assert row(report, "ben").diagnosis == "wrong_text"
+    assert report.exit_code == 0
+
+
+def test_a_point_value_changed_by_the_instructor_scales_the_judges_score(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    source = tiny.path / "source" / "lab_1_2" / "lab_1_2.ipynb"
+    source.write_text(source.read_text().replace('"points": 10', '"points": 3'))
+    release(ClassDirectory(tiny.path))
+    tiny.submit("ada", 5, 10)
+    tiny.grade()
+    assert tiny.scores("ada") == {TALKER: 1.5, LISTENER: 3}
+
+
+def test_an_unchanged_submission_is_not_run_again(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    path = tiny.submit("ada")
+    tiny.submit("ben")
+    tiny.grade()
+    notebook = nbformat.read(path, as_version=4)
+    notebook.cells[-1].outputs = []
+    notebook.metadata["saved"] = "again"
+    nbformat.write(notebook, path)
+    fake_engine.ran.clear()
+    report = tiny.grade()
+    assert fake_engine.ran == []
+    assert (report.executed, report.reused, report.written) == (0, 2, 0)
+    assert row(report, "ada").score == 10
+    tiny.submit("ben", 3)
+    report = tiny.grade()
+    assert fake_engine.ran == ["ben"]
+    assert tiny.scores("ben")[TALKER] == 3
+
+
+def test_again_runs_everything(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada")
+    tiny.grade()
+    fake_engine.ran.clear()
+    assert tiny.grade(again=True).executed == 1
+    assert fake_engine.ran == ["ada"]
+
+
+def test_only_the_named_students_and_assignments(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada")
+    tiny.submit("ben")
+    report = tiny.grade(students=["ben"], assignments=["lab_1_2"])
+    assert fake_engine.ran == ["ben"]
+    assert {row.student for row in report.rows} == {"ben"}
+    with pytest.raises(GradingError, match="no student named eve"):
+        tiny.grade(students=["eve"])
+    with pytest.raises(GradingError, match="no assignment named big"):
+        tiny.grade(assignments=["big"])
+
+
+# -- fail closed
+# ------------------------------------------------------------------------------------------------
+
+
+def test_no_earlier_score_survives_a_run_that_failed(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada")
+    tiny.grade(feedback=True)
+    assert tiny.scores("ada")[TALKER] == 10
+    tiny.submit("ada", "'die'")
+    report = tiny.grade(feedback=True)
+    assert tiny.scores("ada")[TALKER] == 0
+    assert row(report, "ada").state == "not_checked"
+    assert report.exit_code == 2
+
+
+def test_the_graders_own_trouble_is_tried_again_at_the_next_run(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    tiny.submit("ada", "'die'")
+    tiny.grade()
+    fake_engine.ran.clear()
+    tiny.grade()
+    assert fake_engine.ran == ["ada"]
+
+
+def test_grades_are_taken_back_before_the_first_notebook_runs(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    for student in ("ada", "ben"):
+        tiny.submit(student)
+    tiny.grade(feedback=True)
+    for student in ("ada", "ben"):
+        tiny.submit(student, 2)
+
+    def stop(_: object) -> None:
+        assert tiny.scores("ada") == tiny.scores("ben") == {TALKER: 0, LISTENER: 0}
+        assert not (tiny.path / "autograded" / "ada" / "lab_1_2").exists()
+        assert not (tiny.path / "feedback" / "ben" / "lab_1_2").exists()
+        raise KeyboardInterrupt
+
+    fake_engine.before = stop
+    with pytest.raises(KeyboardInterrupt):
+        tiny.grade()
+    assert tiny.scores("ben") == {TALKER: 0, LISTENER: 0}
+
+
+def test_nbgrader_failing_in_the_middle_leaves_zero_and_a_word(
+    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tiny.submit("ada")
+    tiny.submit("ben")
+    tiny.grade()
+    tiny.submit("ada", 9)
+    tiny.submit("ben", 9)
+    usual = SaveAutoGrades.preprocess
+
+    def fail(self: Any, nb: Any, resources: Any) -> Any:
+        if resources["nbgrader"]["student"] == "ada":
+            raise RuntimeError("no more")
+        return usual(self, nb, resources)
+
+    monkeypatch.setattr(SaveAutoGrades, "preprocess", fail)
+    report = tiny.grade()
+    assert tiny.scores("ada") == {TALKER: 0, LISTENER: 0}
+    assert tiny.scores("ben")[TALKER] == 9
+    assert not (tiny.path / "autograded" / "ada" / "lab_1_2").exists()
+    assert row(report, "ada").state == "not_checked"
+    assert row(report, "ada").score == 0
+    assert len(report.problems) == 1
+    monkeypatch.undo()
+
+
+def test_a_gradebook_that_says_something_else_afterwards_is_not_believed(
+    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def generous(self: Any, cell: Any, resources: Any) -> None:
+        grade = self.gradebook.find_grade(
+            cell.metadata.nbgrader.grade_id, "lab_1_2", "lab_1_2", self.student_id
+        )
+        grade.auto_score = 10
+        self.gradebook.db.commit()
+
+    monkeypatch.setattr(SaveAutoGrades, "_add_score", generous)
+    tiny.submit("ada", 4)
+    report = tiny.grade()
+    assert tiny.scores("ada")[TALKER] == 0
+    assert "does not have 4 points" in report.problems[0]
+
+
+def test_a_score_changed_behind_our_back_is_put_right(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada", 4)
+    tiny.grade()
+    with Gradebook(f"sqlite:///{tiny.path / 'gradebook.db'}") as book:
+        book.find_grade(TALKER, "lab_1_2", "lab_1_2", "ada").auto_score = 10
+        book.db.commit()
+    report = tiny.grade()
+    assert tiny.scores("ada")[TALKER] == 4
+    assert report.executed == 0
+
+
+def test_a_grade_given_by_hand_stays(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada", 4)
+    tiny.grade()
+    with Gradebook(f"sqlite:///{tiny.path / 'gradebook.db'}") as book:
+        book.find_grade(TALKER, "lab_1_2", "lab_1_2", "ada").manual_score = 6
+        book.db.commit()
+    tiny.submit("ada", 5)
+    tiny.grade()
+    with Gradebook(f"sqlite:///{tiny.path / 'gradebook.db'}") as book:
+        grade = book.find_grade(TALKER, "lab_1_2", "lab_1_2", "ada")
+        assert (grade.manual_score, grade.auto_score, grade.needs_manual_grade) == (6, 5, True)
+
+
+# -- what students hand in
+# ----------------------------------------------------------------------------------------
+
+
+def test_a_file_that_is_no_notebook_earns_zero_with_the_reason(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    tiny.submit("ada")
+    tiny.grade()
+    tiny.hand_in("ada", "this is not JSON")
+    tiny.submit("ben")
+    report = tiny.grade(feedback=True)
+    assert tiny.scores("ada") == {TALKER: 0, LISTENER: 0}
+    assert tiny.scores("ben")[TALKER] == 10
+    assert row(report, "ada").diagnosis == "unreadable"
+    page = (tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html").read_text()
+    assert "not JSON" in page
+    assert report.exit_code == 0
+
+
+def test_a_notebook_under_another_name_is_named_in_the_reason(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    path = tiny.submit("ada")
+    path.rename(path.with_name("lab_1_2 (1).ipynb"))
+    report = tiny.grade(feedback=True)
+    assert "lab_1_2 (1).ipynb" in row(report, "ada").reason
+    assert tiny.scores("ada")[TALKER] == 0
+    assert (tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html").exists()
+
+
+def test_a_link_to_a_neighbours_notebook_earns_nothing(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    neighbour = tiny.submit("ada")
+    mine = tiny.path / "submitted" / "eve" / "lab_1_2" / "lab_1_2.ipynb"
+    mine.parent.mkdir(parents=True)
+    mine.symlink_to(neighbour)
+    report = tiny.grade()
+    assert tiny.scores("eve")[TALKER] == 0
+    assert "is a link" in row(report, "eve").reason
+    assert tiny.scores("ada")[TALKER] == 10
+
+
+def test_what_lies_beside_the_notebook_goes_nowhere(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    path = tiny.submit("eve")
+    (path.parent / "stolen.db").symlink_to(tiny.path / "gradebook.db")
+    (path.parent / "deep").mkdir()
+    (path.parent / "deep" / "rclpy.py").write_text("evil")
+    tiny.grade(feedback=True)
+    for step in ("autograded", "feedback"):
+        names = [file.name for file in (tiny.path / step / "eve" / "lab_1_2").rglob("*")]
+        assert len(names) == 1, names
+    assert (path.parent / "stolen.db").is_symlink()
+
+
+@pytest.mark.parametrize("name", ["a*", "x\ny", "=cmd", "[a-z]", "a" * 200, "{0}", "a\x1b[2J", ";rm", "a,b"])
+def test_a_folder_with_a_strange_name_is_refused_and_the_rest_is_graded(
+    tiny: TinyClass, fake_engine: FakeEngine, name: str
+) -> None:
+    tiny.submit("ada")
+    (tiny.path / "submitted" / name / "lab_1_2").mkdir(parents=True)
+    report = tiny.grade()
+    assert [refused.path.name for refused in report.refused] == [name]
+    assert "rename the folder" in report.refused[0].reason
+    assert report.exit_code == 2
+    assert tiny.scores("ada")[TALKER] == 10
+
+
+@pytest.mark.parametrize("name", ["ada.lovelace", "o'neill", "Ада", "s-1234_5", "a b", "x@uni.example"])
+def test_names_that_people_have_are_fine(tiny: TinyClass, fake_engine: FakeEngine, name: str) -> None:
+    tiny.submit(name)
+    assert tiny.grade(feedback=True).exit_code == 0
+    assert tiny.scores(name)[TALKER] == 10
+    assert (tiny.path / "feedback" / name / "lab_1_2" / "lab_1_2.html").exists()
+
+
+def test_a_submission_folder_that_is_a_link_is_refused(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada")
+    (tiny.path / "submitted" / "eve").symlink_to(tiny.path / "submitted" / "ada")
+    report = tiny.grade()
+    assert [refused.path.name for refused in report.refused] == ["eve"]
+
+
+def test_an_assignment_that_does_not_exist_is_refused(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    (tiny.path / "submitted" / "ada" / "tyni").mkdir(parents=True)
+    report = tiny.grade()
+    assert "the class has: lab_1_2" in report.refused[0].reason
+
+
+def test_plain_files_and_hidden_ones_are_nobodys_work(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada")
+    (tiny.path / "submitted" / "README.txt").write_text("hello")
+    (tiny.path / "submitted" / ".DS_Store").write_text("")
+    assert tiny.grade().exit_code == 0
+
+
+def test_an_empty_class_is_a_report_without_rows(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    report = tiny.grade()
+    assert report.rows == ()
+    assert report.exit_code == 0
+
+
+# -- the class
+# ----------------------------------------------------------------------------------------------------
+
+
+def test_a_folder_that_is_no_class_says_what_to_do(tmp_path: Path) -> None:
+    from autograder.grading.batch import grade
+
+    for path in (tmp_path / "missing", tmp_path):
+        with pytest.raises(NotAClass, match="autograder new-class"):
+            grade(path)
+
+
+def test_a_second_batch_says_so_and_stops(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada")
+
+    def second(_: object) -> None:
+        with pytest.raises(ClassBusy, match="Another grading run"):
+            tiny.grade()
+
+    fake_engine.before = second
+    tiny.grade()
+    assert tiny.scores("ada")[TALKER] == 10
+    fake_engine.before = lambda _: None
+    tiny.grade(again=True)
+
+
+def test_two_classes_at_once_are_both_right(tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path) -> None:
+    import shutil
+
+    other = TinyClass(tmp_path / "other")
+    shutil.copytree(tiny.path, other.path)
+    tiny.submit("ada", 3)
+    other.submit("ada", 7)
+
+    def both(task: object) -> None:
+        fake_engine.before = lambda _: None
+        other.grade()
+
+    fake_engine.before = both
+    tiny.grade()
+    assert (tiny.scores("ada")[TALKER], other.scores("ada")[TALKER]) == (3, 7)
+
+
+def test_a_full_disk_is_said_and_costs_nothing(
+    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for student in ("ada", "ben"):
+        tiny.submit(student)
+    usual = Journal.put
+
+    def full(self: Journal, task: Any, execution: Any) -> None:
+        if task.student == "ben":
+            raise OSError(errno.ENOSPC, "No space left on device")
+        usual(self, task, execution)
+
+    monkeypatch.setattr(Journal, "put", full)
+    with pytest.raises(DiskFull, match="Free some room"):
+        tiny.grade()
+    assert tiny.scores("ada")[TALKER] == 10
+    monkeypatch.setattr(Journal, "put", usual)
+    fake_engine.ran.clear()
+    tiny.grade()
+    assert fake_engine.ran == ["ben"]
+    assert tiny.scores("ben")[TALKER] == 10
+
+
+def test_a_full_disk_inside_nbgrader_is_said_too(
+    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(SaveAutoGrades, "preprocess", full)
+    tiny.submit("ada")
+    with pytest.raises(DiskFull):
+        tiny.grade()
+
+
+def test_a_source_that_is_no_notebook_stops_the_run(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    (tiny.path / "source" / "lab_1_2" / "lab_1_2.ipynb").write_text("{")
+    tiny.submit("ada")
+    with pytest.raises(MasterUnusable, match="is not a notebook"):
+        tiny.grade()
+
+
+def test_points_on_a_cell_that_is_no_exercise_stop_the_run(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    source = tiny.path / "source" / "lab_1_2" / "lab_1_2.ipynb"
+    source.write_text(source.read_text().replace(TALKER, "lab_9_9-talker"))
+    tiny.submit("ada")
+    with pytest.raises(MasterUnusable, match="lab_9_9-talker"):
+        tiny.grade()
+
+
+def test_a_source_that_the_gradebook_does_not_know_says_what_to_type(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    source = tiny.path / "source" / "lab_1_2" / "lab_1_2.ipynb"
+    source.write_text(source.read_text().replace('"points": 10', '"points": 3'))
+    with pytest.raises(ClassIncomplete, match="nbgrader generate_assignment lab_1_2 --force"):
+        tiny.grade()
+
+
+def test_a_config_that_does_not_grade_on_the_wire_is_refused(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    (tiny.path / "nbgrader_config.py").write_text("c = get_config()\n")
+    with pytest.raises(ClassIncomplete, match="does not grade with the judge"):
+        tiny.grade()
+    (tiny.path / "nbgrader_config.py").write_text("c = \n")
+    with pytest.raises(ClassIncomplete, match="cannot be read: SyntaxError"):
+        tiny.grade()
+
+
+def test_a_class_may_be_moved(tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path) -> None:
+    tiny.submit("ada")
+    tiny.grade()
+    moved = TinyClass(tiny.path.rename(tmp_path / "moved"))
+    fake_engine.ran.clear()
+    moved.grade()
+    assert fake_engine.ran == []
+    assert moved.scores("ada")[TALKER] == 10
+
+
+# -- what comes out
+# -------------------------------------------------------------------------------------------------
+
+
+def test_the_csv_has_a_line_for_each_student_and_exercise(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada", 4, "1/0")
+    (tiny.path / "submitted" / "ben").mkdir()
+    tiny.grade()
+    rows = list(csv.DictReader(io.StringIO((tiny.path / "grades.csv").read_text())))
+    assert [
+        (r["student"], r["exercise"], r["score"], r["max"], r["state"], r["diagnosis"]) for r in rows
+    ] == [
+        ("ada", "lab_1_2.talker", "4", "10", "failed", "wrong_text"),
+        ("ada", "lab_1_2.listener", "0", "10", "failed", "crashed"),
+    ]
+
+
+def test_a_student_named_like_a_formula_is_defused(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("@SUM", 4)
+    tiny.submit("-1", 4)
+    tiny.grade()
+    lines = (tiny.path / "grades.csv").read_text().splitlines()
+    assert sorted({line.split(",")[0] for line in lines[1:]}) == ["'-1", "'@SUM"]
+
+
+def test_the_card_and_the_points_are_in_the_feedback(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada", 4)
+    tiny.grade(feedback=True)
+    page = (tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html").read_text()
+    assert "Say the right thing." in page
+    assert "Score: 14.0 / 20.0" in page
+
+
+def test_feedback_lost_is_made_again_without_a_run(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada")
+    tiny.grade(feedback=True)
+    page = tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html"
+    page.unlink()
+    fake_engine.ran.clear()
+    tiny.grade(feedback=True)
+    assert page.exists()
+    assert fake_engine.ran == []
+
+
+def test_seeds_differ_between_students_and_stay_between_runs(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    seeds: dict[str, set[str]] = {"ada": set(), "ben": set()}
+    fake_engine.before = lambda task: seeds[task.student].add(task.seed)
+    for student in seeds:
+        tiny.submit(student)
+    tiny.grade()
+    tiny.grade(again=True)
+    assert len(seeds["ada"]) == len(seeds["ben"]) == 1
+    assert seeds["ada"] != seeds["ben"]
+
+
+def test_the_secret_is_in_nothing_that_is_handed_out(tiny: TinyClass) -> None:
+    secret = (tiny.path / ".autograder" / "secret").read_text()
+    assert (tiny.path / ".autograder" / "secret").stat().st_mode & 0o077 == 0
+    for path in (tiny.path / "release").rglob("*"):
+        assert path.is_dir() or secret not in path.read_text()
+
+
+def test_reset_is_one_step_for_all(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada")
+    tiny.grade()
+    gradebook.reset(
+        f"sqlite:///{tiny.path / 'gradebook.db'}",
+        [("lab_1_2", "ada"), ("lab_1_2", "nobody"), ("none", "ada")],
+    )
+    assert tiny.scores("ada") == {TALKER: 0, LISTENER: 0}

@@ -1,0 +1,176 @@
+"""Plain nbgrader and ``autograder grade`` are two doors to one engine: the same points behind both."""
+
+from __future__ import annotations
+
+import errno
+import shutil
+from typing import TYPE_CHECKING, Any
+
+import nbformat
+import pytest
+from conftest import LISTENER, TALKER, FakeEngine, TinyClass
+from nbgrader.converters import Autograde, NbGraderException
+from nbgrader.coursedir import CourseDirectory
+from nbgrader.preprocessors import SaveAutoGrades
+
+from autograder.grading.class_directory import ClassDirectory
+from autograder.grading.journal import Journal
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+
+
+def nbgrader_autograde(tiny: TinyClass, **options: Any) -> None:
+    """What ``nbgrader autograde lab_1_2`` and formgrader's button do."""
+    config = ClassDirectory(tiny.path).config
+    course = CourseDirectory(config=config)
+    course.assignment_id = "lab_1_2"
+    converter = Autograde(coursedir=course, config=config)
+    for name, value in options.items():
+        setattr(converter, name, value)
+    converter.start()
+
+
+def hand_in_all_kinds(tiny: TinyClass) -> list[str]:
+    tiny.submit("full", 10, 10)
+    tiny.submit("partly", 4, 7)
+    tiny.submit("crashed", "1/0", 10)
+    tiny.submit("judge-died", "'die'", 10)
+    tiny.hand_in("not-json", "hello")
+    untouched = tiny.released()
+    tiny.hand_in("empty", untouched)
+    without_check = tiny.released()
+    without_check.cells = [
+        c for c in without_check.cells if c.metadata.get("nbgrader", {}).get("grade_id") != TALKER
+    ]
+    tiny.hand_in("deleted-check", without_check)
+    doubled = nbformat.read(tiny.submit("doubled", 9, 9), as_version=4)
+    doubled.cells += [cell.copy() for cell in doubled.cells]
+    tiny.hand_in("doubled", doubled)
+    skipping = nbformat.read(tiny.submit("skipping", 0, 0), as_version=4)
+    for cell in skipping.cells:
+        cell.metadata["tags"] = ["skip-execution"]
+        if cell.metadata.get("nbgrader", {}).get("grade"):
+            cell.outputs = [
+                nbformat.v4.new_output("execute_result", data={"text/plain": "10.0"}, execution_count=1)
+            ]
+            cell.metadata["nbgrader"]["points"] = 1000
+    tiny.hand_in("skipping", skipping)
+    return [
+        "full",
+        "partly",
+        "crashed",
+        "judge-died",
+        "not-json",
+        "empty",
+        "deleted-check",
+        "doubled",
+        "skipping",
+    ]
+
+
+def test_both_doors_give_the_same_points(tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path) -> None:
+    students = hand_in_all_kinds(tiny)
+    other = TinyClass(tmp_path / "other")
+    shutil.copytree(tiny.path, other.path)
+    tiny.grade()
+    nbgrader_autograde(other)
+    ours = {student: tiny.scores(student) for student in students}
+    assert {student: other.scores(student) for student in students} == ours
+    assert ours["partly"] == {TALKER: 4, LISTENER: 7}
+    assert ours["skipping"] == ours["not-json"] == {TALKER: 0, LISTENER: 0}
+    assert ours["doubled"] == {TALKER: 9, LISTENER: 9}
+
+
+def test_plain_nbgrader_takes_a_known_result_and_leaves_one(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada", 3)
+    nbgrader_autograde(tiny)
+    assert fake_engine.ran == ["ada"]
+    tiny.grade()
+    nbgrader_autograde(tiny, force=True)
+    assert fake_engine.ran == ["ada"]
+    assert tiny.scores("ada")[TALKER] == 3
+
+
+@pytest.mark.parametrize("where", ["copying", "executing", "saving"])
+def test_plain_nbgrader_leaves_no_earlier_score_when_it_fails(
+    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch, where: str
+) -> None:
+    path = tiny.submit("ada", 10)
+    nbgrader_autograde(tiny)
+    assert tiny.scores("ada")[TALKER] == 10
+    tiny.submit("ada", 9)
+
+    def fail(*_: object, **__: object) -> None:
+        raise RuntimeError("no more")
+
+    if where == "copying":
+        (path.parent / "dangling").symlink_to("/nonexistent")
+    elif where == "executing":
+        monkeypatch.setattr(fake_engine, "execute", fail)
+    else:
+        monkeypatch.setattr(SaveAutoGrades, "preprocess", fail)
+    with pytest.raises(NbGraderException):
+        nbgrader_autograde(tiny, force=True)
+    assert tiny.scores("ada") == {TALKER: 0, LISTENER: 0}
+    assert not (tiny.path / "autograded" / "ada" / "lab_1_2").exists()
+
+
+def test_plain_nbgrader_does_not_copy_what_lies_beside_the_notebook(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    path = tiny.submit("eve")
+    (path.parent / "stolen.db").symlink_to(tiny.path / "gradebook.db")
+    nbgrader_autograde(tiny)
+    assert [file.name for file in (tiny.path / "autograded" / "eve" / "lab_1_2").iterdir()] == [
+        "lab_1_2.ipynb"
+    ]
+
+
+def test_files_of_the_assignment_are_there_and_cannot_be_replaced(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    (tiny.path / "source" / "lab_1_2" / "map.txt").write_text("the real one")
+    path = tiny.submit("eve")
+    (path.parent / "map.txt").write_text("forged")
+    seen: list[bytes] = []
+    fake_engine.before = lambda task: seen.append(task.files["map.txt"])
+    tiny.grade()
+    assert seen == [b"the real one"]
+    assert (tiny.path / "autograded" / "eve" / "lab_1_2" / "map.txt").read_text() == "the real one"
+
+
+def test_without_our_door_nothing_is_executed(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    """Else a submission's own metadata would be believed."""
+    config = tiny.path / "nbgrader_config.py"
+    config.write_text(config.read_text().replace("c.Autograde.exporter_class", "unused"))
+    tiny.submit("eve")
+    with pytest.raises(NbGraderException):
+        nbgrader_autograde(tiny)
+    assert fake_engine.ran == []
+
+
+def test_a_linked_submission_folder_is_not_graded_by_plain_nbgrader_either(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    tiny.submit("ada")
+    (tiny.path / "submitted" / "eve").symlink_to(tiny.path / "submitted" / "ada")
+    with pytest.raises(NbGraderException):
+        nbgrader_autograde(tiny)
+    assert tiny.scores("ada")[TALKER] == 10
+    assert tiny.scores("eve") in ({TALKER: 0, LISTENER: 0}, {TALKER: None, LISTENER: None})
+
+
+def test_a_result_that_cannot_be_kept_is_no_result(
+    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Journal, "put", full)
+    tiny.submit("ada")
+    with pytest.raises(NbGraderException):
+        nbgrader_autograde(tiny)
+    assert tiny.scores("ada")[TALKER] in (0, None)

@@ -1,0 +1,152 @@
+"""Journal, seeds, names, points, CSV."""
+
+from __future__ import annotations
+
+import errno
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution
+from autograder.boxes.limits import Limits
+from autograder.grading.class_directory import reason_against_name
+from autograder.grading.errors import DiskFull, is_disk_full
+from autograder.grading.journal import Journal, write_whole
+from autograder.grading.points import points
+from autograder.grading.report import Row, write_csv
+from autograder.grading.seeds import create_secret, read_secret, seed_for
+from autograder.grading.showing import printable
+from autograder.grading.task import Task, decode_execution, decode_task, encode
+from autograder.verdict import State, Verdict
+
+CHECK = Check("lab.one", "One", points=10, worth=4, limit=2)
+TASK = Task("ada", "lab", "lab", (Cell("1"), Cell("check()", check=CHECK, name="lab-one")), "seed", "v1")
+
+
+def verdict(score: float, most: float = 10) -> Verdict:
+    return Verdict("lab.one", "One", State.FAILED, score, most)
+
+
+DONE = Execution(
+    (CellRun(Ended.DONE, ({"output_type": "stream", "name": "stdout", "text": "ü"},)),), {1: verdict(5)}
+)
+
+
+def test_a_task_and_an_execution_travel_as_json() -> None:
+    task = replace(TASK, files={"map.png": b"\x00\xff"})
+    assert decode_task(encode(task)) == task
+    assert decode_execution(encode(DONE)) == DONE
+    assert b"\n" not in encode(replace(TASK, cells=(Cell("a\nb"),)))
+
+
+def test_the_journal_gives_back_what_belongs_to_the_very_task(tmp_path: Path) -> None:
+    journal = Journal(tmp_path)
+    assert journal.get(TASK) is None
+    journal.put(TASK, DONE)
+    assert journal.get(TASK) == DONE
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        replace(TASK, cells=(*TASK.cells, Cell("2"))),
+        replace(TASK, seed="other"),
+        replace(TASK, course="v2"),
+        replace(TASK, limits=Limits(cell_seconds=1)),
+        replace(TASK, files={"a": b"b"}),
+    ],
+)
+def test_whatever_matters_makes_it_another_task(tmp_path: Path, changed: Task) -> None:
+    journal = Journal(tmp_path)
+    journal.put(TASK, DONE)
+    assert journal.get(changed) is None
+
+
+def test_trouble_of_the_grader_is_not_kept(tmp_path: Path) -> None:
+    journal = Journal(tmp_path)
+    journal.put(TASK, replace(DONE, trouble="no domain was free"))
+    assert journal.get(TASK) is None
+
+
+def test_a_damaged_entry_counts_as_none(tmp_path: Path) -> None:
+    journal = Journal(tmp_path)
+    journal.put(TASK, DONE)
+    (entry,) = [path for path in tmp_path.rglob("*") if path.is_file()]
+    entry.write_bytes(entry.read_bytes()[:-10])
+    assert journal.get(TASK) is None
+
+
+def test_a_file_is_replaced_whole_or_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "grades.csv"
+    write_whole(path, b"old")
+
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "replace", full)
+        with pytest.raises(OSError, match="No space"):
+            write_whole(path, b"new")
+    assert path.read_bytes() == b"old"
+    assert [p.name for p in tmp_path.iterdir()] == ["grades.csv"]
+
+
+def test_a_full_disk_is_found_at_the_bottom_of_a_chain() -> None:
+    failed = RuntimeError("nbgrader failed")
+    failed.__cause__ = OSError(errno.EDQUOT, "quota")
+    assert is_disk_full(failed)
+    assert not is_disk_full(ValueError("disk is full, says the student"))
+    assert "Free some room" in str(DiskFull(Path("class")))
+
+
+def test_the_score_is_the_judges_share_of_what_the_cell_carries() -> None:
+    assert points(CHECK, verdict(10)) == 4
+    assert points(CHECK, verdict(2.5)) == 1
+    assert points(CHECK, verdict(0)) == 0
+
+
+@pytest.mark.parametrize("score", [1e9, -3, float("nan"), float("inf")])
+def test_no_verdict_is_worth_more_than_the_cell_or_less_than_nothing(score: float) -> None:
+    assert 0 <= points(CHECK, verdict(score)) <= 4
+    assert points(CHECK, verdict(5, most=0)) == 0
+
+
+def test_a_seed_is_a_secret_and_never_shared(tmp_path: Path) -> None:
+    create_secret(tmp_path / "secret")
+    secret = read_secret(tmp_path / "secret")
+    seeds = {
+        seed_for(secret, *names)
+        for names in [
+            ("ada", "lab", "lab"),
+            ("ben", "lab", "lab"),
+            ("ad", "alab", "lab"),
+            ("ada", "lab", "two"),
+        ]
+    }
+    assert len(seeds) == 4
+    assert seed_for(secret, "ada", "lab", "lab") in seeds
+    assert seed_for(b"x" * 32, "ada", "lab", "lab") not in seeds
+    with pytest.raises(FileExistsError):
+        create_secret(tmp_path / "secret")
+    (tmp_path / "secret").write_text("00ff")
+    with pytest.raises(ValueError, match="32 bytes"):
+        read_secret(tmp_path / "secret")
+
+
+@pytest.mark.parametrize(
+    "name", ["a/b", "a\0b", "..\\x", "a*", "?", "\u202eevil", "a\nb", " a", "a ", "e\u0301", "\udcff", ""]
+)
+def test_strange_names_have_a_reason(name: str) -> None:
+    assert reason_against_name(name) or name == ""
+
+
+@pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1", " =1", "\n=1"])
+def test_a_cell_that_a_spreadsheet_would_execute_is_defused(tmp_path: Path, text: str) -> None:
+    write_csv(tmp_path / "g.csv", [Row("ada", "lab", "lab.one", 1, 4, "failed", "crashed", text)])
+    last = (tmp_path / "g.csv").read_text().partition("crashed,")[2]
+    assert last.strip('"').startswith("'")
+
+
+def test_no_text_can_forge_a_line_in_the_terminal() -> None:
+    assert printable("a\x1b[2Jb\nc\udcff") == "a\\x1b[2Jb\\nc\\udcff"
