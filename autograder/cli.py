@@ -31,7 +31,7 @@ def cli() -> None:
     """Check ROS 2 exercises on the wire, build the notebooks, grade a class."""
 
 
-@cli.command(context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
+@cli.command()
 @click.argument("exercise", required=False)
 @click.argument("command", nargs=-1, type=click.UNPROCESSED)
 @click.option("--json", "as_json", is_flag=True, help="Print the verdict as one JSON object.")
@@ -50,8 +50,6 @@ def check(exercise: str | None, command: tuple[str, ...], as_json: bool, seed: s
     if exercise is None:
         list_exercises()
         return
-    if command[:1] == ("--",):
-        command = command[1:]
     try:
         wanted = exercises.get(exercise)
     except exercises.UnknownExercise as error:

@@ -4,11 +4,22 @@ from __future__ import annotations
 
 import difflib
 
-from autograder.exercises.crashes import CRASHED, CRASHES, traceback_of
-from autograder.exercises.evidence import Evidence
+from autograder.exercises.crashes import CRASHES, OTHER_CRASHES, traceback_of
+from autograder.exercises.evidence import Evidence, Part
 from autograder.exercises.model import Advice, Mistake
 
-__all__ = ["CRASHES", "NOTHING_THERE", "endpoint_name", "everything_twice", "message_type", "never_spun", "qos_mismatch"]
+__all__ = [
+    "CRASHES",
+    "NOTHING_THERE",
+    "OTHER_CRASHES",
+    "endpoint_name",
+    "ended_too_early",
+    "everything_twice",
+    "message_type",
+    "never_spun",
+    "qos_mismatch",
+    "went_deaf",
+]
 
 _WORD = {
     "publisher": ("publishes on", "topic"),
@@ -92,12 +103,11 @@ def everything_twice(role: str) -> Mistake:
 
 
 def never_spun(role: str) -> Mistake:
-    """The endpoint is there and nothing ever happens on it."""
+    """The endpoint is there, the node never did anything and does not answer."""
 
     def recognise(evidence: Evidence) -> Advice | None:
-        name, _ = evidence.reference.only(role)
         part = evidence.main
-        if name not in part.endpoints(role) or part.of("message", name) or part.of("log", None)[1:]:
+        if not _silent_node(evidence, role) or part.of("message") or _worked(part, role):
             return None
         return Advice(
             "The node is on the graph, but none of its callbacks is ever called: nothing spins it.",
@@ -107,6 +117,33 @@ def never_spun(role: str) -> Mistake:
     return Mistake("never_spun", recognise)
 
 
+def went_deaf(role: str) -> Mistake:
+    """It worked for a moment and then fell silent for good, although it is still there."""
+
+    def recognise(evidence: Evidence) -> Advice | None:
+        part = evidence.main
+        if not _silent_node(evidence, role) or not (part.of("message") or _worked(part, role)):
+            return None
+        return Advice(
+            "Your node did its work once and then went deaf: something took it away from the executor that spun it.",
+            "Spin a node in one place only. rclpy.spin_once or spin_until_future_complete, called in a callback or "
+            "beside another executor, takes the node away from that one for good.",
+        )
+
+    return Mistake("node_taken_from_executor", recognise)
+
+
+def _silent_node(evidence: Evidence, role: str) -> bool:
+    name, _ = evidence.reference.only(role)
+    part = evidence.main
+    return name in part.endpoints(role) and part.ending is None and bool(part.of("unanswered"))
+
+
+def _worked(part: Part, role: str) -> bool:
+    sent = part.first("sent")
+    return role == "subscription" and sent is not None and bool(part.said(after=sent))
+
+
 def _main_guard(evidence: Evidence) -> Advice | None:
     ending = evidence.main.ending
     if ending is None or ending.name != "exited" or ending.data.get("code") != 0 or evidence.main.said():
@@ -114,14 +151,16 @@ def _main_guard(evidence: Evidence) -> Advice | None:
     if any(evidence.main.endpoints(role) for role in _WORD):
         return None
     return Advice(
-        "The program ended at once, said nothing and made no node: nothing in it was called.",
-        "End the file with `if __name__ == '__main__':` and `main()` below it; count the underscores, two on each side.",
+        "The program ended at once and said nothing: its main() was not called, or nothing keeps it alive.",
+        "End the file with `if __name__ == '__main__':` and `main()` below it (two underscores on each side), and let "
+        "main() end with rclpy.spin(node).",
     )
 
 
-def _ended_too_early(evidence: Evidence) -> Advice | None:
+def ended_too_early(evidence: Evidence) -> Advice | None:
+    """It ended by itself while it had work to do, after it had said or done something."""
     ending = evidence.main.ending
-    if ending is None or traceback_of(evidence):
+    if ending is None or traceback_of(evidence) or _main_guard(evidence):
         return None
     how = {"exited": f"ended with exit code {ending.data.get('code')}", "returned": "returned"}.get(ending.name, "ended")
     return Advice(
@@ -137,7 +176,7 @@ def _not_written(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         "The node is there, but it has no publisher, subscription, client or server yet.",
-        "Find the TODO in your solution cell and write that step; the hints above it open one at a time.",
+        "Find the TODO in your solution cell and write that step; the hints below it open one at a time.",
     )
 
 
@@ -152,10 +191,9 @@ def _nothing_on_the_graph(evidence: Evidence) -> Advice | None:
 
 
 NOTHING_THERE = (
-    CRASHED,
     Mistake("main_guard", _main_guard, certain=True),
-    Mistake("ended_too_early", _ended_too_early),
+    Mistake("ended_too_early", ended_too_early),
     Mistake("not_written", _not_written),
-    Mistake("nothing_on_the_graph", _nothing_on_the_graph),
+    Mistake("nothing_on_the_graph", _nothing_on_the_graph, certain=True),
 )
 """What is asked last, when nothing more exact fits."""

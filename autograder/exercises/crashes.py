@@ -51,7 +51,8 @@ KNOWN = (
     ),
     Crash(
         "super_init_missing",
-        r"no attribute '_(?:Node__|default_callback_group|parameter|context|logger|handle)",
+        r"no attribute '_(?:Node__|default_callback_group|parameter|context|logger|handle)"
+        r"|descriptor '__init__' (?:requires|of) .*'super'",
         "The class uses the Node before the Node was set up: super().__init__('a_name') is missing or comes too late.",
         "Make super().__init__('your_node_name') the first line of __init__.",
     ),
@@ -89,7 +90,9 @@ KNOWN = (
     Crash(
         "callback_signature",
         r"Expected .* callback|[Cc]allback should be either|callback.*(?:takes|missing) .*positional argument"
-        r"|_callback\(\) takes \d+ positional",
+        # Raised where rclpy calls the callback; a notebook's traceback leaves rclpy's own lines out.
+        r"|(?:\A|rclpy/(?:executors|task|event_handler|action/client|action/server)\.py\".*\n(?: .*\n){1,2})"
+        r"TypeError: .*positional argument",
         "A callback has the wrong form: it was called on the spot (cb() instead of cb), or it takes the wrong number "
         "of arguments.",
         "Pass the function itself, without brackets, and give a subscription's callback exactly one argument besides "
@@ -109,30 +112,38 @@ KNOWN = (
     ),
     Crash(
         "raw_value_published",
-        r"[Ee]xpected (?:<class )?'?[\w.]*(?:String|Int\d+|Message)\b.*got|TypeError: Expected [\w/.<>' ]+, got",
-        "A bare value was published where a message is expected.",
-        "Make the message first (msg = String()), fill it (msg.data = 'text') and publish msg.",
+        r"[Ee]xpected (?:<class )?'?[\w.]*(?:String|Int\d+|Message)\b.*got|TypeError: Expected [\w/.<>' ]+, got"
+        r"|(?:publish|send_goal_async|call_async|send_goal|call)\((?:.*\n)+TypeError:?\s*\Z",
+        "A bare value was sent where a message is expected.",
+        "Make the message first (msg = String(), Fibonacci.Goal(), AddTwoInts.Request()), fill its field and send that.",
     ),
     Crash(
         "field_type",
         r"The '(?P<field>\w+)' (?:field|numpy\.ndarray) must|bad argument type for built-in operation"
-        r"|must be an integer in \[|AssertionError: The '",
+        r"|must be an integer in \[|AssertionError: The '"
+        r"|SystemError: <(?:function|class|built-in).*returned (?:a result with an exception|NULL)",
         "A field of a message got a value of the wrong type.",
         "Convert it before you assign: int(...) for an int64, str(...) for a string. Command-line arguments are text.",
     ),
     Crash(
         "field_typo",
-        r"AttributeError: '?(?:(?P<type>[\w.]+)(?:_Request|_Response|_Goal|_Result|_Feedback|_FeedbackMessage)?'?) "
-        r"object has no attribute '(?P<name>data?\w{0,2}|sequ\w*|part\w*|su\w*|dta|order\w*|feed\w*|a_|b_|c)'",
-        "The message has no field of the name {name}.",
+        r"AttributeError: '(?:String|U?Int\d+|\w+_(?:Request|Response|Goal|Result|Feedback|FeedbackMessage))' "
+        r"object has no attribute '(?P<name>\w+)'|Invalid arguments passed to constructor: .*'(?P<keyword>\w+)'",
+        "The message has no field of the name {name}{keyword}.",
         "Look the fields up with `ros2 interface show` and spell the name exactly so. In an action's feedback "
         "callback the fields are one level down: msg.feedback.partial_sequence.",
     ),
     Crash(
         "callback_returned_none",
-        r"send_response|convert_to_py|isinstance\(response|srv_response|TypeError\s*$|TypeError: $",
+        r"(?:send_response|service_send_response)(?:.*\n)+TypeError",
         "A service callback returned nothing.",
         "End the callback with `return response`.",
+    ),
+    Crash(
+        "executor_not_kept",
+        r"'NoneType' object has no attribute '(?:spin\w*|add_node|create_task)'",
+        "node.executor is None: a node holds its executor only weakly, and nobody else kept this one.",
+        "Keep the executor in a variable, executor = SingleThreadedExecutor(), and call executor.spin() on that.",
     ),
     Crash(
         "result_read_too_early",
@@ -179,7 +190,7 @@ def _recogniser(crash: Crash) -> Mistake:
         found = compiled.search(traceback_of(evidence))
         if found is None:
             return None
-        words = {name: value or "it" for name, value in found.groupdict().items()}
+        words = {name: value or "" for name, value in found.groupdict().items()}
         return Advice(crash.text.format(**words), crash.next_step.format(**words))
 
     return Mistake(crash.key, recognise, certain=True)
@@ -196,7 +207,22 @@ def _crashed(evidence: Evidence) -> Advice | None:
     )
 
 
+def _exception_in_callback(evidence: Evidence) -> Advice | None:
+    traceback = traceback_of(evidence)
+    spun = any(p.first("subject", "constructed") for p in evidence if p.ending and p.ending.name == "raised")
+    if not traceback or not (spun or "rclpy/executors.py" in traceback):
+        return None
+    last = next((line for line in reversed(traceback.splitlines()) if line.strip()), "")
+    return Advice(
+        f"A callback raised an exception, which ends the spinning and with it everything else: {last.strip()}",
+        "Read the traceback from the bottom: the last line says what, the line above it where. Mend that line.",
+    )
+
+
 CRASHES: tuple[Mistake, ...] = tuple(map(_recogniser, KNOWN))
 """The known tracebacks, most telling first."""
-CRASHED = Mistake("crashed", _crashed, certain=True)
-"""Any other traceback; to be asked last."""
+OTHER_CRASHES = (
+    Mistake("exception_in_callback", _exception_in_callback, certain=True),
+    Mistake("crashed", _crashed, certain=True),
+)
+"""Any other traceback; to be asked after what the graph shows."""

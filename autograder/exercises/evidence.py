@@ -50,7 +50,7 @@ class Part:
             after: Only what was said later than this event.
         """
         start = self.events.index(after) + 1 if after is not None else 0
-        return [text for e in self.events[start:] if (text := _spoken(e)) is not None]
+        return [text for e in _without_tracebacks(self.events[start:]) if (text := _spoken(e)) is not None]
 
     def endpoints(self, role: str) -> dict[str, str]:
         """The subject's endpoints of a role that were on the graph at any time of this part: name -> type."""
@@ -77,6 +77,19 @@ class Part:
 
 
 _ENDINGS = ("exited", "returned", "raised")
+
+
+def _without_tracebacks(events: Sequence[Event]) -> Iterator[Event]:
+    """All but the output lines of tracebacks: they quote the program, which is not what it says."""
+    inside = False
+    for event in events:
+        if event.kind == "output":
+            line = str(event.data["text"])
+            inside = inside or line.startswith("Traceback (most recent call last)")
+            if inside:
+                inside = line.startswith(("Traceback", " ", "\t")) or not line
+                continue
+        yield event
 
 
 def _spoken(event: Event) -> str | None:
@@ -111,11 +124,13 @@ class Evidence:
         parts: What was seen of the subject.
         reference: What was recorded of the reference solution: the expected behaviour.
         real_time: Whether this is the second look.
+        before: What the first look brought, when this is the second.
     """
 
     parts: Sequence[Part]
     reference: Reference
     real_time: bool = False
+    before: Evidence | None = None
 
     def part(self, name: str) -> Part:
         """The part of that name; an empty one where the scenario did not get so far."""

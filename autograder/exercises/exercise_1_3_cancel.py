@@ -29,8 +29,10 @@ WINDOW_PACE = {Look.FAST: 0.2, Look.REAL_TIME: 0.5}
 """Seconds that the server waits for a cancel after each feedback message inside that window."""
 GOAL_LIMIT = 15.0
 """Seconds in which a goal must arrive once the client is on the graph."""
-END_LIMIT = 8.0
-"""Seconds in which the client must ask for the result, and in which it must have ended after it got it."""
+END_LIMIT = {Look.FAST: 2.0, Look.REAL_TIME: 5.0}
+"""Seconds in which the client must ask for the result, and in which it must have said how the goal ended."""
+AFTERMATH = 1.0
+"""Seconds in which a client that has reported may end, or say more."""
 
 
 def scenario(bench: Bench) -> None:
@@ -62,9 +64,12 @@ def run(bench: Bench, name: str, *, accept: bool) -> bool:
             sequence.append(sequence[-1] + sequence[-2])
             server.send_feedback(partial_sequence=sequence)
             bench.run_time(PACE[bench.look])
-        server.await_result_request(END_LIMIT if cancelled else PACE[Look.REAL_TIME])
+        server.await_result_request(END_LIMIT[bench.look] if cancelled else PACE[Look.REAL_TIME])
+        if not cancelled:
+            bench.note_whether_it_spins()
         server.finish("canceled" if cancelled and accept else "succeeded", sequence=sequence)
-        bench.await_end(END_LIMIT)
+        bench.wait_until(lambda evidence: bool(_after_result(evidence.main)), END_LIMIT[bench.look])
+        bench.await_end(AFTERMATH)
     bench.stop()
     return cancelled
 
@@ -179,6 +184,7 @@ def _false_claim(refused: Part) -> str | None:
         return None
     said = _after_result(refused)
     honest = r"succe|not |n't|4|refus|reject|fail|nicht|erfolg|unable|could|instead|denied|unknown"
+    said = said or refused.said()
     claims = [line for line in said if says_canceled([line])]
     if not claims or any(re.search(honest, _without_lists(line), re.IGNORECASE) for line in said):
         return None
@@ -201,6 +207,29 @@ def wrong_order(evidence: Evidence) -> Advice | None:
     return Advice(
         f"The judge got {finding.seen}; the task asks for {finding.expected}.",
         f"Set goal.order = {expected_order(evidence)} and send the goal once.",
+    )
+
+
+def order_never_filled(evidence: Evidence) -> Advice | None:
+    """A goal of order 0: the field's default."""
+    made = goals(evidence.main)
+    if not made or any(goal.data["fields"]["order"] != 0 for goal in made):
+        return None
+    return Advice(
+        "The goal asks for order 0: its field was never filled.",
+        "Set goal.order (or Fibonacci.Goal(order=...)). A misspelt keyword is ignored silently.",
+    )
+
+
+def never_spun(evidence: Evidence) -> Advice | None:
+    """It sent its goal, and nothing that came back was taken in."""
+    part = evidence.main
+    if not goals(part) or part.first("cancel") is not None or not part.of("unanswered"):
+        return None
+    return Advice(
+        "Your client sent its goal, but it takes in nothing that comes back: no callback of it is called any more.",
+        "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future), in one place, and never "
+        "inside a callback.",
     )
 
 
@@ -307,7 +336,10 @@ EXERCISE = Exercise(
         *common.CRASHES,
         common.endpoint_name("action_client"),
         common.message_type("action_client"),
+        *common.OTHER_CRASHES,
+        Mistake("field_typo", order_never_filled, certain=True),
         Mistake("wrong_order", wrong_order, certain=True),
+        Mistake("never_spun", never_spun),
         Mistake("cancel_missing", cancel_missing),
         Mistake("cancel_too_early", cancel_too_early),
         Mistake("cancel_too_late", cancel_too_late),

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
+from functools import partial
 from random import Random
 
 from autograder.exercises import common_mistakes as common
@@ -11,8 +13,10 @@ from autograder.exercises.model import Advice, Bench, Criterion, Exercise, Findi
 
 TEXTS = 6
 """Texts that are sent, each once the one before was said."""
-PATIENCE = {Look.FAST: 1.0, Look.REAL_TIME: 4.0}
+PATIENCE = {Look.FAST: 1.0, Look.REAL_TIME: 3.0}
 """Seconds of wall time in which a text that was sent must have been said."""
+AFTERMATH = 1.5
+"""Seconds (simulated where it follows the clock) after the last text, in which nothing may be made up."""
 
 _WORDS = (
     "amber", "birch", "cedar", "delta", "ember", "fjord", "grove", "harbour", "islet", "juniper", "kelp", "lagoon",
@@ -31,8 +35,11 @@ def scenario(bench: Bench) -> None:
         bench.release()
         for text in texts:
             speaker.send(data=text)
-            if not bench.wait_until(lambda evidence, text=text: _is_said(text, evidence.main), PATIENCE[bench.look]):
+            if not bench.wait_until(partial(_says, text), PATIENCE[bench.look]):
+                bench.note_whether_it_spins()
                 break
+        else:
+            bench.run_time(AFTERMATH)
     bench.stop()
 
 
@@ -46,6 +53,10 @@ def _is_said(text: str, part: Part) -> bool:
     return any(text in line for line in part.said())
 
 
+def _says(text: str, evidence: Evidence) -> bool:
+    return _is_said(text, evidence.main)
+
+
 def _sent(part: Part, topic: str) -> list[Event]:
     return part.of("sent", topic)
 
@@ -55,23 +66,33 @@ def _said_after_sent(part: Part, event: Event) -> bool:
     return any(text in line for line in part.said(after=event))
 
 
+_PREFIX = re.compile(r"^\[\w+\] \[[\d.]+\] \[[^\]]*\]: ")
+"""What rcutils puts before a line on a terminal: level, time stamp, logger. These are nobody's words."""
+
+
 def invented(part: Part, sent: Sequence[str]) -> list[str]:
     """What it claims to have heard although nobody sent it.
 
     Its own way of saying is learnt from the lines that carry a sent text: what stands before and after the text. A
-    line with the same frame and another text in it was invented.
+    line with the same frame and another text in it was invented. Where it said none of the texts, a line with a
+    quoted text is taken for such a claim.
     """
-    lines = part.said()
-    frames = {(line[: line.index(text)], line[line.index(text) + len(text) :]) for line in lines for text in sent if text in line}
+    spoken = [_PREFIX.sub("", line) for line in part.said()]
+    lines = [line for line in spoken if not any(text in line for text in sent)]
+    frames = {_frame(line, text) for line in spoken for text in sent if text in line}
+    if not frames:
+        return [] if part.traceback else [line for line in lines if re.search(r"[\"“«].*\w.*[\"”»]", line)]
     return [
         line
         for line in lines
         for before, after in frames
-        if len(before.strip()) > 3
-        and line.startswith(before)
-        and line.endswith(after)
-        and not any(text in line for text in sent)
+        if len(before.strip()) > 3 and line.startswith(before) and line.endswith(after)
     ]
+
+
+def _frame(line: str, text: str) -> tuple[str, str]:
+    before, _, after = line.partition(text)
+    return before, after
 
 
 def subscribes(evidence: Evidence) -> Finding:
@@ -110,8 +131,14 @@ def not_logged(evidence: Evidence) -> Advice | None:
     topic, _ = evidence.reference.only("subscription")
     part = evidence.main
     sent = _sent(part, topic)
-    if not sent or not subscribes(evidence).passed or _said_after_sent(part, sent[0]):
+    silent = next((event for event in sent if not _said_after_sent(part, event)), None)
+    if silent is None or not subscribes(evidence).passed:
         return None
+    if silent is not sent[0]:
+        return Advice(
+            f"Your node said the first texts, but not “{silent.data['fields']['data']}”.",
+            "Log every message that the callback is given, without `once`, throttling or a condition.",
+        )
     if len(part.said(after=sent[0])) == 0:
         return Advice(
             f"Your node is subscribed to {topic}, but when a text arrives it says nothing.",
@@ -137,20 +164,6 @@ def invented_text(evidence: Evidence) -> Advice | None:
     )
 
 
-def never_spun(evidence: Evidence) -> Advice | None:
-    """Subscribed, sent to, silent, and its executor never turned."""
-    topic, _ = evidence.reference.only("subscription")
-    sent = _sent(evidence.main, topic)
-    if not sent or not subscribes(evidence).passed or evidence.main.said(after=sent[0]):
-        return None
-    if not evidence.main.of("unanswered"):
-        return None
-    return Advice(
-        "The node is on the graph, but none of its callbacks is ever called: nothing spins it.",
-        "Call rclpy.spin(node) at the end of main(). In a notebook, `with spinning(node):` does it.",
-    )
-
-
 EXERCISE = Exercise(
     id="lab_1_2.listener",
     title="Lab 1.2 · The listener",
@@ -166,8 +179,11 @@ EXERCISE = Exercise(
         common.endpoint_name("subscription"),
         common.message_type("subscription"),
         common.qos_mismatch("subscription"),
+        *common.OTHER_CRASHES,
+        Mistake("ended_too_early", common.ended_too_early),
+        common.never_spun("subscription"),
+        common.went_deaf("subscription"),
         Mistake("invented_text", invented_text, certain=True),
-        Mistake("never_spun", never_spun),
         Mistake("not_logged", not_logged),
         *common.NOTHING_THERE,
     ),

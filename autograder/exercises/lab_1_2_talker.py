@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 from statistics import median
 
 from autograder.exercises import common_mistakes as common
@@ -13,6 +14,12 @@ MESSAGES = {Look.FAST: 8, Look.REAL_TIME: 7}
 """Messages that are listened to; six intervals in real time, whose median one late message does not move."""
 USUAL_PERIOD = 0.5
 """Seconds; stands in for the reference's period while that is being recorded."""
+EARLIEST = 0.1
+"""Seconds after its start at which a program may publish its first message: Python alone takes as long to start."""
+SILENCE = 6
+"""Periods of silence after which nothing more is waited for."""
+ONE_MOMENT = 0.1
+"""Seconds within which messages count as published all at once."""
 RATE_TOLERANCE = 0.2
 """How far the median interval may be from the reference's, as a part of it."""
 
@@ -26,7 +33,10 @@ def scenario(bench: Bench) -> None:
     bench.start()
     if bench.await_endpoint("publisher", topic):
         bench.release()
-        bench.run_time(2 * enough * _reference_period(bench.reference), until=lambda: bench.heard(topic) >= enough)
+        period = _reference_period(bench.reference)
+        bench.run_time(2 * enough * period, until=lambda: bench.heard(topic) >= enough, quiet=SILENCE * period)
+        if bench.heard(topic) < enough:
+            bench.note_whether_it_spins()
     bench.stop()
 
 
@@ -36,12 +46,13 @@ def texts(part: Part, topic: str) -> list[str]:
 
 
 def intervals(messages: list[Event]) -> list[float]:
-    """Seconds between messages, simulated ones where there are any; the first interval is left out.
+    """Seconds between messages, simulated ones where there are any.
 
-    The clock may have been taken over within the first one, and a jump to simulated time distorts it.
+    The first simulated interval is left out: the jump to simulated time distorts it.
     """
-    times = [event.sim for event in messages if event.sim is not None] or [event.t for event in messages]
-    return [later - earlier for earlier, later in zip(times[1:], times[2:], strict=False)]
+    simulated = [event.sim for event in messages if event.sim is not None]
+    times = simulated[1:] or [event.t for event in messages]
+    return [later - earlier for earlier, later in pairwise(times)]
 
 
 def _reference_period(reference: Reference) -> float:
@@ -89,13 +100,45 @@ def says_the_text(evidence: Evidence) -> Finding:
     return Finding(bool(heard) and not odd, f"“{expected[0]}”, “{expected[1]}”, …", seen)
 
 
+def first_may_be_lost(part: Part, topic: str, number: int) -> bool:
+    """Whether ``number`` messages may have been sent before anybody could hear them.
+
+    A loop publishes in the moment in which it makes its publisher, which no listener can be quick enough for. A
+    timer waits for one period first, and one that follows the simulated clock loses nothing.
+    """
+    heard = part.of("message", topic)
+    met = next((event.t for event in part.of("matched", topic) if event.data["count"]), None)
+    gaps = intervals(heard)
+    if met is None or not gaps:
+        return False
+    period = median(gaps)
+    if heard[0].sim is not None:
+        return met - EARLIEST >= number * period
+    return heard[0].t - number * period >= EARLIEST and heard[0].t - period <= met
+
+
+def starts_right(evidence: Evidence) -> bool:
+    """Whether the first number is the reference's, or would be if what nobody could hear is added."""
+    topic, _, expected = _expected(evidence)
+    wanted = _counters(expected)[0]
+    for look in filter(None, (evidence, evidence.before)):
+        numbers = _counters(texts(look.main, topic))
+        lost = numbers[0] - wanted if numbers else 0
+        if numbers and (lost == 0 or (lost > 0 and first_may_be_lost(look.main, topic, lost))):
+            return True
+    return False
+
+
 def counts_from_zero(evidence: Evidence) -> Finding:
     """The numbers are the reference's, from the first message on."""
     topic, _, expected = _expected(evidence)
     wanted = _counters(expected)
     heard = _counters(texts(evidence.main, topic))
-    fits = len(heard) > 1 and heard == list(range(wanted[0], wanted[0] + len(heard)))
-    return Finding(fits, _row(wanted[:5]), _row(heard[:5]) if heard else "no number arrived")
+    enough = MESSAGES[Look.REAL_TIME if evidence.real_time else Look.FAST]
+    steady = len(heard) >= enough and heard == list(range(heard[0], heard[0] + len(heard)))
+    fits = steady and starts_right(evidence)
+    seen = ", ".join(map(str, heard)) if len(heard) < enough else _row(heard[:5])
+    return Finding(fits, _row(wanted[:5]), seen or "no number arrived")
 
 
 def keeps_the_rate(evidence: Evidence) -> Finding:
@@ -103,7 +146,7 @@ def keeps_the_rate(evidence: Evidence) -> Finding:
     topic, _, _ = _expected(evidence)
     wanted = _reference_period(evidence.reference)
     gaps = intervals(evidence.main.of("message", topic))
-    if len(gaps) < 2:
+    if not gaps:
         return Finding(False, f"one every {wanted:g} s", f"{len(evidence.main.of('message', topic))} messages in all")
     seen = median(gaps)
     return Finding(abs(seen - wanted) <= RATE_TOLERANCE * wanted, f"one every {wanted:g} s", f"one every {seen:.2g} s")
@@ -128,8 +171,8 @@ def counter_start(evidence: Evidence) -> Advice | None:
     """It counts by one, but from another number."""
     topic, _, expected = _expected(evidence)
     heard, wanted = _counters(texts(evidence.main, topic)), _counters(expected)
-    steady = len(heard) > 1 and all(b - a == 1 for a, b in zip(heard, heard[1:], strict=False))
-    if not steady or heard[0] == wanted[0]:
+    steady = len(heard) > 1 and all(b - a == 1 for a, b in pairwise(heard))
+    if not steady or starts_right(evidence):
         return None
     return Advice(
         f"The first message carries the number {heard[0]}; the counter must begin at {wanted[0]}.",
@@ -151,7 +194,7 @@ def counter_stuck(evidence: Evidence) -> Advice | None:
 def counter_step(evidence: Evidence) -> Advice | None:
     """The numbers do not go up by one."""
     heard = _counters(texts(evidence.main, _expected(evidence)[0]))
-    if len(heard) < 3 or all(b - a == 1 for a, b in zip(heard, heard[1:], strict=False)):
+    if len(heard) < 3 or all(b - a == 1 for a, b in pairwise(heard)):
         return None
     if any(heard.count(number) > 1 for number in heard) and sorted(set(heard)) == list(
         range(min(heard), max(heard) + 1)
@@ -160,6 +203,46 @@ def counter_step(evidence: Evidence) -> Advice | None:
     return Advice(
         f"The numbers come as {_row(heard[:6])} They must go up by one with each message.",
         "Count once for each published message: one self.i += 1 at the end of the callback, and one timer.",
+    )
+
+
+def empty_text(evidence: Evidence) -> Advice | None:
+    """Messages arrive, and every text is empty."""
+    heard = texts(evidence.main, _expected(evidence)[0])
+    if not heard or any(heard):
+        return None
+    return Advice(
+        "Your messages arrive, but their text is empty: the field was never filled.",
+        "A String has one field, data. Write msg.data = ...; a misspelt keyword in String(...) is ignored silently.",
+    )
+
+
+def never_published(evidence: Evidence) -> Advice | None:
+    """The node works and talks about publishing, and nothing is published."""
+    topic, _, _ = _expected(evidence)
+    part = evidence.main
+    idle = part.ending is None and not part.of("unanswered")
+    if topic not in part.endpoints("publisher") or part.of("message", topic) or not idle:
+        return None
+    return Advice(
+        "Your node is spun and has its publisher, but nothing is ever published on it.",
+        "Does a timer call your callback, and does the callback call self.publisher_.publish(msg)?",
+    )
+
+
+def published_before_discovery(evidence: Evidence) -> Advice | None:
+    """It says that it published, and ended before anybody could hear it."""
+    topic, _, expected = _expected(evidence)
+    part = evidence.main
+    ended = part.ending is not None and not part.traceback
+    claims = [line for line in part.said() if _template(expected[0]) in _template(line)]
+    heard = part.of("message", topic)
+    if not ended or not claims or (heard and heard[-1].t - heard[0].t > ONE_MOMENT):
+        return None
+    return Advice(
+        "Your program published everything in its first moment and ended before anybody could be connected to it.",
+        "Publish from a timer and keep the program spinning: it takes a moment until publisher and subscription have "
+        "found each other.",
     )
 
 
@@ -193,13 +276,19 @@ EXERCISE = Exercise(
         common.endpoint_name("publisher"),
         common.message_type("publisher"),
         common.qos_mismatch("publisher"),
+        *common.OTHER_CRASHES,
         common.everything_twice("publisher"),
+        Mistake("published_before_discovery", published_before_discovery),
+        Mistake("field_typo", empty_text, certain=True),
         Mistake("counter_stuck", counter_stuck, certain=True),
         Mistake("wrong_text", wrong_text, certain=True),
+        common.never_spun("publisher"),
+        common.went_deaf("publisher"),
         Mistake("counter_start", counter_start),
         Mistake("counter_step", counter_step),
+        Mistake("ended_too_early", common.ended_too_early),
         Mistake("wrong_rate", wrong_rate),
-        common.never_spun("publisher"),
+        Mistake("never_published", never_published),
         *common.NOTHING_THERE,
     ),
     roles=("publisher",),

@@ -183,21 +183,36 @@ class Bench(Protocol):
         """How many messages arrived on a topic so far in this part."""
         ...
 
-    def run_time(self, seconds: float, *, until: Callable[[], bool] | None = None) -> None:
-        """Let ``seconds`` of the subject's time pass: simulated ones where it follows, else real ones."""
+    def note_whether_it_spins(self) -> None:
+        """Ask the subject's nodes something that any spun node answers; write down when one does not."""
         ...
 
-    def wait_until(self, condition: Callable[[Evidence], bool], within: float) -> bool:
-        """Wait for something in the evidence, at most ``within`` seconds of wall time."""
-        ...
-
-    def await_end(self, within: float, *, quiet: float | None = None) -> bool:
-        """Wait until the subject has ended by itself.
+    def run_time(
+        self, seconds: float, *, until: Callable[[], bool] | None = None, quiet: float | None = None
+    ) -> None:
+        """Let ``seconds`` of the subject's time pass: simulated ones where it follows, else real ones.
 
         Args:
+            seconds: At most so long.
+            until: Stop when this holds.
+            quiet: In real time, stop when nothing at all happened for so many seconds.
+        """
+        ...
+
+    def wait_until(
+        self, condition: Callable[[Evidence], bool], within: float, *, quiet: float | None = None
+    ) -> bool:
+        """Wait for something in the evidence of this part; gives up when the subject has ended.
+
+        Args:
+            condition: What to wait for.
             within: Seconds of wall time at most.
             quiet: Give up earlier when nothing at all happened for so many seconds.
         """
+        ...
+
+    def await_end(self, within: float) -> bool:
+        """Wait until the subject has ended by itself, at most ``within`` seconds of wall time."""
         ...
 
     def stop(self) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import threading
 import uuid
+from collections.abc import Callable
 from typing import Any
 
 from action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
@@ -36,13 +37,21 @@ class ScriptedActionServer:
     """One action; goals are accepted as they come, the newest is the current one."""
 
     def __init__(
-        self, wire: Wire, recorder: Recorder, action: str, type_name: str, *, accept_cancel: bool = True
+        self,
+        wire: Wire,
+        recorder: Recorder,
+        action: str,
+        type_name: str,
+        *,
+        accept_cancel: bool,
+        client_is_gone: Callable[[], bool],
     ) -> None:
         self._wire = wire
         self._recorder = recorder
         self._name = action
         self._type = interface(type_name)
         self._accept_cancel = accept_cancel
+        self._client_is_gone = client_is_gone
         self._goal_id: Any = None
         self._status = GoalStatus.STATUS_UNKNOWN
         self._lock = threading.Lock()
@@ -112,7 +121,11 @@ class ScriptedActionServer:
             self._wire.node.destroy_publisher(publisher)
 
     def _await(self, kind: str, within: float) -> bool:
-        return self._recorder.wait(lambda: self._recorder.part().first(kind, self._name) is not None, within)
+        def came() -> bool:
+            return self._recorder.part().first(kind, self._name) is not None
+
+        self._recorder.wait(lambda: came() or self._client_is_gone(), within)
+        return came()
 
     def _take_goal(self, request: Any, response: Any) -> Any:
         self._goal_id = request.goal_id
@@ -120,7 +133,7 @@ class ScriptedActionServer:
         self._set_status(GoalStatus.STATUS_EXECUTING)
         response.accepted = True
         response.stamp = self._wire.node.get_clock().now().to_msg()
-        self._recorder.record("goal", self._name, fields=to_data(request.goal), id=_text(request.goal_id))
+        self._recorder.record("goal", self._name, fields=to_data(request.goal))
         return response
 
     def _take_cancel(self, request: Any, response: Any) -> Any:

@@ -10,18 +10,18 @@ from typing import Any
 
 from autograder.exercises.evidence import Evidence, Part, Reference
 from autograder.exercises.model import Look
-from autograder.judge import graph
+from autograder.judge import clock, graph
 from autograder.judge.actions import ScriptedActionServer
 from autograder.judge.clock import SimulatedClock
 from autograder.judge.recorder import Recorder
 from autograder.judge.services import Answer, RecordedServer
 from autograder.judge.subjects import Subject
 from autograder.judge.topics import Ear, LogReader, Mouth
-from autograder.judge.wire import Wire
+from autograder.judge.wire import JudgeFailed, Wire
 
-APPEAR = 20.0
+APPEAR = 12.0
 """Seconds of wall time in which a subject that runs must show up on the graph at all. Generous: starting slowly is
-not wrong."""
+not wrong, and a program needs a quarter of a second."""
 SETTLED = {Look.FAST: 1.0, Look.REAL_TIME: 3.0}
 """Seconds without a change of the graph after which a command is taken to have made all that it makes."""
 MATCH = 5.0
@@ -85,6 +85,8 @@ class TestBench:
         self._subject.stop()
         self._open.close()
         self._ears, self._mouths, self._clock, self._clock_refused = {}, {}, None, False
+        if self.wire.failure is not None:
+            raise JudgeFailed(f"the judge's own node failed: {self.wire.failure!r}")
 
     def close(self) -> None:
         """End everything. Safe to call at any time."""
@@ -115,12 +117,9 @@ class TestBench:
         """Let a held subject spin."""
         self._subject.release()
 
-    def await_end(self, within: float, *, quiet: float | None = None) -> bool:
-        """Wait until the subject has ended by itself, or nothing happened for ``quiet`` seconds."""
-        self._recorder.wait(
-            lambda: self._subject.ended or (quiet is not None and self._recorder.idle > quiet), within
-        )
-        return self._subject.ended
+    def await_end(self, within: float) -> bool:
+        """Wait until the subject has ended by itself."""
+        return self._recorder.wait(lambda: self._subject.ended, within)
 
     def await_endpoint(self, role: str, name: str) -> bool:
         """Wait until the subject's endpoint is on the graph and matched with the judge's, if it has one."""
@@ -130,8 +129,8 @@ class TestBench:
         if name not in self._recorder.part().endpoints(role):
             return False
         counterpart = {"publisher": self._ears, "subscription": self._mouths}.get(role, {}).get(name)
-        if counterpart is None:
-            return True
+        if counterpart is None or counterpart.type_name != self._recorder.part().endpoints(role)[name]:
+            return True  # there is nobody to be matched with
         return self._recorder.wait(
             lambda: counterpart.matched > 0 or self._subject.ended or self._mismatched(name), MATCH
         )
@@ -194,35 +193,46 @@ class TestBench:
 
     def serve_action(self, action: str, type_name: str, *, accept_cancel: bool = True) -> ScriptedActionServer:
         """Serve an action whose every step the scenario decides, until the part ends."""
-        server = ScriptedActionServer(self.wire, self._recorder, action, type_name, accept_cancel=accept_cancel)
+        server = ScriptedActionServer(
+            self.wire,
+            self._recorder,
+            action,
+            type_name,
+            accept_cancel=accept_cancel,
+            client_is_gone=lambda: self._subject.ended,
+        )
         self._open.callback(server.close)
         return server
 
     # --- time ----------------------------------------------------------------------------------------------
 
-    def run_time(self, seconds: float, *, until: Callable[[], bool] | None = None) -> None:
-        """Let ``seconds`` of the subject's time pass, or fewer where ``until`` holds before."""
+    def run_time(
+        self, seconds: float, *, until: Callable[[], bool] | None = None, quiet: float | None = None
+    ) -> None:
+        """Let ``seconds`` of the subject's time pass, or fewer where ``until`` holds or nothing happens."""
         over = until or (lambda: False)
         if self.look is Look.FAST and self._follow_clock():
             assert self._clock is not None
             self._clock.run(seconds, lambda: over() or self._subject.ended)
             self.doubtful = self.doubtful or self._clock.doubtful
             return
-        self._recorder.wait(lambda: over() or self._subject.ended, seconds)
+        self._recorder.wait(
+            lambda: over() or self._subject.ended or (quiet is not None and self._recorder.idle > quiet), seconds
+        )
 
     def _follow_clock(self) -> bool:
-        if self._clock is None and not self._clock_refused:
+        if self._clock is None and not self._clock_refused and (self._ears or self._mouths):
             self._clock_refused = True
-            node = next((n for topic in self._ears if (n := self._publisher_node(topic))), None)
+            node = next(iter(self._nodes()), None)
             if node is not None:
-                clock = SimulatedClock(self.wire, self._recorder, node)
-                self._open.callback(clock.close)
-                if clock.take_over() and clock.stands_still(self._silence()):
-                    self._clock = clock
+                stepped = SimulatedClock(self.wire, self._recorder, node)
+                self._open.callback(stepped.close)
+                if stepped.take_over() and stepped.stands_still(self._silence()):
+                    self._clock = stepped
                 else:
                     # It may yet obey later and then stop: only a fresh run in real time can tell.
                     self._recorder.simulated_now = None
-                    self.doubtful = True
+                    self.doubtful = self.doubtful or bool(self._ears)
         return self._clock is not None
 
     def _silence(self) -> Callable[[], bool]:
@@ -233,23 +243,38 @@ class TestBench:
         # One message may still have been on its way when the clock stopped.
         return lambda: heard() <= before + 1
 
-    def _publisher_node(self, topic: str) -> graph.NodeName | None:
+    def note_whether_it_spins(self) -> None:
+        """Ask each node of the subject's for a parameter; write down which one does not answer."""
+        for node in self._nodes():
+            if not self._subject.ended and not clock.answers(self.wire, self._recorder, node):
+                self._recorder.record("unanswered", node.full)
+
+    def _nodes(self) -> list[graph.NodeName]:
+        """The subject's nodes, those that the judge is matched with first, once their names are known."""
         found: list[graph.NodeName] = []
 
         def named() -> bool:
-            found.extend(filter(None, [graph.node_of_publisher(self.wire.node, topic)]))
+            found[:] = graph.counterparts(self.wire.node, list(self._ears), list(self._mouths))
             return bool(found) or self._subject.ended
 
+        if not (self._ears or self._mouths):
+            return graph.subject_nodes(self.wire.node)
         self._recorder.wait(named, 1.0, poll=GRAPH_POLL)
-        return found[0] if found else None
+        return found
 
-    def wait_until(self, condition: Callable[[Evidence], bool], within: float) -> bool:
+    def wait_until(
+        self, condition: Callable[[Evidence], bool], within: float, *, quiet: float | None = None
+    ) -> bool:
         """Wait for something in the evidence of this part; gives up when the subject has ended."""
 
         def holds() -> bool:
             return condition(Evidence([self._recorder.part()], self.reference, self.look is Look.REAL_TIME))
 
-        return self._recorder.wait(lambda: holds() or self._subject.ended, within) and holds()
+        def over() -> bool:
+            return holds() or self._subject.ended or (quiet is not None and self._recorder.idle > quiet)
+
+        self._recorder.wait(over, within)
+        return holds()
 
     def inputs(self) -> Mapping[str, Any]:
         """The inputs of the part that is running."""

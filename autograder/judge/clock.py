@@ -28,6 +28,8 @@ FIRST = 100.0
 """Simulated seconds at the start. The jump to it distorts the first interval, which nobody counts."""
 ANSWER_LIMIT = 0.5
 """Seconds of wall time in which a spinning node answers a question; one that does not is not stepped."""
+PATIENT_ANSWER = 1.5
+"""Seconds of wall time after which a node that does not answer is taken not to be spun."""
 SLOW_STEP = 0.25
 """Seconds of wall time after which a step is suspicious: the subject sleeps, or the machine is overloaded."""
 STANDSTILL = 0.06
@@ -114,14 +116,29 @@ class SimulatedClock:
 
         In its first turn it takes the new time, in the second it calls the timers that are due by it.
         """
-        request = GetParameters.Request(names=["use_sim_time"])
-        return all(self._ask(self._get, request) is not None for _ in range(2))
+        return all(self._ask(self._get, _QUESTION) is not None for _ in range(2))
 
     def _ask(self, client: Any, request: Any) -> Any:
-        """The answer of a service of the subject's, or None where its executor does not turn."""
-        if not self._recorder.wait(client.service_is_ready, ANSWER_LIMIT, poll=0.005):
-            return None
-        future = client.call_async(request)
-        done = threading.Event()
-        future.add_done_callback(lambda _: done.set())
-        return future.result() if done.wait(ANSWER_LIMIT) else None
+        return ask(self._recorder, client, request, ANSWER_LIMIT)
+
+
+_QUESTION = GetParameters.Request(names=["use_sim_time"])
+
+
+def ask(recorder: Recorder, client: Any, request: Any, limit: float) -> Any:
+    """The answer of a service of the subject's, or None where its executor does not turn within ``limit`` seconds."""
+    if not recorder.wait(client.service_is_ready, limit, poll=0.005):
+        return None
+    future = client.call_async(request)
+    done = threading.Event()
+    future.add_done_callback(lambda _: done.set())
+    return future.result() if done.wait(limit) else None
+
+
+def answers(wire: Wire, recorder: Recorder, node: NodeName) -> bool:
+    """Whether a node answers a question that every spun node answers."""
+    client = wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
+    try:
+        return ask(recorder, client, _QUESTION, PATIENT_ANSWER) is not None
+    finally:
+        wire.node.destroy_client(client)

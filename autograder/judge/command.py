@@ -43,7 +43,7 @@ def check_command(
     if shutil.which(command[0], path=_search_path(cwd)) is None:
         raise CommandNotFound(f"there is no program {command[0]!r} to run here; is it spelt right, and executable?")
     chosen = seed or secrets.token_hex(8)
-    child = Child(lambda: to_json(_check(exercise, command, chosen, cwd)), exercise.limit + SPARE)
+    child = Child(lambda: to_json(judged_here(exercise, command, chosen, cwd)), exercise.limit + SPARE)
     outcome = child.result()
     if outcome.data is None:
         return not_checked(exercise.id, exercise.title, exercise.points, outcome.trouble, "Run `autograder doctor`.")
@@ -55,16 +55,18 @@ def _search_path(cwd: Path | None) -> str | None:
     return os.environ.get("PATH") if cwd is None else f"{os.environ.get('PATH', '')}:{cwd}"
 
 
-def _check(exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None) -> Verdict:
+def judged_here(exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None) -> Verdict:
+    """Judge a command in this very process, which is a fork made for it."""
     from autograder.judge import settings
 
     settings.prepare_judge()
     from autograder.judge import domain, reference, trial
     from autograder.judge.command_subject import CommandSubject
+    from autograder.judge.wire import JudgeFailed
 
     try:
         expected = reference.load(exercise.id)
         with domain.lease() as domain_id:
             return trial.check(exercise, CommandSubject(command, cwd), expected, seed=seed, domain_id=domain_id)
-    except (domain.NoFreeDomain, reference.NoReference) as error:
+    except (domain.NoFreeDomain, reference.NoReference, JudgeFailed) as error:
         return not_checked(exercise.id, exercise.title, exercise.points, str(error))

@@ -10,6 +10,7 @@ from autograder.judge import domain, record, reference, trial
 from autograder.judge.link import Link
 from autograder.judge.protocol import Report
 from autograder.judge.remote_subject import RemoteSubject
+from autograder.judge.wire import JudgeFailed
 from autograder.verdict import Verdict, not_checked
 
 
@@ -51,7 +52,7 @@ def _report(exercise: Exercise, subject: RemoteSubject, seed: str, recording: bo
             recorded = record.record(exercise, subject, domain_id=domain_id)
             verdict = trial.judge(exercise, record.as_evidence(recorded), seed)
             return Report(verdict, reference.dump(recorded))
-    except (domain.NoFreeDomain, reference.NoReference, record.NotRecordable) as error:
+    except (domain.NoFreeDomain, reference.NoReference, record.NotRecordable, JudgeFailed) as error:
         return Report(trouble=str(error))
 
 

@@ -63,12 +63,19 @@ def survey(judge: Node) -> Interface:
     return found
 
 
-def node_of_publisher(judge: Node, topic: str) -> NodeName | None:
-    """The subject's node that publishes on a topic, once its real name is known."""
-    for info in judge.get_publishers_info_by_topic(topic):
-        if info.node_name and not info.node_name.startswith("_NODE_") and info.node_name != judge.get_name():
-            return NodeName(info.node_name, info.node_namespace)
-    return None
+def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeName]:
+    """The subject's nodes at the other end of topics, once their real names are known.
+
+    Args:
+        judge: The judge's node.
+        heard: Topics that the judge listens to.
+        spoken: Topics that the judge speaks on.
+    """
+    infos = [info for topic in heard for info in judge.get_publishers_info_by_topic(topic)]
+    infos += [info for topic in spoken for info in judge.get_subscriptions_info_by_topic(topic)]
+    names = [NodeName(info.node_name, info.node_namespace) for info in infos]
+    own = judge.get_name()
+    return [n for n in dict.fromkeys(names) if n.name and n.name != own and not n.name.startswith("_NODE_")]
 
 
 def shows(judge: Node, marker: str) -> bool:

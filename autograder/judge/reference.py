@@ -55,12 +55,16 @@ def parse(data: Mapping[str, Any]) -> Reference:
 
 
 def dump(reference: Reference) -> str:
-    """The JSON form, the same for every recording of the same behaviour."""
-    parts = [
-        {"name": part.name, "inputs": dict(part.inputs), "events": _events(part)} for part in reference.parts
-    ]
-    data = {"exercise": reference.exercise, "interface": _sorted(reference.interface), "parts": parts}
-    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+    """The JSON form, the same for every recording of the same behaviour; one line for each event."""
+    head = {"exercise": reference.exercise, "interface": _sorted(reference.interface)}
+    lines = json.dumps(head, indent=1, ensure_ascii=False).splitlines()[:-1]
+    return "\n".join([*lines[:-1], lines[-1] + ",", ' "parts": [', ",\n".join(map(_part, reference.parts)), " ]", "}"]) + "\n"
+
+
+def _part(part: Part) -> str:
+    events = ",\n".join(f"   {json.dumps(event, ensure_ascii=False)}" for event in _events(part))
+    name, inputs = (json.dumps(value, ensure_ascii=False) for value in (part.name, dict(part.inputs)))
+    return f'  {{"name": {name}, "inputs": {inputs}, "events": [\n{events}\n  ]}}'
 
 
 def _sorted(interface: Mapping[str, Mapping[str, str]]) -> dict[str, dict[str, str]]:

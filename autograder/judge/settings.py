@@ -45,7 +45,6 @@ def subject_environment(domain_id: int) -> dict[str, str]:
     environment.update(ros_environment())
     environment["ROS_DOMAIN_ID"] = str(domain_id)
     environment["PYTHONUNBUFFERED"] = "1"
-    environment["ROS_PYTHON_CHECK_FIELDS"] = environment.get("ROS_PYTHON_CHECK_FIELDS", "1")
     return environment
 
 

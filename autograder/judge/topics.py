@@ -25,6 +25,7 @@ class Ear:
 
     def __init__(self, wire: Wire, recorder: Recorder, topic: str, type_name: str) -> None:
         self.matched = 0
+        self.type_name = type_name
         self._recorder = recorder
         self._topic = topic
         self.subscription = wire.node.create_subscription(
@@ -53,6 +54,7 @@ class Mouth:
 
     def __init__(self, wire: Wire, recorder: Recorder, topic: str, type_name: str) -> None:
         self.matched = 0
+        self.type_name = type_name
         self._recorder = recorder
         self._topic = topic
         self._type = interface(type_name)

@@ -42,8 +42,8 @@ def check(exercise: Exercise, subject: Subject, reference: Reference, *, seed: s
     seen = look(exercise, subject, reference, Look.FAST, seed=seed, domain_id=domain_id)
     verdict = judge(exercise, seen.evidence, seed)
     if exercise.second_look and (seen.doubtful or not verdict.passed) and not _is_certain(exercise, verdict):
-        seen = look(exercise, subject, reference, Look.REAL_TIME, seed=seed, domain_id=domain_id)
-        verdict = judge(exercise, seen.evidence, seed)
+        again = look(exercise, subject, reference, Look.REAL_TIME, seed=seed, domain_id=domain_id)
+        verdict = judge(exercise, replace(again.evidence, before=seen.evidence), seed)
     return replace(verdict, seconds=round(time.monotonic() - began, 3))
 
 

@@ -11,6 +11,10 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 
 
+class JudgeFailed(RuntimeError):
+    """A callback of the judge's raised: the subject could not be checked."""
+
+
 class Wire:
     """One participant on one domain. Made fresh for each part: a fresh participant is met at once.
 
@@ -18,6 +22,7 @@ class Wire:
         node: The judge's node; it has no parameter services and no log topic, so that it adds next to nothing
             to the graph.
         executor: Spins the node in a thread of its own.
+        failure: What ended that thread, where it was an error of the judge's own.
     """
 
     def __init__(self, domain_id: int) -> None:
@@ -32,6 +37,7 @@ class Wire:
         )
         self.executor = SingleThreadedExecutor(context=self.context)
         self.executor.add_node(self.node)
+        self.failure: BaseException | None = None
         self._thread = threading.Thread(target=self._spin, name="judge wire", daemon=True)
         self._thread.start()
 
@@ -40,6 +46,8 @@ class Wire:
             self.executor.spin()
         except ExternalShutdownException:
             pass
+        except BaseException as error:  # a callback of the judge's own: nothing after it can be trusted
+            self.failure = error
 
     def close(self) -> None:
         """Stop spinning, join the thread and leave the domain. An unjoined thread aborts the interpreter."""

@@ -14,6 +14,9 @@ import rclpy.utilities
 from rclpy.context import Context
 from rclpy.signals import SignalHandlerOptions
 
+_GLOBAL_EXECUTOR = "__executor"
+"""The name in ``rclpy/__init__.py``."""
+
 
 class CheckContext:
     """Swaps rclpy's default context within a ``with`` block."""
@@ -26,12 +29,16 @@ class CheckContext:
     def __enter__(self) -> Self:
         with rclpy.utilities.g_context_lock:
             self._usual = rclpy.utilities.g_default_context
+        # rclpy.spin and its kin share one executor, which stays with the context it was first used on.
+        self._usual_executor = getattr(rclpy, _GLOBAL_EXECUTOR, None)
+        setattr(rclpy, _GLOBAL_EXECUTOR, None)
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._end()
+        setattr(rclpy, _GLOBAL_EXECUTOR, self._usual_executor)
         self._put(self._usual)
 
     def ensure(self, *, fresh: bool) -> None:

@@ -1,0 +1,163 @@
+"""The bank of right and wrong answers as data, and a program that judges it.
+
+By hand: ``python tests/judge/bank.py --repeat 10 --busy 2`` judges everything ten times beside two busy loops and
+prints what did not come out as expected.
+"""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import select
+import sys
+import time
+import tomllib
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from autograder.verdict import Verdict, from_json
+
+ROOT = Path(__file__).resolve().parents[1] / "submissions"
+
+
+@dataclass(frozen=True)
+class Answer:
+    """One program of the bank and what the judge must find.
+
+    Attributes:
+        exercise: The exercise's id.
+        file: The program.
+        command: What runs it.
+        diagnoses: The keys that are right; empty for a correct answer.
+    """
+
+    exercise: str
+    file: Path
+    command: tuple[str, ...]
+    diagnoses: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """Such as ``lab_1_2.talker/wrong/topic_name.py``."""
+        return f"{self.exercise}/{self.file.parent.name}/{self.file.name}"
+
+    def objection(self, verdict: Verdict) -> str:
+        """What is not as expected, or an empty string."""
+        key = verdict.diagnosis.key if verdict.diagnosis else ""
+        if not self.diagnoses:
+            missed = "; ".join(f"{c.name}: {c.seen}" for c in verdict.criteria if not c.passed)
+            return "" if verdict.passed else f"a correct answer got {verdict.score:g} ({key}: {missed})"
+        if verdict.state != "failed":
+            return f"a wrong answer is {verdict.state}"
+        if verdict.score >= verdict.max_score:
+            return "a wrong answer got full marks"
+        return "" if key in self.diagnoses else f"diagnosed as {key}, not as {' or '.join(self.diagnoses)}"
+
+
+def answers() -> Iterator[Answer]:
+    """Every program of the bank."""
+    for expected in sorted(ROOT.glob("*/expected.toml")):
+        table = tomllib.loads(expected.read_text(encoding="utf-8"))
+        for kind in ("correct", "wrong"):
+            for name, entry in table.get(kind, {}).items():
+                file = expected.parent / kind / name
+                command = tuple(part.format(file=file) for part in entry.get("command", ["python3", "{file}"]))
+                diagnoses = (entry["diagnosis"], *entry.get("also", ())) if kind == "wrong" else ()
+                yield Answer(table["exercise"], file, (sys.executable, *command[1:]), diagnoses)
+
+
+def judge_all(
+    wanted: Sequence[Answer], *, jobs: int, seed: str, done: Callable[[Answer, Verdict], None]
+) -> None:
+    """Judge answers in forks of this process, which must have no other threads.
+
+    Args:
+        wanted: What to judge.
+        jobs: How many at once.
+        seed: What random inputs are drawn from.
+        done: Called with each verdict as it comes.
+    """
+    from autograder.judge.fork import Child
+
+    waiting = list(wanted)
+    running: dict[int, tuple[Answer, Child]] = {}
+    while waiting or running:
+        while waiting and len(running) < jobs:
+            answer = waiting.pop(0)
+            child = Child(lambda answer=answer: _judged(answer, seed), 240.0)  # type: ignore[misc]
+            running[child.reading] = (answer, child)
+        ready, _, _ = select.select(list(running), [], [])
+        for descriptor in ready:
+            answer, child = running.pop(descriptor)
+            outcome = child.result()
+            if outcome.data is None:
+                raise RuntimeError(f"{answer.name}: {outcome.trouble}")
+            done(answer, from_json(outcome.data))
+
+
+def _judged(answer: Answer, seed: str) -> bytes:
+    from autograder import exercises
+    from autograder.judge.command import judged_here
+    from autograder.verdict import to_json
+
+    return to_json(judged_here(exercises.get(answer.exercise), answer.command, seed, None))
+
+
+def warm_up() -> None:
+    """Import in this process what every fork needs."""
+    from autograder.judge import settings
+
+    settings.prepare_judge()
+    from autograder.judge import command_subject, trial, warm
+
+    assert trial and command_subject
+    warm.imports()
+
+
+def _busy() -> None:
+    while True:
+        pass
+
+
+def main() -> int:
+    """Judge the bank, perhaps several times, perhaps under load."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("only", nargs="*", help="parts of the names of answers")
+    parser.add_argument("--repeat", type=int, default=1)
+    parser.add_argument("--busy", type=int, default=0, help="busy loops beside it")
+    parser.add_argument("--jobs", type=int, default=8)
+    parser.add_argument("--lines", action="store_true", help="print each verdict as a line of JSON (for the tests)")
+    parser.add_argument("--slow", type=float, default=0.0, help="also name checks of at least so many seconds")
+    chosen = parser.parse_args()
+    wanted = [a for a in answers() if not chosen.only or any(part in a.name for part in chosen.only)]
+    loops = [multiprocessing.Process(target=_busy, daemon=True) for _ in range(chosen.busy)]
+    for loop in loops:
+        loop.start()
+    warm_up()
+    objections = 0
+
+    def done(answer: Answer, verdict: Verdict) -> None:
+        nonlocal objections
+        if chosen.lines:
+            from autograder.verdict import to_json
+
+            print(answer.name, to_json(verdict).decode(), flush=True)
+            return
+        objection = answer.objection(verdict)
+        objections += bool(objection)
+        if objection or (chosen.slow and verdict.seconds >= chosen.slow):
+            print(f"{answer.name}: {objection or 'as expected'} ({verdict.seconds:.1f} s)", flush=True)
+
+    for turn in range(chosen.repeat):
+        began = time.monotonic()
+        judge_all(wanted, jobs=chosen.jobs, seed=f"turn {turn}", done=done)
+        if not chosen.lines:
+            print(f"turn {turn + 1}: {len(wanted)} answers in {time.monotonic() - began:.0f} s, {objections} objections")
+    for loop in loops:
+        loop.terminate()
+    return 1 if objections else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

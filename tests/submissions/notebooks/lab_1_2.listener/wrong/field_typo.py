@@ -1,0 +1,10 @@
+# lab_1_2.listener: the field is called data; the first message raises an exception in the callback.
+
+# %% solution ListenerNode
+class ListenerNode(Node):
+    def __init__(self) -> None:
+        super().__init__("listener_node")
+        self.sub = self.create_subscription(String, "chatter", self.heard, 10)
+
+    def heard(self, msg):
+        self.get_logger().info(f"I heard: {msg.text}")
