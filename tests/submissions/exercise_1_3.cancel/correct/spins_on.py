@@ -1,4 +1,4 @@
-"""Reports and spins on: nobody asked it to end."""
+"""Right: reports and spins on; nobody asked it to end."""
 import rclpy
 from action_msgs.msg import GoalStatus
 from my_robot_interfaces.action import Fibonacci
