@@ -16,6 +16,7 @@ from environment import course_process, ros_flavour
 from environment.jupyter_files import kernel_install_options, write_jupyter_files
 from environment.lock import split_blocks
 from environment.place import INTERFACES, Place, environment_paths, environment_values
+from environment.ros2_command.install import install as install_ros2_command
 from environment.steps import Step, files_below
 
 if TYPE_CHECKING:
@@ -57,6 +58,7 @@ class Setup:
         kind = (str(place.root), str(place.base_python), sys.version, ros)
         interfaces = (place.environment / "repair_wheels.py", *files_below(place.interfaces))
         start = (place.environment / "course_process.py", place.environment / "place.py")
+        ros2 = (place.environment / "ros2_command" / "install.py",)
         jupyter = (place.environment / "jupyter_files.py",)
         project = (place.root / "pyproject.toml",)
         python = f"Python {sys.version.split()[0]}"
@@ -65,6 +67,7 @@ class Setup:
             Step("packages", self._what_is_installed(), tuple(locks), lambda: self._install(locks)),
             Step("interfaces", f"building {INTERFACES} with colcon", interfaces, self._build_interfaces),
             Step("start", "teaching its Python to find ROS", start, self._install_start),
+            Step("ros2", "adding the ros2 command", ros2, lambda: install_ros2_command(place.prefix)),
             Step("jupyter", "configuring JupyterLab", jupyter, self._configure_jupyter),
             Step("project", "installing the autograder", project, self._install_project),
         ]

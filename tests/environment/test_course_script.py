@@ -70,11 +70,13 @@ def course(tmp_path: Path) -> Course:
     root = tmp_path / "the course"
     (root / "environment/requirements").mkdir(parents=True)
     (root / "environment/ros2_ws/src/interfaces/srv").mkdir(parents=True)
+    (root / "environment/ros2_command").mkdir()
     (root / "chapters").mkdir()
     shutil.copy(ROOT / "course", root / "course")
     (root / "pyproject.toml").write_text("[project]\n")
     (root / "environment/__init__.py").write_text("")
     (root / "environment/bootstrap.py").write_text(SET_UP)
+    (root / "environment/ros2_command/install.py").write_text("")
     (root / "environment/requirements/course.lock").write_text("six==1.17.0\n")
     (root / "environment/ros2_ws/src/interfaces/package.xml").write_text("<package/>\n")
     (root / "environment/ros2_ws/src/interfaces/srv/A.srv").write_text("---\n")
@@ -104,6 +106,7 @@ def test_a_command_sets_up_once_and_then_is_only_run(course: Course) -> None:
     [
         "pyproject.toml",
         "environment/bootstrap.py",
+        "environment/ros2_command/install.py",
         "environment/requirements/course.lock",
         "environment/ros2_ws/src/interfaces/package.xml",
         "environment/ros2_ws/src/interfaces/srv/A.srv",

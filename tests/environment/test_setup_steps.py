@@ -31,7 +31,7 @@ def made_from(step: Step) -> str:
 
 def test_the_order() -> None:
     assert list(steps(with_tests=True)) == [
-        *("environment", "packages", "interfaces", "start", "jupyter", "project", "dev")
+        *("environment", "packages", "interfaces", "start", "ros2", "jupyter", "project", "dev")
     ]
 
 
