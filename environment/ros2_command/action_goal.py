@@ -36,8 +36,24 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-f", "--feedback", action="store_true", help="Echo feedback messages for the goal")
 
 
-def _show_feedback(message: Any) -> None:
-    print(f"Feedback:\n    {to_yaml(message.feedback)}")
+class _Feedback:
+    """Shows feedback, but none before it was said that the goal is accepted: that answer may come later."""
+
+    def __init__(self) -> None:
+        self._early: list[Any] | None = []
+
+    def __call__(self, message: Any) -> None:
+        """Show one message, or keep it."""
+        if self._early is None:
+            print(f"Feedback:\n    {to_yaml(message.feedback)}")
+        else:
+            self._early.append(message)
+
+    def begin(self) -> None:
+        """Show what was kept, and from now on everything at once."""
+        early, self._early = self._early or [], None
+        for message in early:
+            self(message)
 
 
 def _wait(node: Node, future: Future) -> Any:
@@ -88,11 +104,13 @@ def _send_goal(args: argparse.Namespace) -> Outcome:
             while not client.server_is_ready():
                 rclpy.spin_once(node, timeout_sec=_POLL)
             print(f"Sending goal:\n     {to_yaml(goal)}")
-            handle = _wait(node, client.send_goal_async(goal, _show_feedback if args.feedback else None))
+            feedback = _Feedback()
+            handle = _wait(node, client.send_goal_async(goal, feedback if args.feedback else None))
             if not handle.accepted:
                 print("Goal was rejected.")
                 return None
             print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
+            feedback.begin()
             result = _wait(node, handle.get_result_async())
             print(f"Result:\n    {to_yaml(result.result)}")
             status = result.status if 0 <= result.status < len(_STATUS) else 0

@@ -372,6 +372,23 @@ def test_files_include_each_other(ros2: Ros2, tmp_path: Path) -> None:
     assert "'who'" in ros2("launch", "--show-args", str(tmp_path / "middle.launch.yaml")).stdout
 
 
+def test_the_service_leaves_signals_as_they_were(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from launch import LaunchDescription, LaunchService
+    from launch.actions import ExecuteProcess
+
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path))
+    before = [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGCHLD)]
+    service = LaunchService()
+    service.include_launch_description(
+        LaunchDescription([ExecuteProcess(cmd=["echo", "in"], output="screen")])
+    )
+    assert service.run() == 0
+    assert "[echo-1] in" in capsys.readouterr().out
+    assert [signal.getsignal(n) for n in (signal.SIGINT, signal.SIGTERM, signal.SIGCHLD)] == before
+
+
 def test_a_log_folder_that_can_not_be_made_is_named(
     ros2: Ros2, write: Callable[[str], str], tmp_path: Path
 ) -> None:
