@@ -16,6 +16,7 @@ _EPILOG = (
 )
 # The exit codes of ros2cli after Ctrl-C and SIGTERM: the numbers of the signals.
 _INTERRUPTED, _TERMINATED = 2, 15
+_NEEDED = ("rclpy", "ament_index_python", "yaml")
 
 
 class _Parser(argparse.ArgumentParser):
@@ -147,6 +148,12 @@ def run(argv: list[str]) -> int:
         return 1
     except RuntimeError as error:
         outcome = str(error)
+    except ModuleNotFoundError as error:
+        if error.name not in _NEEDED:
+            raise
+        outcome = (
+            f"ros2: {error.name} is not installed in this environment ({sys.prefix}): run ./course setup"
+        )
     except Exception as error:
         # rclpy is not imported for every command, so its exception is known by name only.
         if type(error).__name__ != "ExternalShutdownException":

@@ -81,6 +81,18 @@ def test_the_command_starts(fresh: Path) -> None:
     assert "Various topic related sub-commands" in done.stdout, done.stderr
 
 
+def test_without_ros_it_says_what_to_do(fresh: Path) -> None:
+    done = subprocess.run(
+        [fresh / "bin/ros2", "topic", "list"],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={"PATH": "/bin"},
+    )
+    assert done.stderr.startswith("ros2: rclpy is not installed in this environment (")
+    assert done.returncode == 1
+
+
 def test_installing_again_changes_nothing(fresh: Path) -> None:
     def state() -> dict[str, tuple[int, bytes]]:
         written = [fresh / "bin/ros2", *site_packages(fresh).glob("course_launch_front.*")]
