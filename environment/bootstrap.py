@@ -127,6 +127,8 @@ def set_up(place: Place, environ: Mapping[str, str], with_tests: bool) -> None:
         if with_tests:
             _provide_for_tests(log)
     if done:
+        if place.warning:
+            say(place.warning)
         say("set up.")
 
 

@@ -19,6 +19,7 @@ from pathlib import Path
 
 from environment import jupyter_files, loopback, ros_flavour, system_packages
 from environment.findings import Finding, as_text, exit_code
+from environment.place import Place
 from environment.ros_report import INTERFACE_FIELDS
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -65,7 +66,11 @@ def python() -> list[Finding]:
     """Look at the Python that runs this, and at the environment of the course."""
     detail = f"{sys.version.split()[0]}, {sys.executable}"
     if Path(sys.prefix) == PREFIX:
-        return [Finding("Python", "ok", f"{detail}")]
+        warning = Place(ROOT, Path(sys.executable)).warning
+        return [
+            Finding("Python", "ok", detail),
+            *([Finding("Folder", "optional", warning)] if warning else []),
+        ]
     if PREFIX.exists():
         remedy = f"Run this with {PREFIX / 'bin' / 'python'}"
         return [Finding("Python", "missing", f"{detail} is not the course's own", remedy)]

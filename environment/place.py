@@ -59,6 +59,16 @@ class Place:
         """The source of the interface package."""
         return self.environment / "ros2_ws" / "src" / INTERFACES
 
+    @property
+    def warning(self) -> str:
+        """A sentence about a folder that is no good place for the course, or an empty text."""
+        if not any(character.isspace() for character in str(self.root)):
+            return ""
+        return (
+            f"there is a space in {self.root}. The notebooks and the grader do not mind, but colcon's setup files "
+            "and the first line of a script do: packages of your own will not start. Better move the folder."
+        )
+
     def lock(self, name: str) -> Path:
         """Return a lock file."""
         return self.environment / "requirements" / f"{name}.lock"

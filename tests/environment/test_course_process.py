@@ -137,6 +137,7 @@ def test_what_setup_bash_asks_sees_the_terminal_as_it_is(bare: dict[str, str], t
 
 
 @pytest.mark.ros
+@pytest.mark.skipif(" " in sys.prefix, reason="colcon's own setup files cannot take a space in a path")
 def test_setup_bash_of_the_environment_gives_a_bare_terminal_its_variables(bare: dict[str, str]) -> None:
     command = f'. "{sys.prefix}/local_setup.sh"; echo "$AMENT_PREFIX_PATH|$PATH"'
     done = subprocess.run(["sh", "-c", command], env=bare, capture_output=True, text=True, check=True)

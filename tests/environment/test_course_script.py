@@ -145,7 +145,7 @@ def test_the_environments_own_start_does_not_hide_what_is_sourced_from_the_set_u
     python = course.root / ".venv/bin/python"
     python.unlink()
     python.write_text(
-        f'#!/bin/sh\necho "python $1" >> \'{course.root}/ran.txt\'\nexec {sys.executable} "$@"\n'
+        f'#!/bin/sh\necho "python $1" >> \'{course.root}/ran.txt\'\nexec "{sys.executable}" "$@"\n'
     )
     python.chmod(0o755)
     course.run("setup", PYTHON="")

@@ -129,6 +129,12 @@ def test_a_folder_with_a_colon_in_its_name_is_refused(tmp_path: Path) -> None:
         bootstrap._check_place(Place(root, Path("/usr/bin/python3.11")))
 
 
+def test_a_space_in_the_path_is_said(tmp_path: Path) -> None:
+    python = Path("/usr/bin/python3.11")
+    assert "will not start" in Place(tmp_path / "my course", python).warning
+    assert Place(Path("/home/me/course"), python).warning == ""
+
+
 def test_a_disk_without_room_is_said_before_anything_is_installed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
