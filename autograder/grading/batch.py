@@ -165,6 +165,10 @@ class _Batch:
                 for done in results:
                     self._executed += 1
                     self._journal.put(done.task, done.execution)
+                    if done.execution.trouble:
+                        self._problems.append(
+                            f"{done.task.label} could not be checked: {done.execution.trouble}"
+                        )
                     work = owners[id(done.task)]
                     work.results[done.task.notebook] = done.execution
                     progress.finished(done.task.label, failed=bool(done.execution.trouble))

@@ -11,7 +11,7 @@ import sys
 import tempfile
 import threading
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import IO, TYPE_CHECKING
 
 import msgspec
@@ -149,7 +149,10 @@ class _Lane(threading.Thread):
         reason = ""
         for _ in range(ATTEMPTS):
             try:
-                return self._ask(task)
+                execution = self._ask(task)
+                if execution.trouble:
+                    return replace(execution, trouble=f"{execution.trouble}{self._last_words()}")
+                return execution
             except (WorkerLost, OSError, ValueError) as error:
                 self._end_worker()
                 reason = f"{error}{self._last_words()}"

@@ -8,7 +8,7 @@ import shutil
 import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import msgspec
 from rich.console import Console
@@ -32,20 +32,9 @@ DATA = Path(__file__).with_suffix(".toml")
 CELL_SECONDS = 8.0
 """Short, so that the student with the endless loop does not make the demonstration long."""
 NOTEBOOK_SECONDS = 120.0
+BANK = Path("tests", "submissions", "notebooks")
+"""In the course: answers as students write them into notebooks, right and wrong."""
 _STAMP = "sample"
-
-
-@dataclass(frozen=True)
-class Extra:
-    """A cell of the student's own.
-
-    Attributes:
-        before: The grade_id of the cell that it stands before.
-        answer: The name of its text.
-    """
-
-    before: str
-    answer: str
 
 
 @dataclass(frozen=True)
@@ -56,36 +45,36 @@ class SampleNotebook:
     assignment: str
     about: str
     expected: dict[str, tuple[float, str]]
+    bank: tuple[str, ...] = ()
     answers: dict[str, str] = field(default_factory=dict)
-    extra: tuple[Extra, ...] = ()
     delete: tuple[str, ...] = ()
     duplicate: tuple[str, ...] = ()
     retype: dict[str, Kind] = field(default_factory=dict)
+    insert: dict[str, str] = field(default_factory=dict)
     unsolved: bool = False
     file: str = ""
 
 
 @dataclass(frozen=True)
-class Sample:
-    """The whole data file."""
+class _Answer:
+    """What a student wrote into a solution cell, and into cells of their own before it."""
 
-    notebook: tuple[SampleNotebook, ...]
-    answers: dict[str, str]
+    source: str
+    extra: tuple[str, ...]
 
 
-def read_sample() -> Sample:
-    """The data of the sample class."""
-    data: Any = tomllib.loads(DATA.read_text(encoding="utf-8"))
-    return msgspec.convert(data, Sample)
+def sample_notebooks() -> tuple[SampleNotebook, ...]:
+    """What is handed in in the sample class."""
+    data = tomllib.loads(DATA.read_text(encoding="utf-8"))
+    return msgspec.convert(data["notebook"], tuple[SampleNotebook, ...])
 
 
 def submit_sample(path: Path) -> None:
     """Hand in every sample notebook in the class at ``path``."""
-    sample = read_sample()
-    for notebook in sample.notebook:
+    for notebook in sample_notebooks():
         folder = path / "submitted" / notebook.student / notebook.assignment
         folder.mkdir(parents=True, exist_ok=True)
-        text = notebook.file or nodes.text(_made(path, notebook, sample.answers))
+        text = notebook.file or nodes.text(_made(path, notebook))
         (folder / f"{notebook.assignment}{SUFFIX}").write_text(text, encoding="utf-8")
 
 
@@ -125,36 +114,39 @@ def _make(path: Path, console: Console) -> None:
 
 
 def _version(root: Path) -> str:
-    """Changes with the masters and with the sample."""
+    """Changes with the masters, with the bank and with the sample."""
     digest = hashlib.sha256(DATA.read_bytes())
-    for master in sorted((root / "solutions").glob("*/*.md")):
-        digest.update(master.read_bytes())
+    for path in (*sorted((root / "solutions").glob("*/*.md")), *sorted((root / BANK).rglob("*.py"))):
+        digest.update(path.read_bytes())
     return digest.hexdigest()
 
 
-def _made(path: Path, wanted: SampleNotebook, answers: dict[str, str]) -> NotebookNode:
+def _made(path: Path, wanted: SampleNotebook) -> NotebookNode:
     """The notebook as the student saved it."""
     name = f"{wanted.assignment}{SUFFIX}"
-    released = nodes.read((path / "release" / wanted.assignment / name).read_text(encoding="utf-8"))
+    made = nodes.read((path / "release" / wanted.assignment / name).read_text(encoding="utf-8"))
+    right: dict[str, str] = {}
     if not wanted.unsolved:
         source = nodes.read((path / "source" / wanted.assignment / name).read_text(encoding="utf-8"))
         right = {grade_id(cell): _without_markers(cell.source) for cell in source.cells}
-        for cell in released.cells:
-            if grade_id(cell):
-                cell.source = right[grade_id(cell)]
-    for cell in released.cells:
-        if grade_id(cell) in wanted.answers:
-            cell.source = answers[wanted.answers[grade_id(cell)]].strip()
-    released.cells = [changed for cell in released.cells for changed in _changed(cell, wanted, answers)]
-    return released
+    answers = {name: answer for file in wanted.bank for name, answer in _bank_answers(file).items()}
+    answers |= {name: _Answer(text.strip(), ()) for name, text in wanted.answers.items()}
+    made.cells = [changed for cell in made.cells for changed in _changed(cell, wanted, right, answers)]
+    return made
 
 
-def _changed(cell: NotebookNode, wanted: SampleNotebook, answers: dict[str, str]) -> list[NotebookNode]:
-    """What stands in the place of one cell."""
+def _changed(
+    cell: NotebookNode, wanted: SampleNotebook, right: dict[str, str], answers: dict[str, _Answer]
+) -> list[NotebookNode]:
+    """What stands in the place of one cell of the released notebook."""
     name = grade_id(cell)
-    before = [
-        nodes.cell(Kind.CODE, answers[e.answer].strip()) for e in wanted.extra if name and e.before == name
-    ]
+    if not name:
+        return [cell]
+    answer = answers.get(name)
+    cell.source = answer.source if answer else right.get(name, cell.source)
+    before = [nodes.cell(Kind.CODE, source) for source in (answer.extra if answer else ())]
+    if name in wanted.insert:
+        before.append(nodes.cell(Kind.CODE, wanted.insert[name]))
     if name in wanted.delete:
         return before
     if name in wanted.retype:
@@ -166,6 +158,22 @@ def _changed(cell: NotebookNode, wanted: SampleNotebook, answers: dict[str, str]
         twin.id = f"{cell.id}-again"[:64]
         return [*before, cell, twin]
     return [*before, cell]
+
+
+def _bank_answers(file: str) -> dict[str, _Answer]:
+    """The cells of a bank answer: ``# %% extra`` and ``# %% solution NAME`` each begin one."""
+    text = (course.root() / BANK / file).read_text(encoding="utf-8")
+    found: dict[str, _Answer] = {}
+    extra: list[str] = []
+    for part in text.split("# %% ")[1:]:
+        head, _, source = part.partition("\n")
+        kind, _, name = head.strip().partition(" ")
+        if kind == "solution":
+            found[name] = _Answer(source.strip(), tuple(extra))
+            extra = []
+        else:
+            extra.append(source.strip())
+    return found
 
 
 def _without_markers(source: str) -> str:

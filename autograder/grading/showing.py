@@ -41,7 +41,7 @@ def show(report: GradeReport, console: Console | None = None) -> None:
     for refused in report.refused:
         _line(console, f"refused      {printable(str(refused.path))}: {refused.reason}", "yellow")
     for problem in report.problems:
-        _line(console, f"not written  {printable(problem)}", "red")
+        _line(console, f"problem      {printable(problem)}", "red")
     counts = (
         f"{report.executed} notebooks run, {report.reused} unchanged, {report.written} submissions entered"
     )

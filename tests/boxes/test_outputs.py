@@ -66,6 +66,13 @@ def test_an_image_that_is_markup_is_no_image() -> None:
     assert collected.outputs() == ()
 
 
+def test_markup_is_dropped_whatever_it_looks_like() -> None:
+    collected = collector()
+    for mime in ("text/html", "image/svg+xml", "text/markdown", "application/javascript", "text/latex"):
+        collected.handle("display_data", {"data": {mime: "Zm9v"}})
+    assert collected.outputs() == ()
+
+
 def test_a_progress_bar_shows_its_last_state() -> None:
     collected = collector()
     collected.handle("stream", {"name": "stdout", "text": "10 %\r50 %\r100 %\nready\r\n"})

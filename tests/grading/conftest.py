@@ -144,10 +144,12 @@ def tiny(_made: Path, tmp_path: Path) -> TinyClass:
     return TinyClass(tmp_path / "class")
 
 
-@pytest.fixture(autouse=True)
-def _one_course_version(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Several processes of a test must agree on it, also while somebody edits the course."""
-    monkeypatch.setattr(preparing, "course_version", lambda: "test")
+@pytest.fixture(scope="session", autouse=True)
+def _one_course_version() -> Iterator[None]:
+    """Several processes and runs must agree on it, also while somebody edits the course."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(preparing, "course_version", lambda: "test")
+        yield
 
 
 class FakeEngine:

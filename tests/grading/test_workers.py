@@ -135,6 +135,19 @@ def test_a_killed_batch_leaves_no_wrong_grade_and_no_process_and_the_next_one_go
     assert leftovers(tiny) == []
 
 
+def test_a_killed_batch_does_not_wait_for_the_notebook_that_is_running(
+    tiny: TinyClass, with_fake_judge: str
+) -> None:
+    tiny.submit("ada", "__import__('time').sleep(3600)")
+    batch = subprocess.Popen([sys.executable, "-W", "ignore", "-c", GRADE, str(tiny.path), with_fake_judge])
+    while len(orphans := leftovers(tiny)) < 2:  # the worker and its kernel
+        assert batch.poll() is None
+    batch.kill()
+    batch.wait()
+    _, alive = psutil.wait_procs(orphans, timeout=20)
+    assert alive == []
+
+
 def test_ctrl_c_stops_in_good_order(
     tiny: TinyClass, with_fake_judge: str, batch: subprocess.Popen[str]
 ) -> None:
