@@ -65,8 +65,8 @@ class Place:
         if not any(character.isspace() for character in str(self.root)):
             return ""
         return (
-            f"there is a space in {self.root}. The notebooks and the grader do not mind, but colcon's setup files "
-            "and the first line of a script do: packages of your own will not start. Better move the folder."
+            f"there is a space in {self.root}. The notebooks and the grader do not mind, but colcon's setup "
+            "files and the first line of a script do: packages of your own will not start. Better move the folder."
         )
 
     def lock(self, name: str) -> Path:
