@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from autograder.boxes.execution import CellRun, Check, Ended
 from autograder.verdict import Diagnosis, State, Verdict, not_checked
 
@@ -77,7 +79,7 @@ def _kernel_gone(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) 
         culprit = next((title for title, cell in before if cell.ended is Ended.KERNEL_DIED), "")
         if not culprit:
             return _out_of_time(check, before)
-        place = f"in the cell that begins with `{culprit}`, before this check cell had its turn"
+        place = f"in the cell that begins with “{culprit}”, before this check cell had its turn"
     return zero(
         check,
         "kernel_died",
@@ -92,7 +94,7 @@ def _out_of_time(check: Check, before: list[tuple[str, CellRun]]) -> Verdict:
     reason = "The notebook's time was up before this check cell had its turn."
     if slow:
         reason = (
-            f"The cell that begins with `{slow[-1]}` did not end at its time limit, nor when interrupted."
+            f"The cell that begins with “{slow[-1]}” did not end at its time limit, nor when interrupted."
         )
     return zero(
         check,
@@ -111,19 +113,28 @@ def _stopped_by_error(check: Check, run: CellRun, before: list[tuple[str, CellRu
         return zero(
             check,
             "cell_timed_out",
-            f"The cell that begins with `{title}` was stopped at its time limit. "
-            f"Then the check cell could not begin: {run.error}",
+            f"The cell that begins with “{title}” was stopped at its time limit, so the check could not begin.",
             "Look for a loop that never ends. To keep a node running, spin it in the background.",
         )
     first = cause or run
-    where = f" It began in the cell that begins with `{title}`: {first.error}." if cause else ""
+    reason = f"The check could not begin: {_told(run.error)}."
+    if cause:
+        reason = (
+            f"The cell that begins with “{title}” ended with {_told(cause.error)}, "
+            "so the check could not begin."
+        )
     return zero(
         check,
         "syntax_error" if first.error.startswith(_SYNTAX_ERRORS) else "crashed",
-        f"The check cell stopped before the check could begin: {run.error}.{where}",
+        reason,
         "Mend the first cell that shows an error, then restart the kernel and run all cells.",
         detail=_end_of_traceback(first),
     )
+
+
+def _told(error: str) -> str:
+    """An error's words without the name that IPython gives to the file of a cell."""
+    return re.sub(r"\(\d+\.py, line (\d+)\)", r"(line \1)", error).strip().rstrip(":.")
 
 
 def _end_of_traceback(run: CellRun) -> str:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from nbgrader.preprocessors import NbGraderPreprocessor
 from traitlets import Float
 
-from autograder.boxes.execution import Cell, Check, Ended, Execution
+from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution
 from autograder.boxes.limits import Limits
 from autograder.cards.bundle import mimebundle
 from autograder.grading import engine, nodes
@@ -71,14 +71,19 @@ class WireExecute(NbGraderPreprocessor):
 
 def with_results(nb: NotebookNode, task: Task, execution: Execution) -> NotebookNode:
     """The notebook with the outputs of its cells; of a check cell they are the card and the points."""
+    count = 0
     for index, (node, cell) in enumerate(zip(nb.cells, task.cells, strict=True)):
+        if node.cell_type != "code":
+            continue
+        run = execution.cells[index] if index < len(execution.cells) else CellRun(Ended.NOT_RUN)
+        if run.ended is not Ended.NOT_RUN:
+            count += 1
+            node.execution_count = count
         if cell.check is not None:
             node.outputs = _graded_outputs(cell.check, execution.verdicts[index])
-        elif node.cell_type == "code" and index < len(execution.cells):
-            run = execution.cells[index]
-            node.outputs = [nodes.output(**output) for output in run.outputs] + _remark(
-                cell, run.ended, task.limits
-            )
+        else:
+            node.outputs = [nodes.output(**output) for output in run.outputs]
+            node.outputs += _remark(cell, run.ended, task.limits) if execution.cells else []
     return nb
 
 
