@@ -66,7 +66,8 @@ class Place:
             return ""
         return (
             f"there is a space in {self.root}. The notebooks and the grader do not mind, but colcon's setup "
-            "files and the first line of a script do: packages of your own will not start. Better move the folder."
+            "files and the first line of a script do: packages of your own will not start. "
+            "Better move the folder."
         )
 
     def lock(self, name: str) -> Path:

@@ -153,7 +153,8 @@ def save(ros: Ros, prefix: Path) -> None:
     """Record the decision in the environment at `prefix`."""
     record = prefix / RECORD
     record.parent.mkdir(parents=True, exist_ok=True)
-    record.write_text(json.dumps({"flavour": ros.flavour, "paths": dict(ros.paths)}, indent=1) + "\n")
+    content = json.dumps({"flavour": ros.flavour, "paths": dict(ros.paths)}, indent=1)
+    record.write_text(f"{content}\n", encoding="utf-8")
 
 
 def load(prefix: Path) -> Ros | None:

@@ -135,7 +135,7 @@ class Setup:
         # first for that: a build in isolation would fetch one that nobody pinned.
         blocks = split_blocks(self.place.lock("course").read_text(encoding="utf-8"))
         backend = self.place.notes / "build-backend.lock"
-        backend.write_text("\n".join(block for name, block in blocks if name == "setuptools") + "\n")
+        backend.write_text("\n".join(block for name, block in blocks if name == "setuptools") + "\n", "utf-8")
         for chosen in ([backend], locks):
             files = [word for lock in chosen for word in ("-r", str(lock))]
             self._pip("--require-hashes", "--no-deps", "--only-binary=:all:", "--no-binary=empy", *files)
@@ -168,13 +168,17 @@ class Setup:
         paths, values = environment_paths(self.place, self.ros), environment_values(self.place)
         shutil.copyfile(self.place.environment / "course_process.py", site_packages / "course_process.py")
         written = '"""Written by the set-up of the course."""\n'
-        (site_packages / "course_paths.py").write_text(f"{written}\nPATHS = {paths!r}\nVALUES = {values!r}\n")
+        (site_packages / "course_paths.py").write_text(
+            f"{written}\nPATHS = {paths!r}\nVALUES = {values!r}\n", "utf-8"
+        )
         # Its name comes before ros_wheels_bootstrapper.pth, and so does it.
-        (site_packages / "course_process.pth").write_text("import course_process; course_process.begin()\n")
+        (site_packages / "course_process.pth").write_text(
+            "import course_process; course_process.begin()\n", "utf-8"
+        )
         wanted = course_process.variables(paths, {}, {})
         names = [name for name in course_process.READ_AT_START if name in wanted]
         exports = "".join(f"export {name}={shlex.quote(wanted[name])}\n" for name in names)
-        (self.place.notes / "libraries.sh").write_text(exports)
+        (self.place.notes / "libraries.sh").write_text(exports, encoding="utf-8")
         check = f"import rclpy, {INTERFACES}.action, {INTERFACES}.srv"
         self._run("importing rclpy and the interfaces", [self.place.python, "-c", check])
 
