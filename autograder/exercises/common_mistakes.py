@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Callable
 
 from autograder.exercises.crashes import CRASHES, OTHER_CRASHES, traceback_of
 from autograder.exercises.evidence import Evidence, Part
@@ -17,6 +18,7 @@ __all__ = [
     "everything_twice",
     "message_type",
     "never_spun",
+    "only_if_ended",
     "qos_mismatch",
     "went_deaf",
 ]
@@ -169,20 +171,31 @@ def ended_too_early(evidence: Evidence) -> Advice | None:
     )
 
 
+def only_if_ended(recognise: Callable[[Evidence], Advice | None]) -> Callable[[Evidence], Advice | None]:
+    """The same, but only where each run of the subject came to its own end: time had no part in it then."""
+
+    def ended(evidence: Evidence) -> Advice | None:
+        return recognise(evidence) if all(part.ending for part in evidence) else None
+
+    return ended
+
+
 def _not_written(evidence: Evidence) -> Advice | None:
     part = evidence.main
-    surveys = part.of("interface")
-    if not surveys or not surveys[-1].data.get("nodes") or any(part.endpoints(role) for role in _WORD):
+    nodes = any(survey.data.get("nodes") for survey in part.of("interface"))
+    returned = part.ending is not None and part.ending.name == "returned" and not part.said()
+    if not (nodes or returned) or any(part.endpoints(role) for role in _WORD):
         return None
     return Advice(
-        "The node is there, but it has no publisher, subscription, client or server yet.",
+        "Your code runs, but it has no publisher, subscription, client or server yet.",
         "Find the TODO in your solution cell and write that step; the hints below it open one at a time.",
     )
 
 
 def _nothing_on_the_graph(evidence: Evidence) -> Advice | None:
-    surveys = evidence.main.of("interface")
-    if surveys and surveys[-1].data.get("nodes"):
+    if any(survey.data.get("nodes") for part in evidence for survey in part.of("interface")):
+        return None
+    if any(part.of("log") or part.of("request") or part.of("goal") or part.of("message") for part in evidence):
         return None
     return Advice(
         "No node of yours appeared on the graph.",
@@ -192,8 +205,8 @@ def _nothing_on_the_graph(evidence: Evidence) -> Advice | None:
 
 NOTHING_THERE = (
     Mistake("main_guard", _main_guard, certain=True),
-    Mistake("ended_too_early", ended_too_early),
-    Mistake("not_written", _not_written),
     Mistake("nothing_on_the_graph", _nothing_on_the_graph, certain=True),
+    Mistake("not_written", _not_written),
+    Mistake("ended_too_early", ended_too_early),
 )
 """What is asked last, when nothing more exact fits."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -92,9 +93,13 @@ def _without_tracebacks(events: Sequence[Event]) -> Iterator[Event]:
         yield event
 
 
+_PREFIX = re.compile(r"^\[\w+\] \[[\d.]+\] \[[^\]]*\]: ")
+"""What rcutils puts before a line on a terminal: level, time stamp, logger. These are nobody's words."""
+
+
 def _spoken(event: Event) -> str | None:
     if event.kind in ("log", "output"):
-        return str(event.data["text"])
+        return _PREFIX.sub("", str(event.data["text"]))
     if event.kind == "subject" and event.name == "returned" and event.data.get("value") is not None:
         return str(event.data["value"])
     return None

@@ -52,11 +52,16 @@ def run(bench: Bench, name: str, *, accept: bool) -> bool:
     cancelled = False
     if server.await_goal(GOAL_LIMIT):
         sequence = [0, 1]
-        for count in range(1, WITHOUT_CANCEL + 1):
-            sequence.append(sequence[-1] + sequence[-2])
-            server.send_feedback(partial_sequence=sequence)
+        for count in range(WITHOUT_CANCEL + 1):
+            if count:
+                sequence.append(sequence[-1] + sequence[-2])
+                server.send_feedback(partial_sequence=sequence)
+            if bench.look is Look.FAST:
+                bench.settle()
             inside = FIRST_FEEDBACK <= count <= LAST_FEEDBACK
-            if server.await_cancel(WINDOW_PACE[bench.look] if inside else PACE[bench.look]):
+            # The first feedback follows the acceptance at once, at any pace.
+            pace = WINDOW_PACE[bench.look] if inside else PACE[bench.look if count else Look.FAST]
+            if server.await_cancel(pace):
                 cancelled = True
                 break
         bench.run_time(PACE[bench.look])
@@ -96,9 +101,22 @@ def feedbacks_before_cancel(part: Part) -> int | None:
     return sum(event.kind == "feedback" for event in before)
 
 
-def says_canceled(lines: Sequence[str]) -> bool:
-    """Whether a line names the status CANCELED, by its name or by its number 5 (action_msgs/msg/GoalStatus)."""
-    return any(re.search(r"cancel|abgebrochen|annul|(?<![\d.])5(?![\d.])", _without_lists(line), re.IGNORECASE) for line in lines)
+def says_canceled(lines: Sequence[str], elsewhere: Sequence[str] = ()) -> bool:
+    """Whether a line names the status CANCELED, by its name or by its number 5 (action_msgs/msg/GoalStatus).
+
+    Args:
+        lines: What was said.
+        elsewhere: What was said of a goal that was not canceled: a 5 in a line of these is no status.
+    """
+    return any(
+        _names_canceled(line)
+        or (line not in elsewhere and re.search(r"(?<![\d.])5(?![\d.])", _without_lists(line)))
+        for line in lines
+    )
+
+
+def _names_canceled(line: str) -> bool:
+    return re.search(r"cancel|abgebrochen|annul", _without_lists(line), re.IGNORECASE) is not None
 
 
 def _without_lists(line: str) -> str:
@@ -170,7 +188,7 @@ def reports_the_status(evidence: Evidence) -> Finding:
     if part.first("result_request") is None:
         return Finding(False, expected, "never asked for the result")
     said = _after_result(part)
-    if not says_canceled(said):
+    if not says_canceled(said, refused.said()):
         return Finding(False, expected, f"“{said[-1]}”" if said else "nothing was said after the result")
     claimed = _false_claim(refused)
     if claimed:
@@ -185,15 +203,10 @@ def _false_claim(refused: Part) -> str | None:
     said = _after_result(refused)
     honest = r"succe|not |n't|4|refus|reject|fail|nicht|erfolg|unable|could|instead|denied|unknown"
     said = said or refused.said()
-    claims = [line for line in said if says_canceled([line])]
+    claims = [line for line in said if _names_canceled(line)]
     if not claims or any(re.search(honest, _without_lists(line), re.IGNORECASE) for line in said):
         return None
     return claims[-1]
-
-
-def ends_by_itself(part: Part) -> bool:
-    """Whether the client ended after it had its result."""
-    return part.ending is not None
 
 
 # --- known mistakes ----------------------------------------------------------------------------------------
@@ -284,7 +297,7 @@ def cancel_repeated(evidence: Evidence) -> Advice | None:
 def status_not_reported(evidence: Evidence) -> Advice | None:
     """It cancels, and never says how the goal ended."""
     part = evidence.part(HONOURED)
-    if part.first("cancel") is None or says_canceled(_after_result(part)):
+    if part.first("cancel") is None or says_canceled(_after_result(part), evidence.part(REFUSED).said()):
         return None
     if part.first("result_request") is None:
         return Advice(
@@ -306,17 +319,6 @@ def status_misreported(evidence: Evidence) -> Advice | None:
         f"The judge refused the cancel request and the goal succeeded, but your client said “{claim}”.",
         "Compare result.status with GoalStatus.STATUS_CANCELED before you say so: a cancel is a request, and the "
         "server may refuse it.",
-    )
-
-
-def never_ended(evidence: Evidence) -> Advice | None:
-    """All is done, and the program goes on."""
-    part = evidence.main
-    if part.first("result") is None or part.ending is not None:
-        return None
-    return Advice(
-        "Your client has its result but never ends.",
-        "End it when the result is there: rclpy.spin_until_future_complete(...), or shut down in the result callback.",
     )
 
 
@@ -346,7 +348,6 @@ EXERCISE = Exercise(
         Mistake("cancel_repeated", cancel_repeated, certain=True),
         Mistake("status_misreported", status_misreported),
         Mistake("status_not_reported", status_not_reported),
-        Mistake("never_ended", never_ended),
         *common.NOTHING_THERE,
     ),
     roles=("action_client",),

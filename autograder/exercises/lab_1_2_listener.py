@@ -66,10 +66,6 @@ def _said_after_sent(part: Part, event: Event) -> bool:
     return any(text in line for line in part.said(after=event))
 
 
-_PREFIX = re.compile(r"^\[\w+\] \[[\d.]+\] \[[^\]]*\]: ")
-"""What rcutils puts before a line on a terminal: level, time stamp, logger. These are nobody's words."""
-
-
 def invented(part: Part, sent: Sequence[str]) -> list[str]:
     """What it claims to have heard although nobody sent it.
 
@@ -77,7 +73,7 @@ def invented(part: Part, sent: Sequence[str]) -> list[str]:
     line with the same frame and another text in it was invented. Where it said none of the texts, a line with a
     quoted text is taken for such a claim.
     """
-    spoken = [_PREFIX.sub("", line) for line in part.said()]
+    spoken = part.said()
     lines = [line for line in spoken if not any(text in line for text in sent)]
     frames = {_frame(line, text) for line in spoken for text in sent if text in line}
     if not frames:

@@ -14,8 +14,6 @@ MESSAGES = {Look.FAST: 8, Look.REAL_TIME: 7}
 """Messages that are listened to; six intervals in real time, whose median one late message does not move."""
 USUAL_PERIOD = 0.5
 """Seconds; stands in for the reference's period while that is being recorded."""
-EARLIEST = 0.1
-"""Seconds after its start at which a program may publish its first message: Python alone takes as long to start."""
 SILENCE = 6
 """Periods of silence after which nothing more is waited for."""
 ONE_MOMENT = 0.1
@@ -46,12 +44,12 @@ def texts(part: Part, topic: str) -> list[str]:
 
 
 def intervals(messages: list[Event]) -> list[float]:
-    """Seconds between messages, simulated ones where there are any.
+    """Seconds between messages: simulated ones where there are any, else by the publisher's own clock.
 
     The first simulated interval is left out: the jump to simulated time distorts it.
     """
     simulated = [event.sim for event in messages if event.sim is not None]
-    times = simulated[1:] or [event.t for event in messages]
+    times = simulated[1:] or [float(event.data.get("sent", event.t)) for event in messages]
     return [later - earlier for earlier, later in pairwise(times)]
 
 
@@ -100,32 +98,17 @@ def says_the_text(evidence: Evidence) -> Finding:
     return Finding(bool(heard) and not odd, f"“{expected[0]}”, “{expected[1]}”, …", seen)
 
 
-def first_may_be_lost(part: Part, topic: str, number: int) -> bool:
-    """Whether ``number`` messages may have been sent before anybody could hear them.
-
-    A loop publishes in the moment in which it makes its publisher, which no listener can be quick enough for. A
-    timer waits for one period first, and one that follows the simulated clock loses nothing.
-    """
-    heard = part.of("message", topic)
-    met = next((event.t for event in part.of("matched", topic) if event.data["count"]), None)
-    gaps = intervals(heard)
-    if met is None or not gaps:
-        return False
-    period = median(gaps)
-    if heard[0].sim is not None:
-        return met - EARLIEST >= number * period
-    return heard[0].t - number * period >= EARLIEST and heard[0].t - period <= met
-
-
 def starts_right(evidence: Evidence) -> bool:
-    """Whether the first number is the reference's, or would be if what nobody could hear is added."""
+    """Whether the first number is the reference's, also where messages were sent before anybody could hear them.
+
+    A loop may publish in the moment in which it makes its publisher, which no listener can be quick enough for. DDS
+    numbers each publisher's messages from 1, so that what was lost is known.
+    """
     topic, _, expected = _expected(evidence)
     wanted = _counters(expected)[0]
-    for look in filter(None, (evidence, evidence.before)):
-        numbers = _counters(texts(look.main, topic))
-        lost = numbers[0] - wanted if numbers else 0
-        if numbers and (lost == 0 or (lost > 0 and first_may_be_lost(look.main, topic, lost))):
-            return True
+    for event in evidence.main.of("message", topic)[:1]:
+        numbers = _counters([str(event.data["fields"].get("data"))])
+        return bool(numbers) and numbers[0] - (int(event.data.get("number", 1)) - 1) == wanted
     return False
 
 

@@ -183,6 +183,13 @@ class Bench(Protocol):
         """How many messages arrived on a topic so far in this part."""
         ...
 
+    def settle(self) -> None:
+        """Wait until the subject's executors have taken what was sent to them, as far as they turn at all.
+
+        Without it a busy machine would make a quick subject look slow.
+        """
+        ...
+
     def note_whether_it_spins(self) -> None:
         """Ask the subject's nodes something that any spun node answers; write down when one does not."""
         ...

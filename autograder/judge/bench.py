@@ -57,6 +57,7 @@ class TestBench:
         self._mouths: dict[str, Mouth] = {}
         self._clock: SimulatedClock | None = None
         self._clock_refused = False
+        self._deaf: set[str] = set()
         self._clean = True
         self._in_part = False
 
@@ -84,7 +85,7 @@ class TestBench:
         self.parts.append(self._recorder.part())
         self._subject.stop()
         self._open.close()
-        self._ears, self._mouths, self._clock, self._clock_refused = {}, {}, None, False
+        self._ears, self._mouths, self._clock, self._clock_refused, self._deaf = {}, {}, None, False, set()
         if self.wire.failure is not None:
             raise JudgeFailed(f"the judge's own node failed: {self.wire.failure!r}")
 
@@ -127,7 +128,10 @@ class TestBench:
         # Written down now, because a subject that ends takes its endpoints along.
         self.note_interface()
         if name not in self._recorder.part().endpoints(role):
-            return False
+            type_name = graph.is_there(self.wire.node, role, name)
+            if type_name is None:
+                return False
+            self._recorder.record("interface", "topic", **{role: {name: type_name}})
         counterpart = {"publisher": self._ears, "subscription": self._mouths}.get(role, {}).get(name)
         if counterpart is None or counterpart.type_name != self._recorder.part().endpoints(role)[name]:
             return True  # there is nobody to be matched with
@@ -242,6 +246,14 @@ class TestBench:
         before = heard()
         # One message may still have been on its way when the clock stopped.
         return lambda: heard() <= before + 1
+
+    def settle(self) -> None:
+        """Ask each node of the subject's twice; a node that did not answer once is not asked again in this part."""
+        for node in self._nodes():
+            if node.full in self._deaf or self._subject.ended:
+                continue
+            if not all(clock.answers(self.wire, self._recorder, node, clock.ANSWER_LIMIT) for _ in range(2)):
+                self._deaf.add(node.full)
 
     def note_whether_it_spins(self) -> None:
         """Ask each node of the subject's for a parameter; write down which one does not answer."""

@@ -135,10 +135,10 @@ def ask(recorder: Recorder, client: Any, request: Any, limit: float) -> Any:
     return future.result() if done.wait(limit) else None
 
 
-def answers(wire: Wire, recorder: Recorder, node: NodeName) -> bool:
-    """Whether a node answers a question that every spun node answers."""
+def answers(wire: Wire, recorder: Recorder, node: NodeName, limit: float = PATIENT_ANSWER) -> bool:
+    """Whether a node answers, within ``limit`` seconds, a question that every spun node answers."""
     client = wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
     try:
-        return ask(recorder, client, _QUESTION, PATIENT_ANSWER) is not None
+        return ask(recorder, client, _QUESTION, limit) is not None
     finally:
         wire.node.destroy_client(client)

@@ -68,5 +68,5 @@ def judged_here(exercise: Exercise, command: Sequence[str], seed: str, cwd: Path
         expected = reference.load(exercise.id)
         with domain.lease() as domain_id:
             return trial.check(exercise, CommandSubject(command, cwd), expected, seed=seed, domain_id=domain_id)
-    except (domain.NoFreeDomain, reference.NoReference, JudgeFailed) as error:
+    except (domain.NoFreeDomainError, reference.NoReference, JudgeFailed) as error:
         return not_checked(exercise.id, exercise.title, exercise.points, str(error))

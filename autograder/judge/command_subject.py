@@ -20,6 +20,8 @@ MAX_LINE = 4_000
 """Characters of one line that are kept."""
 MAX_OUTPUT = 2_000_000
 """Bytes of output that are kept of one run."""
+READ_LIMIT = 2.0
+"""Seconds in which the last output of a command that has exited must have been read."""
 POLITE = 1.0
 """Seconds that a command has to end after SIGINT, before it is killed."""
 
@@ -104,8 +106,8 @@ class CommandSubject:
             reader.start()
         code = process.wait()
         for reader in readers:
-            # A grandchild may hold the pipe open: the exit of the command itself is what counts.
-            reader.join(timeout=0.2)
+            # All that it printed must be read before its end is known. A grandchild may hold the pipe open, though.
+            reader.join(timeout=READ_LIMIT)
         recorder.record("subject", "exited", code=code)
         done.set()
 

@@ -52,7 +52,7 @@ def _report(exercise: Exercise, subject: RemoteSubject, seed: str, recording: bo
             recorded = record.record(exercise, subject, domain_id=domain_id)
             verdict = trial.judge(exercise, record.as_evidence(recorded), seed)
             return Report(verdict, reference.dump(recorded))
-    except (domain.NoFreeDomain, reference.NoReference, record.NotRecordable, JudgeFailed) as error:
+    except (domain.NoFreeDomainError, reference.NoReference, record.NotRecordable, JudgeFailed) as error:
         return Report(trouble=str(error))
 
 

@@ -12,7 +12,10 @@ from rclpy.action.graph import (
     get_action_client_names_and_types_by_node,
     get_action_server_names_and_types_by_node,
 )
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node, NodeNameNonExistentError
+
+RCLError = rclpy_implementation.RCLError
 
 ROLES = ("publisher", "subscription", "service", "client", "action_server", "action_client")
 
@@ -63,6 +66,19 @@ def survey(judge: Node) -> Interface:
     return found
 
 
+def is_there(judge: Node, role: str, name: str) -> str | None:
+    """The type of the subject's endpoint on a topic, told without the names of nodes; None where there is none.
+
+    An endpoint is known before the node that it belongs to: the two are announced separately.
+    """
+    infos = {
+        "publisher": judge.get_publishers_info_by_topic,
+        "subscription": judge.get_subscriptions_info_by_topic,
+    }.get(role)
+    others = [info for info in (infos(name) if infos else []) if info.node_name != judge.get_name()]
+    return others[0].topic_type if others else None
+
+
 def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeName]:
     """The subject's nodes at the other end of topics, once their real names are known.
 
@@ -105,8 +121,8 @@ _QUERIES: dict[str, _Query] = {
 def _ask(query: _Query, judge: Node, node: NodeName) -> list[tuple[str, list[str]]]:
     try:
         return query(judge, node.name, node.namespace)
-    except NodeNameNonExistentError:
-        return []
+    except (NodeNameNonExistentError, RCLError):
+        return []  # it went away between the two questions
 
 
 def _is_own_work(role: str, name: str) -> bool:

@@ -16,6 +16,9 @@ from autograder.exercises.evidence import Event, Part, Reference
 
 _KEPT = ("message", "sent", "request", "response", "goal", "feedback", "cancel", "result")
 
+_MACHINE = ("number", "sent")
+"""Data of an event that differ from run to run."""
+
 
 class NoReference(LookupError):
     """There is no reference output for an exercise, or it cannot be read."""
@@ -81,4 +84,4 @@ def _event(event: Event, start: float | None) -> dict[str, Any]:
     row: dict[str, Any] = {"kind": event.kind, "name": event.name}
     if event.sim is not None and start is not None:
         row["sim"] = round(event.sim - start, 3)
-    return row | {"data": dict(event.data)}
+    return row | {"data": {name: value for name, value in event.data.items() if name not in _MACHINE}}

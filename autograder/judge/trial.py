@@ -8,7 +8,7 @@ from random import Random
 
 from autograder.exercises.crashes import traceback_of
 from autograder.exercises.evidence import Evidence, Reference
-from autograder.exercises.model import Exercise, Look
+from autograder.exercises.model import Advice, Exercise, Look, Mistake
 from autograder.judge import timeline
 from autograder.judge.bench import TestBench
 from autograder.judge.subjects import Subject
@@ -41,7 +41,7 @@ def check(exercise: Exercise, subject: Subject, reference: Reference, *, seed: s
     subject.begin(domain_id)
     seen = look(exercise, subject, reference, Look.FAST, seed=seed, domain_id=domain_id)
     verdict = judge(exercise, seen.evidence, seed)
-    if exercise.second_look and (seen.doubtful or not verdict.passed) and not _is_certain(exercise, verdict):
+    if exercise.second_look and (seen.doubtful or not verdict.passed) and not _is_certain(exercise, seen.evidence):
         again = look(exercise, subject, reference, Look.REAL_TIME, seed=seed, domain_id=domain_id)
         verdict = judge(exercise, replace(again.evidence, before=seen.evidence), seed)
     return replace(verdict, seconds=round(time.monotonic() - began, 3))
@@ -83,10 +83,10 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
 
 def diagnose(exercise: Exercise, evidence: Evidence) -> Diagnosis:
     """The first known mistake that the evidence shows."""
-    for mistake in exercise.mistakes:
-        advice = mistake.recognise(evidence)
-        if advice is not None:
-            return Diagnosis(mistake.key, advice.text, advice.next_step)
+    found = _recognised(exercise, evidence)
+    if found is not None:
+        mistake, advice = found
+        return Diagnosis(mistake.key, advice.text, advice.next_step)
     return Diagnosis(
         "unknown",
         "This is none of the mistakes that the judge knows by name.",
@@ -94,6 +94,14 @@ def diagnose(exercise: Exercise, evidence: Evidence) -> Diagnosis:
     )
 
 
-def _is_certain(exercise: Exercise, verdict: Verdict) -> bool:
-    key = verdict.diagnosis.key if verdict.diagnosis else None
-    return any(mistake.key == key and mistake.certain for mistake in exercise.mistakes)
+def _recognised(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice] | None:
+    for mistake in exercise.mistakes:
+        advice = mistake.recognise(evidence)
+        if advice is not None:
+            return mistake, advice
+    return None
+
+
+def _is_certain(exercise: Exercise, evidence: Evidence) -> bool:
+    found = _recognised(exercise, evidence)
+    return found is not None and found[0].certain

@@ -6,6 +6,7 @@ import secrets
 import threading
 from typing import Any
 
+from autograder.ros_participant import receivers_wait
 from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
@@ -28,13 +29,14 @@ class Wire:
     def __init__(self, domain_id: int) -> None:
         self.context = Context()
         self.context.init(args=["--ros-args", "--disable-external-lib-logs"], domain_id=domain_id)
-        self.node = Node(
-            f"judge_{secrets.token_hex(4)}",
-            context=self.context,
-            use_global_arguments=False,
-            enable_rosout=False,
-            start_parameter_services=False,
-        )
+        with receivers_wait():
+            self.node = Node(
+                f"judge_{secrets.token_hex(4)}",
+                context=self.context,
+                use_global_arguments=False,
+                enable_rosout=False,
+                start_parameter_services=False,
+            )
         self.executor = SingleThreadedExecutor(context=self.context)
         self.executor.add_node(self.node)
         self.failure: BaseException | None = None

@@ -12,7 +12,7 @@ import rclpy
 from rclpy.signals import SignalHandlerOptions, get_current_signal_handlers_options, uninstall_signal_handlers
 from rclpy.utilities import get_default_context, ok, try_shutdown
 
-from autograder.notebook.ros_domain import (
+from autograder.ros_domain import (
     DOMAIN_VARIABLE,
     DomainClaim,
     claim_free_domain,

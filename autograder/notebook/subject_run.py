@@ -10,10 +10,11 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from rclpy.context import Context
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Empty
 
+from autograder.notebook.spin_threads import Failure, SpinThreads
 from autograder.notebook.student_tracebacks import student_frames
 
 Tell = Callable[..., None]
@@ -33,13 +34,19 @@ class SubjectRun:
         self._tell_judge = tell
         self._released = threading.Event()
         self._stopping = threading.Event()
-        self._executor: SingleThreadedExecutor | None = None
         self._thread = threading.Thread(target=self._live, name=f"subject {number}", daemon=True)
+        self._spinning = False
         self._arguments: Sequence[Any] = ()
         self._options: Mapping[str, Any] = {}
 
     def start(self, arguments: Sequence[Any], options: Mapping[str, Any]) -> None:
-        """Begin; ``options`` are passed on where a function takes them."""
+        """Begin.
+
+        Args:
+            arguments: What the class or function is called with.
+            options: Passed on where a function has parameters of these names; for a class, ``threads`` says how
+                many threads spin it.
+        """
         self._arguments, self._options = arguments, options
         self._thread.start()
 
@@ -51,24 +58,18 @@ class SubjectRun:
         """End the run; whether its thread is gone."""
         self._stopping.set()
         self._released.set()
-        if self._executor is not None:
-            self._executor.shutdown(timeout_sec=END_LIMIT)
-        self._thread.join(timeout=0.2 if self._is_class else END_LIMIT / 5)
+        self._thread.join(timeout=END_LIMIT if self._spinning else END_LIMIT / 5)
         if self._thread.is_alive():
             _ask_to_leave(self._thread)
             self._thread.join(timeout=END_LIMIT)
         return not self._thread.is_alive()
-
-    @property
-    def _is_class(self) -> bool:
-        return inspect.isclass(self._subject)
 
     def _tell(self, word: str, **rest: Any) -> None:
         self._tell_judge(word, run=self._number, **rest)
 
     def _live(self) -> None:
         try:
-            if self._is_class:
+            if inspect.isclass(self._subject):
                 self._make_and_spin()
             else:
                 value = self._subject(*self._arguments, **_accepted(self._subject, self._options))
@@ -82,21 +83,24 @@ class SubjectRun:
     def _make_and_spin(self) -> None:
         node = self._subject(*self._arguments)
         if not isinstance(node, Node):
-            raise TypeError(
-                f"{self._subject.__name__} is no Node: write class {self._subject.__name__}(Node)"
-            )
-        try:
-            self._tell("constructed", marker=_mark(node, self._number))
-            self._released.wait()
-            if self._stopping.is_set():
-                return
-            self._executor = SingleThreadedExecutor(context=node.context)
-            self._executor.add_node(node)
-            self._executor.spin()
-        finally:
-            if self._executor is not None:
-                self._executor.remove_node(node)
-            node.destroy_node()
+            raise TypeError(f"{self._subject.__name__} is no Node: write class {self._subject.__name__}(Node)")
+        self._tell("constructed", marker=_mark(node, self._number))
+        self._released.wait()
+        threads = SpinThreads(
+            [node],
+            threads=int(self._options.get("threads", 1)),
+            on_failure=self._callback_raised,
+            on_end=lambda _: self._stopping.set(),
+        )
+        self._spinning = True
+        threads.start()
+        self._stopping.wait()
+        threads.stop(grace=END_LIMIT / 3)
+
+    def _callback_raised(self, failure: Failure) -> None:
+        # In a program, rclpy.spin ends with the first exception of a callback; so does the subject here.
+        if not self._stopping.is_set():
+            self._tell("raised", traceback=formatted(failure.error))
 
 
 def formatted(error: BaseException) -> str:

@@ -17,7 +17,7 @@ from rclpy.node import Node
 from std_msgs.msg import String
 
 from autograder.notebook.executors import stop_all
-from autograder.notebook.ros_domain import claim_free_domain
+from autograder.ros_domain import claim_free_domain
 from autograder.notebook.ros_session import start_ros
 
 if TYPE_CHECKING:

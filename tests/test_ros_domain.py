@@ -8,13 +8,13 @@ import sys
 
 import pytest
 
-from autograder.notebook.ros_domain import NoFreeDomainError, claim_free_domain, domain_from_environment
+from autograder.ros_domain import NoFreeDomainError, claim_free_domain, domain_from_environment
 
 CANDIDATES = range(70, 80)
 
 CLAIM_AND_HOLD = """
 import sys
-from autograder.notebook.ros_domain import claim_free_domain
+from autograder.ros_domain import claim_free_domain
 claim = claim_free_domain(range(70, 80))
 print(claim.domain, flush=True)
 sys.stdin.read()
