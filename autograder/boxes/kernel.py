@@ -36,6 +36,7 @@ Output = Callable[[str, str, Mapping[str, Any]], None]
 _RECONNECT_MS = 15
 _ASK_AGAIN_S = 0.5
 _LAST_OUTPUT_S = 2.0
+_TOO_LARGE = "\n[output that was too large was dropped]\n"
 
 
 class KernelFailed(RuntimeError):
@@ -105,22 +106,10 @@ class Kernel:
         Raises:
             KernelFailed: It ended or did not answer within ``start_seconds``.
         """
-        deadline = time.monotonic() + self._limits.start_seconds
-        answered = heard = False
-        asked: set[str] = set()
-        while not (answered and heard):
-            if not self.alive:
-                raise KernelFailed(f"the kernel ended while it started: {self._last_words()}")
-            if time.monotonic() > deadline:
+        if not self._shake_hands(time.monotonic() + self._limits.start_seconds):
+            if self.alive:
                 raise KernelFailed(f"the kernel did not answer within {self._limits.start_seconds:g} s")
-            # Asked more than once because outputs published before our subscription was known are lost.
-            asked.add(self._ask("kernel_info_request", {}))
-            for channel, message in self._messages(min(deadline, time.monotonic() + _ASK_AGAIN_S)):
-                if _parent(message) in asked:
-                    answered |= channel is self._shell
-                    heard |= channel is self._iopub
-                if answered and heard:
-                    break
+            raise KernelFailed(f"the kernel ended while it started: {self._last_words()}")
 
     def execute(self, source: str, deadline: float, request: Callable[[str], None] = lambda _: None) -> Ended:
         """Execute one cell.
@@ -204,9 +193,23 @@ class Kernel:
             self._iopub.close()
             self._iopub = self._subscribe()
             self._poller.register(self._iopub, zmq.POLLIN)
-            self._on_output(
-                request, "stream", {"name": "stdout", "text": "\n[output that was too large was dropped]\n"}
-            )
+            self._shake_hands(time.monotonic() + self._limits.interrupt_grace)
+            self._on_output(request, "stream", {"name": "stdout", "text": _TOO_LARGE})
+
+    def _shake_hands(self, deadline: float) -> bool:
+        """Ask until both an answer and its echo among the outputs have arrived; whether they have."""
+        answered = heard = False
+        asked: set[str] = set()
+        while self.alive and time.monotonic() < deadline:
+            # Asked more than once because outputs published before our subscription was known are lost.
+            asked.add(self._ask("kernel_info_request", {}))
+            for channel, message in self._messages(min(deadline, time.monotonic() + _ASK_AGAIN_S)):
+                if _parent(message) in asked:
+                    answered |= channel is self._shell
+                    heard |= channel is self._iopub
+                if answered and heard:
+                    return True
+        return False
 
     def _await_end(self) -> None:
         with contextlib.suppress(subprocess.TimeoutExpired):

@@ -113,7 +113,7 @@ def _stopped_by_error(check: Check, run: CellRun, before: list[tuple[str, CellRu
         return zero(
             check,
             "cell_timed_out",
-            f"The cell that begins with “{title}” was stopped at its time limit, so the check could not begin.",
+            f"The cell that begins with “{title}” was stopped at its time limit, so no check could begin.",
             "Look for a loop that never ends. To keep a node running, spin it in the background.",
         )
     first = cause or run

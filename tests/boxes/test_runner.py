@@ -98,7 +98,7 @@ def test_an_error_before_the_check_is_named_as_the_cause(run: Run) -> None:
 
 
 def test_an_endless_loop_is_stopped_and_the_rest_still_runs(run: Run) -> None:
-    execution = run(["while True:\n    pass", "print('alive')", check("talker")], cell_seconds=0.5)
+    execution = run(["while True:\n    pass", "print('alive')", check("talker")], cell_seconds=2.0)
     assert [cell.ended for cell in execution.cells[:2]] == [Ended.TIMED_OUT, Ended.DONE]
     assert key(execution) == "cell_timed_out"
 
@@ -128,11 +128,15 @@ def test_sys_exit_ends_the_cell_and_not_the_notebook(run: Run) -> None:
 
 
 def test_the_notebook_as_a_whole_has_a_limit(run: Run) -> None:
-    nap = "import time; time.sleep(0.6)"
-    execution = run([nap, nap, nap, nap, check()], passed(), notebook_seconds=1.0)
-    assert execution.cells[0].ended is Ended.DONE
-    assert execution.cells[-1].ended is Ended.NOT_RUN
-    assert key(execution) in {"notebook_timed_out", "cell_timed_out"}
+    execution = run(["1", "import time; time.sleep(600)", "2", check()], passed(), notebook_seconds=2.0)
+    assert [cell.ended for cell in execution.cells] == [
+        Ended.DONE,
+        Ended.TIMED_OUT,
+        Ended.NOT_RUN,
+        Ended.NOT_RUN,
+    ]
+    assert key(execution) == "notebook_timed_out"
+    assert execution.verdicts[3].score == 0
 
 
 def test_a_log_line_on_stderr_costs_nothing(run: Run) -> None:
