@@ -15,17 +15,29 @@ if TYPE_CHECKING:
 
     from autograder.masters.parsing import Cell
 
-FORM = 'A check cell is one line such as: check("lab_1_2.talker", TalkerNode)'
+FORM = (
+    "A check cell is one line such as: "
+    'check("lab_1_2.talker", TalkerNode) or check("lab_1_1.hello", "ros2_ws")'
+)
 
 
 @dataclass(frozen=True)
 class CheckCall:
-    """``check("<exercise>", <subject>)`` and where it stands."""
+    """``check("<exercise>", <subject>)`` and where it stands.
+
+    Attributes:
+        master: The file.
+        line: In that file, counted from 1.
+        exercise: The exercise's id.
+        subject: As Python writes it: the name of a class or function, or a text in quotation marks.
+        is_path: The subject is a text, the path of what the student made in the file system.
+    """
 
     master: Path
     line: int
     exercise: str
     subject: str
+    is_path: bool = False
 
 
 def read_check(master: Path, cell: Cell) -> CheckCall:
@@ -34,7 +46,7 @@ def read_check(master: Path, cell: Cell) -> CheckCall:
     Raises:
         MasterError: The cell has another form, names another notebook's exercise, or has a wrong grade_id.
     """
-    exercise, subject = _call(master, cell)
+    exercise, subject, is_path = _call(master, cell)
     if exercise.partition(".")[0] != master.stem:
         raise MasterError(
             master,
@@ -50,10 +62,10 @@ def read_check(master: Path, cell: Cell) -> CheckCall:
             f"The grade_id '{cell.grade_id}' does not match check(\"{exercise}\", …).",
             f"Leave the grade_id out: it is '{expected}' by itself.",
         )
-    return CheckCall(master, cell.line, exercise, subject)
+    return CheckCall(master, cell.line, exercise, subject, is_path)
 
 
-def _call(master: Path, cell: Cell) -> tuple[str, str]:
+def _call(master: Path, cell: Cell) -> tuple[str, str, bool]:
     try:
         body = ast.parse(cell.source).body
     except SyntaxError:
@@ -62,7 +74,15 @@ def _call(master: Path, cell: Cell) -> tuple[str, str]:
         case [
             ast.Expr(ast.Call(ast.Name("check"), [ast.Constant(str() as exercise), ast.Name(subject)], []))
         ]:
-            return exercise, subject
+            return exercise, subject, False
+        case [
+            ast.Expr(
+                ast.Call(
+                    ast.Name("check"), [ast.Constant(str() as exercise), ast.Constant(str() as path)], []
+                )
+            )
+        ]:
+            return exercise, repr(path), True
     raise MasterError(master, cell.line, "This check cell cannot be read.", f"{FORM}.")
 
 

@@ -178,7 +178,9 @@ def _subjects_are_solutions(master: Path, named: list[NamedCell]) -> None:
     for item in named:
         if item.cell.kind is Kind.SOLUTION:
             written.update(naming.defined_names(item.cell.source))
-        elif item.check is not None and item.check.subject not in written:
+        elif item.check is None or item.check.is_path:
+            continue
+        elif item.check.subject not in written:
             raise MasterError(
                 master,
                 item.cell.line,
