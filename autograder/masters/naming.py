@@ -13,6 +13,8 @@ import re
 from collections import Counter
 from dataclasses import dataclass, field
 
+from autograder.masters.magics import python_of
+
 HEADING = re.compile(r"^#{1,6}\s+(.*?)\s*$", re.MULTILINE)
 LONGEST = 48
 """Characters kept of a heading; nbformat allows 64 in an id."""
@@ -36,13 +38,13 @@ def slug(text: str) -> str:
 
 
 def defined_names(source: str) -> list[str]:
-    """The functions and classes that a code cell defines at its top level.
+    """The functions and classes that a code cell defines at its top level, or the Python file that it writes.
 
     Raises:
-        SyntaxError: ``source`` is no Python.
+        SyntaxError: ``source`` is no Python, though it has to be.
     """
     definitions = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
-    return [node.name for node in ast.parse(source).body if isinstance(node, definitions)]
+    return [node.name for node in ast.parse(python_of(source)).body if isinstance(node, definitions)]
 
 
 @dataclass

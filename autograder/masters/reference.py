@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from autograder.masters.checks import exercise_points
 from autograder.masters.errors import MasterError
+from autograder.masters.magics import has_magic, shell_script, written_file
 from autograder.masters.parsing import Cell, Kind
 from autograder.masters.source import Points, named_cells
 
@@ -23,8 +24,10 @@ class Reference:
     """A reference solution.
 
     Attributes:
-        source: Python that defines ``subject`` when it is executed, and does nothing else.
-        subject: The name of the class or function that the check cell judges.
+        source: Python that makes ``subject`` when it is executed: defines it, or writes its files into the
+            current folder.
+        subject: As Python writes it: the name of the class or function that the check cell judges, or the
+            path of what was made.
     """
 
     source: str
@@ -35,20 +38,47 @@ def reference_source(master: Path, exercise: str, *, points: Points = exercise_p
     """What a notebook has defined when it comes to the check of ``exercise``.
 
     Solution cells are kept whole. Of given cells only imports, functions, classes and constants are kept: the
-    rest demonstrates.
+    rest demonstrates. Files are written, and where the subject is a path the shell runs what is given to it:
+    what is judged then lies on the disk, and commands such as ``ros2 pkg create`` put it there.
 
     Raises:
         MasterError: The master cannot be used, or has no check of ``exercise``.
     """
-    parts: list[str] = []
+    cells: list[Cell] = []
     for named in named_cells(master, points=points):
         if named.check is not None and named.check.exercise == exercise:
+            parts = [part for cell in cells for part in _kept(cell, shell=named.check.is_path)]
             return Reference("\n\n".join(parts) + "\n", named.check.subject)
-        if named.cell.kind is Kind.SOLUTION:
-            parts.append(named.cell.source)
-        elif named.cell.kind is Kind.GIVEN:
-            parts.extend(_definitions(named.cell))
+        cells.append(named.cell)
     raise MasterError(master, None, f"No cell checks '{exercise}'.", f'Write one: check("{exercise}", …).')
+
+
+def _kept(cell: Cell, *, shell: bool) -> Iterator[str]:
+    """What the program needs of one cell.
+
+    Args:
+        cell: Any cell above the check.
+        shell: Whether shell cells are run.
+    """
+    if cell.kind not in (Kind.SOLUTION, Kind.GIVEN):
+        return
+    if has_magic(cell.source):
+        yield from _on_disk(cell.source, shell=shell)
+    elif cell.kind is Kind.SOLUTION:
+        yield cell.source
+    else:
+        yield from _definitions(cell)
+
+
+def _on_disk(source: str, *, shell: bool) -> Iterator[str]:
+    file, script = written_file(source), shell_script(source)
+    if file is not None:
+        yield (
+            f"import pathlib\nfile = pathlib.Path({str(file.path)!r})\n"
+            f"file.parent.mkdir(parents=True, exist_ok=True)\nfile.write_text({file.text!r})"
+        )
+    elif script is not None and shell:
+        yield f"import subprocess\nsubprocess.run(['bash', '-c', {script!r}], check=False)"
 
 
 def _definitions(cell: Cell) -> Iterator[str]:

@@ -16,6 +16,7 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 from autograder.masters import naming
 from autograder.masters.checks import CheckCall, exercise_points, read_check
 from autograder.masters.errors import CellError, MasterError
+from autograder.masters.magics import has_magic
 from autograder.masters.parsing import Cell, Kind, parse_master
 from autograder.masters.regions import find_region, mentions_a_region
 
@@ -175,11 +176,21 @@ def _unique(master: Path, named: list[NamedCell]) -> None:
 def _subjects_are_solutions(master: Path, named: list[NamedCell]) -> None:
     """A check judges what a student wrote: its subject comes from a solution cell above it."""
     written: set[str] = set()
+    on_disk = False
     for item in named:
-        if item.cell.kind is Kind.SOLUTION:
+        if item.cell.kind is Kind.SOLUTION and has_magic(item.cell.source):
+            on_disk = True
+        elif item.cell.kind is Kind.SOLUTION:
             written.update(naming.defined_names(item.cell.source))
-        elif item.check is None or item.check.is_path:
+        elif item.check is None or (item.check.is_path and on_disk):
             continue
+        elif item.check.is_path:
+            raise MasterError(
+                master,
+                item.cell.line,
+                f"The check judges {item.check.subject} on the disk, but no solution cell writes a file.",
+                "Let a solution cell begin with '%%writefile <path>'.",
+            )
         elif item.check.subject not in written:
             raise MasterError(
                 master,

@@ -1,0 +1,114 @@
+"""Cells that write files or run in a shell."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.masters.magics import WrittenFile, python_of, shell_script, written_file
+from autograder.masters.reference import reference_source
+from autograder.masters.release import release_notebook
+from autograder.masters.source import Points, source_notebook
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+MASTER = """\
+A folder.
+
+```{code-cell} ipython3
+%%bash
+mkdir -p made
+echo shell >> made/log
+```
+
+```{code-cell} ipython3
+:tags: [solution]
+:grade_id: hello_py
+
+%%writefile made/hello.py
+TEXT = "it's here"
+### BEGIN SOLUTION
+# TODO: print the text.
+print(TEXT)
+### END SOLUTION
+```
+
+```{code-cell} ipython3
+:tags: [solution]
+:grade_id: launch_file
+
+%%writefile made/launch.yaml
+launch:
+  ### BEGIN SOLUTION
+  # TODO: start it.
+  - node: {pkg: a, exec: b}
+  ### END SOLUTION
+```
+
+```{code-cell} ipython3
+:tags: [check]
+
+check("lab_9_1.hello", "made")
+```
+"""
+
+
+@pytest.fixture
+def master(write_master: Callable[[str], Path]) -> Path:
+    return write_master(MASTER)
+
+
+def test_the_magic_stays_on_the_first_line(master: Path, ten_points: Points) -> None:
+    chapter = release_notebook(source_notebook(master, points=ten_points))
+    sources = {cell.id: cell.source for cell in chapter.cells}
+    assert sources["hello_py"].split("\n") == [
+        "%%writefile made/hello.py",
+        'TEXT = "it\'s here"',
+        "# TODO: print the text.",
+    ]
+    assert sources["launch_file"].endswith("launch:\n  # TODO: start it.")
+    assert sources["lab_9_1-hello"] == 'check("lab_9_1.hello", "made")'
+
+
+def test_the_reference_makes_the_files(master: Path, ten_points: Points, tmp_path: Path) -> None:
+    reference = reference_source(master, "lab_9_1.hello", points=ten_points)
+    assert reference.subject == "'made'"
+    subprocess.run([sys.executable, "-c", reference.source], cwd=tmp_path, check=True)
+    assert (tmp_path / "made/log").read_text() == "shell\n"
+    hello = subprocess.run([sys.executable, tmp_path / "made/hello.py"], capture_output=True, text=True)
+    assert hello.stdout == "it's here\n"
+    assert "node: {pkg: a, exec: b}" in (tmp_path / "made/launch.yaml").read_text()
+
+
+def test_a_definition_needs_no_shell(write_master: Callable[[str], Path], ten_points: Points) -> None:
+    text = MASTER.replace('check("lab_9_1.hello", "made")', 'check("lab_9_1.hello", hello)').replace(
+        "%%writefile made/hello.py\n", "def hello(): ...\n"
+    )
+    reference = reference_source(write_master(text), "lab_9_1.hello", points=ten_points)
+    assert "subprocess" not in reference.source
+
+
+def test_what_a_cell_writes() -> None:
+    source = "%%writefile  'my ws/setup.py' \nimport os\n"
+    assert written_file(source) == WrittenFile(PurePosixPath("my ws/setup.py"), "import os\n")
+    assert written_file("%%bash\ncat > setup.py") is None
+    assert written_file("print(1)\n%%writefile late.py") is None
+    # With an option (-a appends) the file is not what the cell says.
+    assert written_file("%%writefile -a setup.py\n1") is None
+
+
+def test_what_a_cell_gives_to_the_shell() -> None:
+    assert shell_script("%%bash --no-raise-error\nls\npwd") == "ls\npwd"
+    assert shell_script("%%writefile bash\nls") is None
+    assert shell_script("!ls") is None
+
+
+def test_errors_name_the_line_of_the_cell() -> None:
+    assert python_of("%%writefile a.py\nx = 1") == "\nx = 1"
+    assert python_of("%%writefile a.yaml\nx: [") == ""
+    assert python_of("x = 1") == "x = 1"
