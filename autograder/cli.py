@@ -1,18 +1,21 @@
 """The ``autograder`` command. Thin: each command hands over to the part that does the work.
 
-Exit codes: 0 all is well, 1 the answer is no (a failed check, stale notebooks), 2 it could not be done (bad input, or
-trouble of the grader's own). Imports are inside the commands, because ``check`` must answer at once.
+Exit codes: 0 all is well, 1 the answer is no (a failed check, stale notebooks), 2 it could not be done (bad
+input, or trouble of the grader's own). Imports are inside the commands: ``check`` must answer at once.
 """
 
 from __future__ import annotations
 
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 import click
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from autograder.verdict import Verdict
 
 NO = 1
@@ -44,7 +47,7 @@ def check(exercise: str | None, command: tuple[str, ...], as_json: bool, seed: s
     autograder check lab_1_2.talker -- python3 talker.py
 
     Exit code 0: passed; 1: not passed; 2: could not be checked.
-    """
+    """  # noqa: D301 (to click, the backspace keeps the lines below it apart)
     from autograder import exercises
 
     if exercise is None:
@@ -91,12 +94,33 @@ def show(verdict: Verdict, *, as_json: bool) -> None:
 
 
 @cli.command()
-@click.option("--check", "only_check", is_flag=True, help="Write nothing; fail where a notebook is out of step.")
+@click.option(
+    "--check", "only_check", is_flag=True, help="Write nothing; fail where a notebook is out of step."
+)
 def build(only_check: bool) -> None:
     """Derive the chapter notebooks from their masters."""
     from autograder import course, masters
 
     sys.exit(masters.build_command(course.root(), check=only_check))
+
+
+@cli.command()
+@click.argument("notebooks", nargs=-1, metavar="[NOTEBOOK]...")
+@click.option(
+    "--jobs", type=click.IntRange(min=1), help="Notebooks at once; as many as cores where not given."
+)
+@click.option(
+    "--reports", type=click.Path(path_type=Path), help="Keep the pages about failed notebooks in this folder."
+)
+def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) -> None:
+    """Run every notebook: masters must earn full marks, chapters none, without an error."""
+    from autograder import course, masters
+    from autograder.execution import NothingToExecuteError, execute_command
+
+    try:
+        sys.exit(execute_command(course.root(), only=notebooks, jobs=jobs, reports=reports))
+    except (NothingToExecuteError, masters.MasterError) as error:
+        fail(str(error))
 
 
 @cli.command()
@@ -125,9 +149,28 @@ def doctor(as_json: bool) -> None:
     sys.exit(probes.main(["--json"] if as_json else []))
 
 
+@cli.command(context_settings={"ignore_unknown_options": True})
+@click.option(
+    "--folder", type=click.Path(path_type=Path), help="Open this folder of notebooks instead of the chapters."
+)
+@click.argument("arguments", nargs=-1, type=click.UNPROCESSED, metavar="[JUPYTERLAB'S OPTIONS]...")
+def lab(folder: Path | None, arguments: tuple[str, ...]) -> None:
+    """Open JupyterLab on the chapters, with a ROS domain of its own."""
+    from autograder import course
+    from autograder.lab import NoSuchFolderError, open_lab
+    from autograder.ros_domain import NoFreeDomainError
+
+    try:
+        open_lab(folder or course.root() / "chapters", arguments)
+    except (NoSuchFolderError, NoFreeDomainError, ValueError) as error:
+        fail(str(error))
+
+
 @cli.command("new-class")
 @click.argument("folder", type=click.Path(path_type=Path))
-@click.option("--assignment", "assignments", multiple=True, help="Only this assignment; may be given several times.")
+@click.option(
+    "--assignment", "assignments", multiple=True, help="Only this assignment; may be given several times."
+)
 def new_class(folder: Path, assignments: tuple[str, ...]) -> None:
     """Make an nbgrader course directory in FOLDER, ready for submissions."""
     from autograder import course, grading
@@ -139,10 +182,14 @@ def new_class(folder: Path, assignments: tuple[str, ...]) -> None:
 
 @cli.command()
 @click.argument("folder", type=click.Path(path_type=Path))
-@click.option("--assignment", "assignments", multiple=True, help="Only this assignment; may be given several times.")
+@click.option(
+    "--assignment", "assignments", multiple=True, help="Only this assignment; may be given several times."
+)
 @click.option("--student", "students", multiple=True, help="Only this student; may be given several times.")
 @click.option("--again", is_flag=True, help="Run unchanged submissions again.")
-@click.option("--jobs", type=click.IntRange(min=1), help="Submissions at once; as many as cores where not given.")
+@click.option(
+    "--jobs", type=click.IntRange(min=1), help="Submissions at once; as many as cores where not given."
+)
 def grade(
     folder: Path, assignments: tuple[str, ...], students: tuple[str, ...], again: bool, jobs: int | None
 ) -> None:
@@ -165,17 +212,12 @@ def demo(folder: Path) -> None:
     sys.exit(report.exit_code)
 
 
-def grading_errors() -> object:
+@contextmanager
+def grading_errors() -> Iterator[None]:
     """Turn the grader's own errors into a clear line and exit code 2."""
-    import contextlib
-
     from autograder.grading.errors import GradingError
 
-    @contextlib.contextmanager
-    def turned() -> object:
-        try:
-            yield
-        except GradingError as error:
-            fail(str(error))
-
-    return turned()
+    try:
+        yield
+    except GradingError as error:
+        fail(str(error))

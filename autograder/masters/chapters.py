@@ -69,10 +69,10 @@ def _settle(path: Path, text: str, *, check: bool) -> str:
     """Bring one chapter notebook in step, and say in a word what it came to."""
     if path.exists() and path.read_bytes() == text.encode():
         return "unchanged"
-    if check:
-        return "stale"
     if holds_work(path):
         return "edited"
+    if check:
+        return "stale"
     path.parent.mkdir(parents=True, exist_ok=True)
     # Written beside and moved, so that an interrupted build leaves no half notebook.
     beside = path.with_name(f".{path.name}.new")

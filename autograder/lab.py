@@ -1,0 +1,82 @@
+"""JupyterLab as a student meets it: the chapters, nbgrader's Validate button, one ROS domain for the session.
+
+An instructor's JupyterLab is started plainly (``jupyter lab``), so what is switched off here is there. The
+files in ``lab_config/`` say what that is; Jupyter reads them because their folder is put in front of its own.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from autograder.ros_domain import DOMAIN_VARIABLE, DomainClaim, claim_free_domain, domain_from_environment
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+SETTINGS = Path(__file__).with_name("lab_config")
+"""No *Create Assignment*, formgrader and lists of courses: those are for whoever grades."""
+_CONFIG_PATH = "JUPYTER_CONFIG_PATH"
+_DISCOVERY = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
+
+
+class NoSuchFolderError(FileNotFoundError):
+    """The folder that JupyterLab is to open is not there."""
+
+
+def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
+    """Run JupyterLab on ``folder`` until the user ends it.
+
+    Args:
+        folder: What the file browser shows.
+        arguments: Handed on to JupyterLab, such as ``--no-browser``.
+
+    Raises:
+        NoSuchFolderError: ``folder`` is no folder.
+        ValueError: ``ROS_DOMAIN_ID`` is set to something that is no domain.
+        NoFreeDomainError: Every domain on this host is in use.
+    """
+    if not folder.is_dir():
+        raise NoSuchFolderError(
+            f"{folder} is not a folder: name the one with your notebooks, or leave --folder out"
+        )
+    claim = join_domain()
+    os.environ[_CONFIG_PATH] = os.pathsep.join(filter(None, (str(SETTINGS), os.environ.get(_CONFIG_PATH))))
+    os.chdir(folder)
+    from jupyterlab.labapp import LabApp
+
+    try:
+        # In this process, because the domain is held for as long as it lives.
+        LabApp.launch_instance([*_start_folder(Path.cwd()), *arguments])
+    finally:
+        if claim:
+            claim.release()
+
+
+def join_domain() -> DomainClaim | None:
+    """Give the session a ROS domain that all its kernels and terminals are on, and keep it on this host.
+
+    So a node in a notebook hears one in a terminal beside it, and not the neighbour's. What the user has
+    chosen stays.
+
+    Returns:
+        The hold on the domain, or None where ``ROS_DOMAIN_ID`` names it.
+
+    Raises:
+        ValueError: ``ROS_DOMAIN_ID`` is set to something that is no domain.
+        NoFreeDomainError: Every domain on this host is in use.
+    """
+    if not any(os.environ.get(name) for name in _DISCOVERY):
+        os.environ[_DISCOVERY[0]] = "LOCALHOST"
+    if domain_from_environment() is not None:
+        return None
+    claim = claim_free_domain()
+    os.environ[DOMAIN_VARIABLE] = str(claim.domain)
+    return claim
+
+
+def _start_folder(root: Path) -> list[str]:
+    """Begin inside a chapter where there is only one: a single folder to click on helps nobody."""
+    inside = [path for path in root.iterdir() if not path.name.startswith((".", "_"))]
+    return [f"--ServerApp.preferred_dir={inside[0]}"] if len(inside) == 1 and inside[0].is_dir() else []
