@@ -29,17 +29,20 @@ class BatchProgress:
     Args:
         console: Where to show it.
         total: Notebooks to execute.
+        doing: What is being done to them, as the bar says it.
+        did: The same when it is done.
     """
 
-    def __init__(self, console: Console, total: int) -> None:
+    def __init__(self, console: Console, total: int, *, doing: str = "grading", did: str = "graded") -> None:
         self._console = console
         self._total = total
+        self._did = did
         self._done = 0
         self._failed = 0
         self._running = 0
         self._began = time.monotonic()
         self._bar = Progress(
-            TextColumn("grading"),
+            TextColumn(doing),
             BarColumn(),
             MofNCompleteColumn(),
             TextColumn("{task.fields[now]}"),
@@ -81,7 +84,9 @@ class BatchProgress:
         step = max(1, self._total // _LINES)
         if not self._console.is_terminal and (failed or self._done % step == 0 or self._done == self._total):
             self._console.print(
-                f"graded {self._done} of {self._total}: {label}{self._left()}", markup=False, highlight=False
+                f"{self._did} {self._done} of {self._total}: {label}{self._left()}",
+                markup=False,
+                highlight=False,
             )
 
     def _show(self) -> None:

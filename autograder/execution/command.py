@@ -1,0 +1,144 @@
+"""``autograder execute``: run every notebook of the course and say what is wrong with any of them."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+
+from autograder.execution.findings import Finding, findings
+from autograder.execution.plan import Planned, plan
+from autograder.execution.report import write_report
+from autograder.grading import engine
+from autograder.grading.progress import BatchProgress
+from autograder.grading.worker import JUDGE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.boxes.execution import Execution
+
+REPORTS = "execution-reports"
+"""The folder, in the course, of the pages about notebooks that failed."""
+
+
+@dataclass(frozen=True)
+class Executed:
+    """A notebook that was executed.
+
+    Attributes:
+        planned: What was to be executed.
+        execution: What came of it.
+        found: What is wrong; empty where all is well.
+        report: The page that was kept, where something is wrong.
+    """
+
+    planned: Planned
+    execution: Execution
+    found: tuple[Finding, ...]
+    report: Path | None
+
+
+def execute_command(
+    root: Path,
+    *,
+    only: Sequence[str] = (),
+    jobs: int | None = None,
+    reports: Path | None = None,
+    console: Console | None = None,
+) -> int:
+    """Execute the notebooks of a course and print what is wrong.
+
+    Args:
+        root: The folder with ``solutions`` and ``chapters``.
+        only: Names such as ``"lab_1_2"``; all notebooks where empty.
+        jobs: Notebooks at once; as many as there are processors by default.
+        reports: Where the page about a notebook that failed is kept; pages of an earlier run are removed.
+        console: Where progress and result are shown; standard error by default.
+
+    Returns:
+        0 where all is well, 1 where a notebook failed.
+
+    Raises:
+        NothingToExecuteError: A name in ``only`` is unknown, or a chapter was not built.
+        autograder.masters.MasterError: A master cannot be used.
+    """
+    began = time.monotonic()
+    console = console or Console(stderr=True)
+    folder = reports or root / REPORTS
+    planned = plan(root, only)
+    _remove_reports(folder)
+    results = execute_all(planned, folder, jobs=jobs, console=console)
+    failed = [result for result in results if result.found]
+    for result in failed:
+        _say(console, f"{result.planned.label} failed, see {result.report}")
+        for finding in result.found:
+            where = "" if finding.cell is None else f"cell {finding.cell + 1} "
+            _say(console, f"  {where}{finding.text}")
+    seconds = time.monotonic() - began
+    _say(console, f"{len(results)} notebooks executed, {len(failed)} failed, {seconds:.1f} s")
+    return 1 if failed else 0
+
+
+def execute_all(
+    planned: Sequence[Planned],
+    reports: Path,
+    *,
+    jobs: int | None = None,
+    console: Console,
+    judge: str = JUDGE,
+) -> list[Executed]:
+    """Execute notebooks in parallel, each with a kernel, a folder and a judge of its own.
+
+    Args:
+        planned: What to execute.
+        reports: Where the page about a notebook that failed is kept.
+        jobs: Notebooks at once; as many as there are processors by default.
+        console: Where progress is shown.
+        judge: What makes a judge, as ``module:class``.
+
+    Returns:
+        One for each notebook, in the order in which they were given.
+    """
+    of_task = {id(item.task): item for item in planned}
+    results: dict[int, Executed] = {}
+    # Short, because the names of Unix sockets will be in it.
+    scratch = Path(tempfile.mkdtemp(prefix="execute-"))
+    with BatchProgress(console, len(planned), doing="executing", did="executed") as progress:
+        running = engine.execute_all(
+            [item.task for item in _longest_first(planned)],
+            scratch,
+            jobs or os.cpu_count() or 1,
+            on_start=lambda _: progress.started(),
+            judge=judge,
+        )
+        with contextlib.closing(running):
+            for done in running:
+                item = of_task[id(done.task)]
+                found = tuple(findings(item, done.execution))
+                page = write_report(reports, item, done.execution, found) if found else None
+                results[id(done.task)] = Executed(item, done.execution, found, page)
+                progress.finished(f"{item.label} ({done.execution.seconds:.1f} s)", failed=bool(found))
+    return [results[id(item.task)] for item in planned]
+
+
+def _longest_first(planned: Sequence[Planned]) -> list[Planned]:
+    """The notebooks with most to check begin, so that no core waits long for the last one."""
+    return sorted(planned, key=lambda item: -sum(cell.check is not None for cell in item.task.cells))
+
+
+def _remove_reports(folder: Path) -> None:
+    for page in folder.glob("*.html"):
+        page.unlink()
+    with contextlib.suppress(OSError):
+        folder.rmdir()
+
+
+def _say(console: Console, text: str) -> None:
+    console.print(text, markup=False, highlight=False, soft_wrap=True)

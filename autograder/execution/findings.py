@@ -1,0 +1,100 @@
+"""What is wrong with an executed notebook of the course."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from autograder.boxes.execution import Ended
+from autograder.execution.plan import Kind
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from autograder.boxes.execution import Cell, CellRun, Execution
+    from autograder.execution.plan import Planned
+    from autograder.verdict import Verdict
+
+TRACEBACK = "Traceback (most recent call last)"
+_SHELL = re.compile(r"^\s*(%%|!)", re.MULTILINE)
+"""A cell that runs programs: these may use standard error for what is no error, as colcon and ros2 do."""
+
+_HOW_IT_ENDED = {
+    Ended.TIMED_OUT: "was stopped at its time limit",
+    Ended.KERNEL_DIED: "ended the kernel",
+    Ended.NOT_RUN: "did not have its turn",
+}
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that is wrong.
+
+    Attributes:
+        cell: Index of the cell, or None for the notebook as a whole.
+        text: What is wrong, in words.
+    """
+
+    cell: int | None
+    text: str
+
+
+def findings(planned: Planned, execution: Execution) -> list[Finding]:
+    """All that is wrong with a notebook, in the order of its cells; empty where all is well."""
+    if execution.trouble:
+        return [Finding(None, f"the grader had trouble: {execution.trouble}")]
+    return [
+        Finding(index, text)
+        for index, (cell, run) in enumerate(zip(planned.task.cells, execution.cells, strict=True))
+        for text in _of_cell(planned.kind, cell, run, execution.verdicts.get(index))
+    ]
+
+
+def _of_cell(kind: Kind, cell: Cell, run: CellRun, verdict: Verdict | None) -> Iterator[str]:
+    if run.ended is Ended.RAISED:
+        yield f"raised {run.error}"
+    elif run.ended is not Ended.DONE:
+        yield _HOW_IT_ENDED[run.ended]
+    elif any(TRACEBACK in _text(output) for output in run.outputs):
+        yield "shows a stray traceback"
+    if not _SHELL.search(cell.source) and any(output.get("name") == "stderr" for output in run.outputs):
+        # nbgrader gives no points to a graded cell that does, and a student takes it for an error.
+        yield "writes to standard error"
+    if cell.check is not None and run.ended is Ended.DONE:
+        yield from _of_check(kind, cell.check.points, run, verdict)
+
+
+def _of_check(kind: Kind, points: float, run: CellRun, verdict: Verdict | None) -> Iterator[str]:
+    wanted = points if kind is Kind.MASTER else 0.0
+    if verdict is None:
+        yield "has no verdict"
+        return
+    if verdict.score != wanted:
+        yield f"earns {verdict.score:g} of {points:g} points, and should earn {wanted:g}{_why(verdict)}"
+    values = [
+        output["data"].get("text/plain")
+        for output in run.outputs
+        if output["output_type"] == "execute_result"
+    ]
+    if not values or not _is_number(values[-1], verdict.score):
+        # Stock nbgrader takes partial credit from there.
+        yield f"has the value {values[-1] if values else 'nothing'} instead of its score, {verdict.score:g}"
+
+
+def _why(verdict: Verdict) -> str:
+    reasons = [f"{c.title}: {c.seen}" for c in verdict.criteria if not c.passed]
+    if verdict.diagnosis is not None:
+        reasons.insert(0, f"{verdict.diagnosis.key}: {verdict.diagnosis.text}")
+    return f" ({'; '.join(reasons)})" if reasons else ""
+
+
+def _is_number(text: str, number: float) -> bool:
+    try:
+        return float(text) == number
+    except (TypeError, ValueError):
+        return False
+
+
+def _text(output: dict[str, Any]) -> str:
+    return str(output.get("text", "")) + str(output.get("data", {}).get("text/plain", ""))

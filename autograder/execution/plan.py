@@ -1,0 +1,99 @@
+"""Which notebooks are executed, and as what."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from autograder.boxes.limits import Limits
+from autograder.grading import nodes
+from autograder.grading.preparing import cells_of
+from autograder.grading.task import Task
+from autograder.masters.layout import chapter_path, masters
+from autograder.masters.source import source_notebook
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from nbformat import NotebookNode
+
+LIMITS = Limits(cell_seconds=180.0, notebook_seconds=900.0)
+"""Wider than for a submission: a cell may build a workspace, and several notebooks share the machine."""
+
+
+class Kind(StrEnum):
+    """What a notebook has to show."""
+
+    MASTER = "master"
+    """Full marks."""
+    CHAPTER = "chapter"
+    """No marks, and no error."""
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A notebook that will be executed.
+
+    Attributes:
+        kind: What it has to show.
+        notebook: nbformat 4.5, without outputs.
+        task: The same for the engine.
+    """
+
+    kind: Kind
+    notebook: NotebookNode
+    task: Task
+
+    @property
+    def label(self) -> str:
+        """How it is called in messages, such as ``"master lab_1_2"``."""
+        return f"{self.kind} {self.task.notebook}"
+
+
+class NothingToExecuteError(LookupError):
+    """There is no such notebook, or a chapter was not built; the message says what to do."""
+
+
+def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
+    """The notebooks of a course, each as a master and as a chapter.
+
+    The chapter is the file that students open, not one derived anew.
+
+    Args:
+        root: The folder with ``solutions`` and ``chapters``.
+        only: Names such as ``"lab_1_2"``; all where empty.
+
+    Raises:
+        NothingToExecuteError: A name is not there, or a chapter is missing.
+        autograder.masters.MasterError: A master cannot be used.
+    """
+    found = masters(root)
+    known = [master.stem for master in found]
+    for name in only:
+        if name not in known:
+            raise NothingToExecuteError(f"there is no notebook {name!r}. There are: {', '.join(known)}.")
+    planned = []
+    for master in found:
+        if only and master.stem not in only:
+            continue
+        chapter = chapter_path(root, master)
+        if not chapter.is_file():
+            raise NothingToExecuteError(f"{chapter.relative_to(root)} is not there: run `autograder build`.")
+        planned.append(_planned(Kind.MASTER, master.stem, source_notebook(master)))
+        planned.append(_planned(Kind.CHAPTER, master.stem, nodes.read(chapter.read_text(encoding="utf-8"))))
+    return planned
+
+
+def _planned(kind: Kind, name: str, notebook: NotebookNode) -> Planned:
+    task = Task(
+        student=kind,
+        assignment="execute",
+        notebook=name,
+        cells=cells_of(notebook),
+        seed=f"execute {name}",
+        course="",
+        limits=LIMITS,
+    )
+    return Planned(kind, notebook, task)

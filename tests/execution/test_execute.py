@@ -1,0 +1,134 @@
+"""A broken notebook of the course is seen, named and kept as a page."""
+
+from __future__ import annotations
+
+from io import StringIO
+from typing import TYPE_CHECKING
+
+import pytest
+from rich.console import Console
+
+from autograder.execution import NothingToExecuteError, execute_command
+from autograder.masters.chapters import build
+from autograder.masters.parsing import HEADER
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+GOOD = """
+# Lab 9.1: Doubling
+
+Two is doubled.
+
+```{code-cell} ipython3
+:tags: [solution]
+
+def double(number):
+    ### BEGIN SOLUTION
+    # TODO: return twice the number.
+    return 2 * number
+    ### END SOLUTION
+    return 0
+```
+
+See it:
+
+```{code-cell} ipython3
+double(2)
+```
+"""
+DIVIDES = """
+What is one divided by it?
+
+```{code-cell} ipython3
+1 / double(2)
+```
+"""
+"""With the solution it works; the stub returns 0, and the cell below it does not cope with that."""
+SHOWS_A_TRACEBACK = """
+Say what went wrong:
+
+```{code-cell} ipython3
+import traceback
+try:
+    None.data
+except AttributeError:
+    print(traceback.format_exc())
+```
+"""
+WRITES_TO_STANDARD_ERROR = """
+Complain:
+
+```{code-cell} ipython3
+import sys
+print("oh", file=sys.stderr)
+```
+"""
+
+
+def course(folder: Path, text: str) -> Path:
+    """A course with one notebook."""
+    master = folder / "solutions" / "01_first" / "lab_9_1.md"
+    master.parent.mkdir(parents=True)
+    master.write_text(f"{HEADER}\n{text}")
+    build(folder)
+    return folder
+
+
+def execute(root: Path, **options: object) -> tuple[int, str]:
+    """The exit code, and what a person sees."""
+    console = Console(file=StringIO(), width=200)
+    code = execute_command(root, jobs=2, console=console, **options)  # type: ignore[arg-type]
+    return code, console.file.getvalue()  # type: ignore[attr-defined]
+
+
+def test_a_good_notebook_passes_as_master_and_as_chapter(tmp_path: Path) -> None:
+    code, seen = execute(course(tmp_path, GOOD))
+    assert code == 0, seen
+    assert "2 notebooks executed, 0 failed" in seen
+    assert not (tmp_path / "execution-reports").exists()
+
+
+def test_a_cell_that_does_not_cope_with_the_stub_is_found_in_the_chapter(tmp_path: Path) -> None:
+    code, seen = execute(course(tmp_path, GOOD + DIVIDES))
+    assert code == 1
+    assert "2 notebooks executed, 1 failed" in seen
+    assert "chapter lab_9_1 failed" in seen
+    # Three cells of text and two of code stand before it.
+    assert "cell 6 raised ZeroDivisionError: division by zero" in seen
+    page = tmp_path / "execution-reports" / "lab_9_1-chapter.html"
+    assert [*page.parent.iterdir()] == [page]
+    text = page.read_text()
+    assert 'href="#finding-5"' in text
+    assert 'id="finding-5"' in text
+    assert "ZeroDivisionError" in text
+
+
+def test_the_pages_of_an_earlier_run_go_away(tmp_path: Path) -> None:
+    course(tmp_path, GOOD)
+    old = tmp_path / "execution-reports" / "lab_9_1-master.html"
+    old.parent.mkdir()
+    old.write_text("old")
+    assert execute(tmp_path)[0] == 0
+    assert not old.exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [(SHOWS_A_TRACEBACK, "shows a stray traceback"), (WRITES_TO_STANDARD_ERROR, "writes to standard error")],
+)
+def test_what_would_alarm_a_student_is_found(text: str, words: str, tmp_path: Path) -> None:
+    code, seen = execute(course(tmp_path, GOOD + text))
+    assert code == 1
+    assert seen.count(words) == 2, seen
+
+
+def test_an_unknown_name_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(NothingToExecuteError, match="there is no notebook 'lab_7'"):
+        execute(course(tmp_path, GOOD), only=["lab_7"])
+
+
+def test_a_chapter_that_was_never_built_is_named(tmp_path: Path) -> None:
+    (course(tmp_path, GOOD) / "chapters" / "01_first" / "lab_9_1.ipynb").unlink()
+    with pytest.raises(NothingToExecuteError, match="autograder build"):
+        execute(tmp_path)
