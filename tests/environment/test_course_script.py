@@ -202,6 +202,7 @@ def test_test_runs_every_check_and_the_tests_last(course: Course, tmp_path: Path
         "ruff [format] [--check] [.]",
         "mypy",
         "autograder [build] [--check]",
+        "autograder [execute]",
         "pytest [-x]",
     ]
     assert done.stdout.splitlines()[-1].startswith(f"{course.root}|")
