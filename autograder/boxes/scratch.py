@@ -30,13 +30,14 @@ def scratch_folder(parent: Path) -> Iterator[Path]:
 
 def remove_tree(folder: Path) -> None:
     """Remove a folder although somebody took away the right to."""
-    shutil.rmtree(folder, onerror=_make_writable)
 
+    def make_writable(function: Callable[[str], Any], name: str, _: Any) -> None:
+        path = Path(name)
+        with contextlib.suppress(OSError):
+            # Only inside the folder: the one that holds it belongs to everybody.
+            for place in (path.parent, path):
+                if place.is_relative_to(folder) and not place.is_symlink():
+                    place.chmod(stat.S_IRWXU)
+            function(name)
 
-def _make_writable(function: Callable[[str], Any], name: str, _: Any) -> None:
-    path = Path(name)
-    with contextlib.suppress(OSError):
-        path.parent.chmod(stat.S_IRWXU)
-        if not path.is_symlink():
-            path.chmod(stat.S_IRWXU)
-        function(name)
+    shutil.rmtree(folder, onerror=make_writable)
