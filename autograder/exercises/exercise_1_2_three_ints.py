@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from random import Random
 from typing import Any
 
 from autograder.exercises import common_mistakes as common
 from autograder.exercises.evidence import Event, Evidence, Part
+from autograder.exercises.hangs import HANGS, stacks
 from autograder.exercises.model import Advice, Bench, Criterion, Exercise, Finding, Mistake
 
 LATE = "the service comes late"
@@ -62,7 +64,10 @@ def called(bench: Bench, name: str, numbers: tuple[int, int, int], bias: int) ->
             return ended
         bench.serve(service, type_name, adder(bias))
     done = bench.wait_until(is_done, CALL_LIMIT, quiet=HANGS_AFTER)
-    bench.await_end(AFTERMATH)
+    if done:
+        bench.await_end(AFTERMATH)
+    else:
+        bench.note_where_it_hangs()
     bench.stop()
     return done
 
@@ -241,6 +246,19 @@ def call_never_spun(evidence: Evidence) -> Advice | None:
     return None
 
 
+def awaits_in_vain(evidence: Evidence) -> Advice | None:
+    """It was answered, its threads only spin, and nothing goes on."""
+    stuck = [p for p in _seen_parts(evidence) if p.ending is None and p.of("response") and stacks(p)]
+    if not stuck or reports(stuck[0]):
+        return None
+    return Advice(
+        "The service answered, and your node spins, but the code that awaits the answer is never resumed: it awaits "
+        "inside a callback of the same callback group that the answer needs.",
+        "Give the client a callback group of its own (ReentrantCallbackGroup or another MutuallyExclusive one), or go "
+        "on in future.add_done_callback(...).",
+    )
+
+
 def first_answer_ignored(evidence: Evidence) -> Advice | None:
     """The second call carries a + b as computed by the client."""
     part = evidence.part(BIASED)
@@ -396,6 +414,8 @@ EXERCISE = Exercise(
         common.endpoint_name("client"),
         common.message_type("client"),
         *common.OTHER_CRASHES,
+        *(replace(hang, certain=True) for hang in HANGS),
+        Mistake("await_in_same_group", awaits_in_vain, certain=True),
         Mistake("call_never_spun", call_never_spun, certain=True),
         Mistake("too_many_calls", too_many_calls, certain=True),
         Mistake("first_answer_ignored", first_answer_ignored, certain=True),

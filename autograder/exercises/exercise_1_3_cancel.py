@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 from autograder.exercises import common_mistakes as common
 from autograder.exercises.evidence import Event, Evidence, Part
+from autograder.exercises.hangs import HANGS
 from autograder.exercises.model import Advice, Bench, Criterion, Exercise, Finding, Look, Mistake
 
 HONOURED = "the server cancels"
@@ -73,8 +74,10 @@ def run(bench: Bench, name: str, *, accept: bool) -> bool:
         if not cancelled:
             bench.note_whether_it_spins()
         server.finish("canceled" if cancelled and accept else "succeeded", sequence=sequence)
-        bench.wait_until(lambda evidence: bool(_after_result(evidence.main)), END_LIMIT[bench.look])
-        bench.await_end(AFTERMATH)
+        if bench.wait_until(lambda evidence: bool(_after_result(evidence.main)), END_LIMIT[bench.look]):
+            bench.await_end(AFTERMATH)
+        else:
+            bench.note_where_it_hangs()
     bench.stop()
     return cancelled
 
@@ -341,6 +344,7 @@ EXERCISE = Exercise(
         *common.OTHER_CRASHES,
         Mistake("field_typo", order_never_filled, certain=True),
         Mistake("wrong_order", wrong_order, certain=True),
+        *HANGS,
         Mistake("never_spun", never_spun),
         Mistake("cancel_missing", cancel_missing),
         Mistake("cancel_too_early", cancel_too_early),

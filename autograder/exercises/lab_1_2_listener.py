@@ -9,6 +9,7 @@ from random import Random
 
 from autograder.exercises import common_mistakes as common
 from autograder.exercises.evidence import Event, Evidence, Part
+from autograder.exercises.hangs import HANGS
 from autograder.exercises.model import Advice, Bench, Criterion, Exercise, Finding, Look, Mistake
 
 TEXTS = 6
@@ -177,6 +178,7 @@ EXERCISE = Exercise(
         common.qos_mismatch("subscription"),
         *common.OTHER_CRASHES,
         Mistake("ended_too_early", common.ended_too_early),
+        *HANGS,
         common.never_spun("subscription"),
         common.went_deaf("subscription"),
         Mistake("invented_text", invented_text, certain=True),

@@ -8,6 +8,7 @@ from statistics import median
 
 from autograder.exercises import common_mistakes as common
 from autograder.exercises.evidence import Evidence, Event, Part, Reference
+from autograder.exercises.hangs import HANGS
 from autograder.exercises.model import Advice, Bench, Criterion, Exercise, Finding, Look, Mistake
 
 MESSAGES = {Look.FAST: 8, Look.REAL_TIME: 7}
@@ -265,6 +266,7 @@ EXERCISE = Exercise(
         Mistake("field_typo", empty_text, certain=True),
         Mistake("counter_stuck", counter_stuck, certain=True),
         Mistake("wrong_text", wrong_text, certain=True),
+        *HANGS,
         common.never_spun("publisher"),
         common.went_deaf("publisher"),
         Mistake("counter_start", counter_start),

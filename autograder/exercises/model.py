@@ -13,6 +13,7 @@ from enum import StrEnum
 from random import Random
 from typing import Any, Protocol
 
+from autograder.exercises.callers import ActionCaller, Caller
 from autograder.exercises.evidence import Evidence
 
 
@@ -109,7 +110,7 @@ class ActionCounterpart(Protocol):
     """An action server of the judge's that does only what the scenario tells it to."""
 
     def await_goal(self, within: float) -> bool:
-        """Wait until a goal arrived (it is accepted); False where none came in ``within`` seconds."""
+        """Wait until a goal arrived (it is accepted, unless goals are refused); False where none came in ``within`` seconds."""
         ...
 
     def send_feedback(self, **fields: Any) -> None:
@@ -175,7 +176,17 @@ class Bench(Protocol):
         """Serve; each request and response goes into the transcript."""
         ...
 
-    def serve_action(self, action: str, type_name: str, *, accept_cancel: bool = True) -> ActionCounterpart:
+    def call(self, service: str, type_name: str) -> Caller:
+        """Be a client of the subject's service; each call and answer goes into the transcript."""
+        ...
+
+    def call_action(self, action: str, type_name: str) -> ActionCaller:
+        """Be a client of the subject's action; each goal and what comes back goes into the transcript."""
+        ...
+
+    def serve_action(
+        self, action: str, type_name: str, *, accept_goal: bool = True, accept_cancel: bool = True
+    ) -> ActionCounterpart:
         """Serve an action whose every step the scenario decides."""
         ...
 
@@ -191,7 +202,14 @@ class Bench(Protocol):
         ...
 
     def note_whether_it_spins(self) -> None:
-        """Ask the subject's nodes something that any spun node answers; write down when one does not."""
+        """Ask the subject's nodes something that any spun node answers; write down when one does not.
+
+        Where one does not, the subject is asked where it hangs, which ends a command.
+        """
+        ...
+
+    def note_where_it_hangs(self) -> None:
+        """Write down where the subject's threads are. This ends a command; to be asked last in a part."""
         ...
 
     def run_time(

@@ -11,7 +11,9 @@ from typing import Any
 from autograder.exercises.evidence import Evidence, Part, Reference
 from autograder.exercises.model import Look
 from autograder.judge import clock, graph
+from autograder.judge.action_client import RecordedActionClient
 from autograder.judge.actions import ScriptedActionServer
+from autograder.judge.callers import RecordedCaller
 from autograder.judge.clock import SimulatedClock
 from autograder.judge.recorder import Recorder
 from autograder.judge.services import Answer, RecordedServer
@@ -195,13 +197,32 @@ class TestBench:
         self._open.callback(server.close)
         return server
 
-    def serve_action(self, action: str, type_name: str, *, accept_cancel: bool = True) -> ScriptedActionServer:
+    def call(self, service: str, type_name: str) -> RecordedCaller:
+        """Be a client of the subject's service until the part ends."""
+        caller = RecordedCaller(
+            self.wire, self._recorder, service, type_name, server_is_gone=lambda: self._subject.ended
+        )
+        self._open.callback(caller.close)
+        return caller
+
+    def call_action(self, action: str, type_name: str) -> RecordedActionClient:
+        """Be a client of the subject's action until the part ends."""
+        caller = RecordedActionClient(
+            self.wire, self._recorder, action, type_name, server_is_gone=lambda: self._subject.ended
+        )
+        self._open.callback(caller.close)
+        return caller
+
+    def serve_action(
+        self, action: str, type_name: str, *, accept_goal: bool = True, accept_cancel: bool = True
+    ) -> ScriptedActionServer:
         """Serve an action whose every step the scenario decides, until the part ends."""
         server = ScriptedActionServer(
             self.wire,
             self._recorder,
             action,
             type_name,
+            accept_goal=accept_goal,
             accept_cancel=accept_cancel,
             client_is_gone=lambda: self._subject.ended,
         )
@@ -260,6 +281,13 @@ class TestBench:
         for node in self._nodes():
             if not self._subject.ended and not clock.answers(self.wire, self._recorder, node):
                 self._recorder.record("unanswered", node.full)
+                self.note_where_it_hangs()
+
+    def note_where_it_hangs(self) -> None:
+        """Write down the subject's stacks; a command ends by that. To be asked last in a part."""
+        if not self._subject.ended:
+            self.note_interface()
+            self._recorder.record("stack", "subject", text=self._subject.stack())
 
     def _nodes(self) -> list[graph.NodeName]:
         """The subject's nodes, those that the judge is matched with first, once their names are known."""

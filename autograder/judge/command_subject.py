@@ -42,6 +42,8 @@ class CommandSubject:
         self._domain_id = 0
         self._process: subprocess.Popen[bytes] | None = None
         self._done = threading.Event()
+        self._dying = threading.Event()
+        self._last_words: list[str] = []
         # Whatever a subject leaves behind becomes this process's child and can be found and killed.
         _libc.prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
 
@@ -73,7 +75,7 @@ class CommandSubject:
             )
         except (OSError, ValueError) as error:
             raise CannotStart(f"cannot start {self._command[0]!r}: {error}") from error
-        self._done = threading.Event()
+        self._done, self._dying, self._last_words = threading.Event(), threading.Event(), []
         threading.Thread(target=self._follow, args=(recorder, self._process, self._done), daemon=True).start()
 
     def release(self) -> None:
@@ -83,6 +85,16 @@ class CommandSubject:
     def ended(self) -> bool:
         """Whether the command has exited and all it printed was read."""
         return self._done.is_set()
+
+    def stack(self) -> str:
+        """Abort the command: Python's faulthandler, which its environment has switched on, prints the stacks."""
+        process = self._process
+        if process is None or self.ended:
+            return ""
+        self._dying.set()
+        process.send_signal(signal.SIGABRT)
+        self._done.wait(READ_LIMIT)
+        return "\n".join(self._last_words)
 
     def stop(self) -> None:
         """SIGINT to its process group, then SIGKILL to whatever is left of it."""
@@ -99,7 +111,7 @@ class CommandSubject:
     def _follow(self, recorder: Recorder, process: subprocess.Popen[bytes], done: threading.Event) -> None:
         budget = _Budget(MAX_OUTPUT)
         readers = [
-            threading.Thread(target=_read, args=(recorder, stream, name, budget), daemon=True)
+            threading.Thread(target=self._read, args=(recorder, stream, name, budget), daemon=True)
             for name, stream in (("stdout", process.stdout), ("stderr", process.stderr))
         ]
         for reader in readers:
@@ -108,22 +120,27 @@ class CommandSubject:
         for reader in readers:
             # All that it printed must be read before its end is known. A grandchild may hold the pipe open, though.
             reader.join(timeout=READ_LIMIT)
-        recorder.record("subject", "exited", code=code)
+        # What the judge has ended did not end by itself.
+        recorder.record("subject", "aborted" if self._dying.is_set() else "exited", code=code)
         done.set()
+
+    def _read(self, recorder: Recorder, stream: IO[bytes] | None, name: str, budget: _Budget) -> None:
+        assert stream is not None
+        with stream:
+            while line := stream.readline(MAX_LINE):
+                if budget.left <= 0:
+                    continue
+                budget.left -= len(line)
+                text = line.decode("utf-8", "replace").rstrip("\r\n")
+                if self._dying.is_set() and name == "stderr":
+                    self._last_words.append(text)
+                else:
+                    recorder.record("output", name, text=text)
 
 
 class _Budget:
     def __init__(self, size: int) -> None:
         self.left = size
-
-
-def _read(recorder: Recorder, stream: IO[bytes] | None, name: str, budget: _Budget) -> None:
-    assert stream is not None
-    with stream:
-        while line := stream.readline(MAX_LINE):
-            if budget.left > 0:
-                budget.left -= len(line)
-                recorder.record("output", name, text=line.decode("utf-8", "replace").rstrip("\r\n"))
 
 
 def _die_with_the_judge() -> None:

@@ -10,6 +10,8 @@ from autograder.judge.recorder import Recorder
 
 MAX_TEXT = 4_000
 """Characters that are kept of one thing that the notebook says."""
+MAX_STACK = 50_000
+"""Characters that are kept of a hung subject's stacks."""
 STOP_LIMIT = 3.0
 """Seconds of wall time in which the notebook must have stopped a run."""
 
@@ -29,6 +31,8 @@ class RemoteSubject:
         self._ready = threading.Event()
         self._stopped = threading.Event()
         self._gone = threading.Event()
+        self._stack = ""
+        self._told_stack = threading.Event()
         self._thread = threading.Thread(target=self._listen, daemon=True)
 
     def begin(self, domain_id: int) -> None:
@@ -64,6 +68,14 @@ class RemoteSubject:
         """The topic that the notebook made after the subject's constructor had ended."""
         return self._marker
 
+    def stack(self) -> str:
+        """Ask the notebook where the subject's threads are."""
+        self._told_stack.clear()
+        self._stack = ""
+        self._tell("stack", run=self._run)
+        self._told_stack.wait(STOP_LIMIT)
+        return self._stack
+
     def stop(self) -> None:
         """Let the notebook end the run and destroy its nodes."""
         self._tell("stop", run=self._run)
@@ -96,6 +108,9 @@ class RemoteSubject:
             return  # an echo of an earlier run
         if say == "stopped":
             self._stopped.set()
+        elif say == "stack":
+            self._stack = str(message.get("text") or "")[:MAX_STACK]
+            self._told_stack.set()
         elif say == "output":
             recorder.record("output", "notebook", text=_text(message.get("text")))
         elif say == "constructed":

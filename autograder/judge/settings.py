@@ -45,6 +45,8 @@ def subject_environment(domain_id: int) -> dict[str, str]:
     environment.update(ros_environment())
     environment["ROS_DOMAIN_ID"] = str(domain_id)
     environment["PYTHONUNBUFFERED"] = "1"
+    # A Python program that hangs can be asked where: it prints its stacks when it is aborted.
+    environment["PYTHONFAULTHANDLER"] = "1"
     return environment
 
 

@@ -43,6 +43,13 @@ class Subject(Protocol):
         """A topic that appears on the graph after everything the subject made; None where nobody can know."""
         ...
 
+    def stack(self) -> str:
+        """Where each of its threads is, innermost call first, as faulthandler says it; empty where nobody can tell.
+
+        This may end the run, which does not count as ending by itself.
+        """
+        ...
+
     def stop(self) -> None:
         """End the run, whatever it takes. Afterwards nothing of it lives."""
         ...

@@ -68,7 +68,7 @@ def _converse(link: JudgeLink, exercise: str, subject: Any) -> Verdict:
     def tell_output(line: str) -> None:
         link.say("output", run=number, text=line)
 
-    with CheckContext(int(first["domain"])) as place, Overhearing(tell_output):
+    with CheckContext(int(first["domain"])) as place, Overhearing(tell_output) as hearing:
         link.say("ready")
         try:
             while True:
@@ -81,6 +81,8 @@ def _converse(link: JudgeLink, exercise: str, subject: Any) -> Verdict:
                     run.start(words["arguments"], words["options"])
                 elif say == "release" and run is not None:
                     run.release()
+                elif say == "stack" and run is not None:
+                    link.say("stack", run=number, text=hearing.stacks())
                 elif say == "stop" and run is not None:
                     if not run.stop():
                         place.renew()  # what will not end keeps the old context and is no longer heard

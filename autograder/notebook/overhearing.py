@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import sys
 import threading
+import traceback
 from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Self
@@ -57,6 +58,18 @@ class Overhearing:
             descriptor, saved = self._descriptors.pop()
             os.dup2(saved, descriptor)
             os.close(saved)
+
+    def stacks(self) -> str:
+        """Where each overheard thread is, innermost call first, in the form of Python's faulthandler."""
+        frames = sys._current_frames()
+        lines = []
+        for thread in threading.enumerate():
+            if thread.ident in self._others or thread.ident not in frames:
+                continue
+            lines.append(f"Thread {thread.name} (most recent call first):")
+            calls = traceback.extract_stack(frames[thread.ident])
+            lines += [f'  File "{call.filename}", line {call.lineno} in {call.name}' for call in reversed(calls)]
+        return "\n".join(lines)
 
     def _overheard(self) -> bool:
         return threading.get_ident() not in self._others
