@@ -8,12 +8,13 @@ import os
 import signal
 import sys
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import psutil
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
+    from pathlib import Path
 
 _PR_SET_CHILD_SUBREAPER = 36  # linux/prctl.h
 
@@ -67,6 +68,27 @@ def end_descendants(within: float = 3.0) -> int:
         if not _reap():
             time.sleep(0.005)
     return len(seen)
+
+
+def end_processes_in(folder: Path) -> None:
+    """Kill what was started for a submission with its home in ``folder``, where its worker no longer can.
+
+    Found by command line and by environment, which both are inherited unless somebody takes care to hide.
+
+    Args:
+        folder: A folder that no other process has in its command line or as its home.
+    """
+    own = os.getpid()
+    _kill(
+        process
+        for process in psutil.process_iter(["cmdline", "environ"])
+        if process.pid != own and _mentions(process.info, f"{folder}{os.sep}")
+    )
+
+
+def _mentions(info: Mapping[str, Any], folder: str) -> bool:
+    home = (info["environ"] or {}).get("HOME", "")
+    return home.startswith(folder) or any(folder in word for word in info["cmdline"] or ())
 
 
 def _kill(processes: Iterable[psutil.Process]) -> None:

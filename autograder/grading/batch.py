@@ -156,7 +156,7 @@ class _Batch:
         with BatchProgress(self._console, len(tasks)) as progress:
             results = engine.execute_all(
                 tasks,
-                self._directory.scratch(),
+                self._directory.scratch() / "batch",
                 self._workers,
                 on_start=lambda _: progress.started(),
                 judge=self._judge,

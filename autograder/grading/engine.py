@@ -17,6 +17,7 @@ from typing import IO, TYPE_CHECKING
 import msgspec
 
 from autograder.boxes.execution import Execution
+from autograder.boxes.processes import end_processes_in
 from autograder.boxes.scratch import remove_tree
 from autograder.boxes.zero import grader_trouble
 from autograder.grading.task import Task, decode_execution, encode
@@ -67,7 +68,10 @@ def execute_all(
     for task in tasks:
         waiting.put(task)
     done: queue.SimpleQueue[Done | BaseException] = queue.SimpleQueue()
-    lanes = [_Lane(waiting, done, scratch, judge, on_start) for _ in range(max(1, min(workers, len(tasks))))]
+    lanes = [
+        _Lane(waiting, done, scratch / str(number), judge, on_start)
+        for number in range(max(1, min(workers, len(tasks))))
+    ]
     try:
         for lane in lanes:
             lane.start()
@@ -84,6 +88,7 @@ def execute_all(
             lane.await_end(deadline)
         with contextlib.suppress(OSError):
             remove_tree(scratch)
+            scratch.parent.rmdir()
 
 
 def execute_one(task: Task, scratch: Path, *, judge: str = JUDGE) -> Execution:
@@ -104,6 +109,7 @@ class _Lane(threading.Thread):
     ) -> None:
         super().__init__(daemon=True)
         self._waiting, self._done = waiting, done
+        self._scratch = scratch
         self._command = [sys.executable, "-m", "autograder.grading.worker", str(scratch), judge]
         self._on_start = on_start
         # What a worker says on its way down, in a file: a pipe that nobody reads would fill up. Lives with
@@ -206,6 +212,9 @@ class _Lane(threading.Thread):
         except subprocess.TimeoutExpired:
             worker.kill()
             worker.wait()
+        if worker.returncode != 0:
+            # It may not have come to tidying up after itself.
+            end_processes_in(self._scratch)
         with self._changing:
             self._worker = None
         _close(worker.stdout)
