@@ -20,5 +20,7 @@ def root() -> Path:
     """
     folder = Path(os.environ.get("AUTOGRADER_COURSE") or Path(__file__).resolve().parents[1])
     if not (folder / "solutions").is_dir():
-        raise NoCourse(f"{folder} holds no course: set AUTOGRADER_COURSE to the folder with solutions/ and chapters/")
+        raise NoCourse(
+            f"{folder} holds no course: set AUTOGRADER_COURSE to the folder with solutions/ and chapters/"
+        )
     return folder

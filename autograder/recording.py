@@ -1,6 +1,7 @@
 """Record reference outputs: each master's own solution, seen by the same judge as everybody's.
 
-A reference output follows from the master alone, so nothing that is expected is written a second time: change the
+A reference output follows from the master alone, so nothing that is expected is written a second time: change
+the
 solution, record, and the grader expects the new behaviour.
 """
 
@@ -11,12 +12,15 @@ import secrets
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from autograder import course, exercises, masters
 from autograder.judge import reference
 from autograder.judge.process import JudgeDied, JudgeProcess
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
 
 RUN_LIMIT = 120.0
 """Seconds of wall time in which one reference solution must have been seen."""
@@ -86,7 +90,9 @@ def recording(exercise_id: str) -> str:
         except JudgeDied as error:
             raise CannotRecord(f"{exercise.id}: {error}") from error
     if report.reference is None or report.verdict is None:
-        raise CannotRecord(f"{exercise.id}: {report.trouble or 'the solution never asked to be checked'}\n{output}".strip())
+        raise CannotRecord(
+            f"{exercise.id}: {report.trouble or 'the solution never asked to be checked'}\n{output}".strip()
+        )
     if not report.verdict.passed:
         missed = ", ".join(c.title for c in report.verdict.criteria if not c.passed)
         raise CannotRecord(f"{exercise.id}: the reference solution is not right by its own measure: {missed}")

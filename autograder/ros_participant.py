@@ -1,8 +1,11 @@
 """Make a participant that hears the answers to its own first announcement.
 
-Fast DDS 2.14 announces a new participant before its receivers are registered. Whoever is there already answers within
-0.1 ms, once; if a receiving thread reads that answer too early it is lost, and the next one comes with the periodic
-announcement, up to 3 s later: one new participant in three was met that late. So the threads of a new participant must
+Fast DDS 2.14 announces a new participant before its receivers are registered. Whoever is there already
+answers within
+0.1 ms, once; if a receiving thread reads that answer too early it is lost, and the next one comes with the
+periodic
+announcement, up to 3 s later: one new participant in three was met that late. So the threads of a new
+participant must
 not run before the one that makes them is done.
 """
 
@@ -11,15 +14,19 @@ from __future__ import annotations
 import contextlib
 import os
 import threading
-from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 
 @contextlib.contextmanager
 def receivers_wait() -> Iterator[None]:
     """Hold back the threads that are started inside until the block has ended.
 
-    They are kept on one processor with their maker, under a policy of the scheduler that interrupts no running thread
+    They are kept on one processor with their maker, under a policy of the scheduler that interrupts no
+    running thread
     (sched(7), SCHED_BATCH). Does nothing where the operating system has no such policy.
     """
     if not hasattr(os, "SCHED_BATCH"):

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import difflib
 import importlib
+from typing import TYPE_CHECKING
 
-from autograder.exercises.model import Exercise
+if TYPE_CHECKING:
+    from autograder.exercises.model import Exercise
 
 _MODULES = {
     "lab_1_2.talker": "lab_1_2_talker",
     "lab_1_2.listener": "lab_1_2_listener",
+    "lab_1_3.server": "lab_1_3_server",
     "exercise_1_2.three_ints": "exercise_1_2_three_ints",
     "exercise_1_3.cancel": "exercise_1_3_cancel",
 }

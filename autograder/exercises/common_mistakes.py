@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from autograder.exercises.crashes import CRASHES, OTHER_CRASHES, traceback_of
-from autograder.exercises.evidence import Evidence, Part
 from autograder.exercises.model import Advice, Mistake
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.exercises.evidence import Evidence, Part
 
 __all__ = [
     "CRASHES",
     "NOTHING_THERE",
     "OTHER_CRASHES",
-    "endpoint_name",
     "ended_too_early",
+    "endpoint_name",
     "everything_twice",
     "message_type",
     "never_spun",
@@ -46,7 +50,8 @@ def endpoint_name(role: str) -> Mistake:
         near = difflib.get_close_matches(expected, made, n=1, cutoff=0.0) or sorted(made)
         return Advice(
             f"Your node {verb} {near[0]}; the {noun} is called {expected}.",
-            f"Correct the name. `ros2 {noun} list` shows what is on the graph: two nodes meet only where the names are "
+            f"Correct the name. `ros2 {noun} list` shows what is on the graph: two nodes meet only where the "
+            f"names are "
             "the same to the letter.",
         )
 
@@ -62,8 +67,10 @@ def message_type(role: str) -> Mistake:
         if made is None or made == expected:
             return None
         return Advice(
-            f"On {name} your node uses {made}; the other side uses {expected}. Two types on one name never meet.",
-            f"Import and use {expected.split('/')[-1]} from {expected.split('/')[0]}.{expected.split('/')[1]}.",
+            f"On {name} your node uses {made}; the other side uses {expected}. Two types on one name never "
+            f"meet.",
+            f"Import and use {expected.split('/')[-1]} from "
+            f"{expected.split('/')[0]}.{expected.split('/')[1]}.",
         )
 
     return Mistake("message_type", recognise, certain=True)
@@ -79,9 +86,11 @@ def qos_mismatch(role: str) -> Mistake:
             return None
         policy = mismatch.data["policy"]
         return Advice(
-            f"Your node and the other side are both on {name}, but their {policy} does not fit, so nothing is "
+            f"Your node and the other side are both on {name}, but their {policy} does not fit, so nothing "
+            f"is "
             "exchanged.",
-            "Use the queue depth 10 in place of the QoS profile: that is reliable and volatile, as the other side is.",
+            "Use the queue depth 10 in place of the QoS profile: that is reliable and volatile, as the "
+            "other side is.",
         )
 
     return Mistake("qos_mismatch", recognise, certain=True)
@@ -127,8 +136,10 @@ def went_deaf(role: str) -> Mistake:
         if not _silent_node(evidence, role) or not (part.of("message") or _worked(part, role)):
             return None
         return Advice(
-            "Your node did its work once and then went deaf: something took it away from the executor that spun it.",
-            "Spin a node in one place only. rclpy.spin_once or spin_until_future_complete, called in a callback or "
+            "Your node did its work once and then went deaf: something took it away from the executor that "
+            "spun it.",
+            "Spin a node in one place only. rclpy.spin_once or spin_until_future_complete, called in a "
+            "callback or "
             "beside another executor, takes the node away from that one for good.",
         )
 
@@ -142,6 +153,8 @@ def _silent_node(evidence: Evidence, role: str) -> bool:
 
 
 def _worked(part: Part, role: str) -> bool:
+    if part.of("answered") or part.of("goal_answer"):
+        return True
     sent = part.first("sent")
     return role == "subscription" and sent is not None and bool(part.said(after=sent))
 
@@ -154,7 +167,8 @@ def _main_guard(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         "The program ended at once and said nothing: its main() was not called, or nothing keeps it alive.",
-        "End the file with `if __name__ == '__main__':` and `main()` below it (two underscores on each side), and let "
+        "End the file with `if __name__ == '__main__':` and `main()` below it (two underscores on each "
+        "side), and let "
         "main() end with rclpy.spin(node).",
     )
 
@@ -164,7 +178,9 @@ def ended_too_early(evidence: Evidence) -> Advice | None:
     ending = evidence.main.ending
     if ending is None or traceback_of(evidence) or _main_guard(evidence):
         return None
-    how = {"exited": f"ended with exit code {ending.data.get('code')}", "returned": "returned"}.get(ending.name, "ended")
+    how = {"exited": f"ended with exit code {ending.data.get('code')}", "returned": "returned"}.get(
+        ending.name, "ended"
+    )
     return Advice(
         f"The program {how} before its work was done.",
         "Keep it alive while it has work to do, for example with rclpy.spin(node).",
@@ -195,7 +211,9 @@ def _not_written(evidence: Evidence) -> Advice | None:
 def _nothing_on_the_graph(evidence: Evidence) -> Advice | None:
     if any(survey.data.get("nodes") for part in evidence for survey in part.of("interface")):
         return None
-    if any(part.of("log") or part.of("request") or part.of("goal") or part.of("message") for part in evidence):
+    if any(
+        part.of("log") or part.of("request") or part.of("goal") or part.of("message") for part in evidence
+    ):
         return None
     return Advice(
         "No node of yours appeared on the graph.",

@@ -1,15 +1,19 @@
 """Mistakes that a Python traceback gives away: pattern, cause, next step.
 
-The patterns are what rclpy 7.1 and Python say; each was reproduced. The order matters: the first that fits wins.
+The patterns are what rclpy 7.1 and Python say; each was reproduced. The order matters: the first that fits
+wins.
 """
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from autograder.exercises.evidence import Evidence
 from autograder.exercises.model import Advice, Mistake
+
+if TYPE_CHECKING:
+    from autograder.exercises.evidence import Evidence
 
 
 @dataclass(frozen=True)
@@ -34,7 +38,8 @@ KNOWN = (
         "syntax_error",
         r"^\s*(?:SyntaxError|IndentationError|TabError): (?P<what>.*)$",
         "Python could not read the program: {what}.",
-        "Go to the line that the message names; a bracket, a quote, a colon or the indentation is off there or just "
+        "Go to the line that the message names; a bracket, a quote, a colon or the indentation is off there "
+        "or just "
         "before it.",
     ),
     Crash(
@@ -53,7 +58,8 @@ KNOWN = (
         "super_init_missing",
         r"no attribute '_(?:Node__|default_callback_group|parameter|context|logger|handle)"
         r"|descriptor '__init__' (?:requires|of) .*'super'",
-        "The class uses the Node before the Node was set up: super().__init__('a_name') is missing or comes too late.",
+        "The class uses the Node before the Node was set up: super().__init__('a_name') is missing or comes "
+        "too late.",
         "Make super().__init__('your_node_name') the first line of __init__.",
     ),
     Crash(
@@ -72,19 +78,22 @@ KNOWN = (
         "qos_arguments_swapped",
         r"Expected QoSProfile or int",
         "The arguments of create_publisher or create_subscription are in the wrong order.",
-        "The order is create_publisher(Type, 'topic', 10) and create_subscription(Type, 'topic', callback, 10).",
+        "The order is create_publisher(Type, 'topic', 10) and create_subscription(Type, 'topic', callback, "
+        "10).",
     ),
     Crash(
         "qos_depth_missing",
         r"missing \d+ required positional arguments?: .*'?qos_profile",
         "The queue size is missing.",
-        "Add it as the last argument: create_publisher(Type, 'topic', 10), create_subscription(Type, 'topic', "
+        "Add it as the last argument: create_publisher(Type, 'topic', 10), create_subscription(Type, "
+        "'topic', "
         "callback, 10).",
     ),
     Crash(
         "builtin_callback",
         r"no signature found for builtin",
-        "A builtin such as list.append or deque.append was given as a callback; rclpy cannot look at its arguments.",
+        "A builtin such as list.append or deque.append was given as a callback; rclpy cannot look at its "
+        "arguments.",
         "Wrap it: lambda msg: my_list.append(msg).",
     ),
     Crash(
@@ -93,9 +102,11 @@ KNOWN = (
         # Raised where rclpy calls the callback; a notebook's traceback leaves rclpy's own lines out.
         r"|(?:\A|rclpy/(?:executors|task|event_handler|action/client|action/server)\.py\".*\n(?: .*\n){1,2})"
         r"TypeError: .*positional argument",
-        "A callback has the wrong form: it was called on the spot (cb() instead of cb), or it takes the wrong number "
+        "A callback has the wrong form: it was called on the spot (cb() instead of cb), or it takes the "
+        "wrong number "
         "of arguments.",
-        "Pass the function itself, without brackets, and give a subscription's callback exactly one argument besides "
+        "Pass the function itself, without brackets, and give a subscription's callback exactly one "
+        "argument besides "
         "self: the message.",
     ),
     Crash(
@@ -115,7 +126,8 @@ KNOWN = (
         r"[Ee]xpected (?:<class )?'?[\w.]*(?:String|Int\d+|Message)\b.*got|TypeError: Expected [\w/.<>' ]+, got"
         r"|(?:publish|send_goal_async|call_async|send_goal|call)\((?:.*\n)+TypeError:?\s*\Z",
         "A bare value was sent where a message is expected.",
-        "Make the message first (msg = String(), Fibonacci.Goal(), AddTwoInts.Request()), fill its field and send that.",
+        "Make the message first (msg = String(), Fibonacci.Goal(), AddTwoInts.Request()), fill its field "
+        "and send that.",
     ),
     Crash(
         "field_type",
@@ -123,14 +135,16 @@ KNOWN = (
         r"|must be an integer in \[|AssertionError: The '"
         r"|SystemError: <(?:function|class|built-in).*returned (?:a result with an exception|NULL)",
         "A field of a message got a value of the wrong type.",
-        "Convert it before you assign: int(...) for an int64, str(...) for a string. Command-line arguments are text.",
+        "Convert it before you assign: int(...) for an int64, str(...) for a string. Command-line arguments "
+        "are text.",
     ),
     Crash(
         "field_typo",
         r"AttributeError: '(?:String|U?Int\d+|\w+_(?:Request|Response|Goal|Result|Feedback|FeedbackMessage))' "
         r"object has no attribute '(?P<name>\w+)'|Invalid arguments passed to constructor: .*'(?P<keyword>\w+)'",
         "The message has no field of the name {name}{keyword}.",
-        "Look the fields up with `ros2 interface show` and spell the name exactly so. In an action's feedback "
+        "Look the fields up with `ros2 interface show` and spell the name exactly so. In an action's "
+        "feedback "
         "callback the fields are one level down: msg.feedback.partial_sequence.",
     ),
     Crash(
@@ -143,7 +157,8 @@ KNOWN = (
         "executor_not_kept",
         r"'NoneType' object has no attribute '(?:spin\w*|add_node|create_task)'",
         "node.executor is None: a node holds its executor only weakly, and nobody else kept this one.",
-        "Keep the executor in a variable, executor = SingleThreadedExecutor(), and call executor.spin() on that.",
+        "Keep the executor in a variable, executor = SingleThreadedExecutor(), and call executor.spin() on "
+        "that.",
     ),
     Crash(
         "result_read_too_early",
@@ -156,7 +171,8 @@ KNOWN = (
         "module_not_found",
         r"ModuleNotFoundError: No module named '(?P<name>[\w.]+)'",
         "Python does not find the module {name}.",
-        "Is the name right? The course's interfaces are in my_robot_interfaces (.srv, .action). Packages of your own "
+        "Is the name right? The course's interfaces are in my_robot_interfaces (.srv, .action). Packages of "
+        "your own "
         "workspace need `colcon build` and `source install/setup.bash` first.",
     ),
     Crash(
@@ -214,8 +230,10 @@ def _exception_in_callback(evidence: Evidence) -> Advice | None:
         return None
     last = next((line for line in reversed(traceback.splitlines()) if line.strip()), "")
     return Advice(
-        f"A callback raised an exception, which ends the spinning and with it everything else: {last.strip()}",
-        "Read the traceback from the bottom: the last line says what, the line above it where. Mend that line.",
+        f"A callback raised an exception, which ends the spinning and with it everything else: "
+        f"{last.strip()}",
+        "Read the traceback from the bottom: the last line says what, the line above it where. Mend that "
+        "line.",
     )
 
 

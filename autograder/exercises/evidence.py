@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
 
 
 @dataclass(frozen=True)
@@ -111,7 +113,11 @@ def _traceback_in(lines: Sequence[str]) -> str:
     syntax = [i for i, line in enumerate(lines) if line.startswith("  File ") and i not in starts]
     if not starts:
         # A SyntaxError in the program itself is shown without the word "Traceback".
-        ends = [i for i, line in enumerate(lines) if line.startswith(("SyntaxError", "IndentationError", "TabError"))]
+        ends = [
+            i
+            for i, line in enumerate(lines)
+            if line.startswith(("SyntaxError", "IndentationError", "TabError"))
+        ]
         return "\n".join(lines[syntax[0] : ends[-1] + 1]) if ends and syntax else ""
     taken = [lines[starts[-1]]]
     for line in lines[starts[-1] + 1 :]:
@@ -173,7 +179,9 @@ class Reference:
         for part in self.parts:
             if part.name == name:
                 return part
-        raise KeyError(f"the reference output of {self.exercise} has no part {name!r}: run `autograder record`")
+        raise KeyError(
+            f"the reference output of {self.exercise} has no part {name!r}: run `autograder record`"
+        )
 
     def only(self, role: str) -> tuple[str, str]:
         """The name and type of the one endpoint of a role.

@@ -7,15 +7,18 @@ whether the first answer was really used.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from random import Random
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from autograder.exercises import common_mistakes as common
-from autograder.exercises.evidence import Event, Evidence, Part
 from autograder.exercises.hangs import HANGS, stacks
 from autograder.exercises.model import Advice, Bench, Criterion, Exercise, Finding, Mistake
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from random import Random
+
+    from autograder.exercises.evidence import Event, Evidence, Part
 
 LATE = "the service comes late"
 BIASED = "the answers are surprising"
@@ -58,7 +61,8 @@ def called(bench: Bench, name: str, numbers: tuple[int, int, int], bias: int) ->
     bench.start(*numbers)
     if name == LATE:
         if not bench.await_endpoint("client", service):
-            # Without the client it waits for something else; a program that has ended may show more in another part.
+            # Without the client it waits for something else; a program that has ended may show more in
+            # another part.
             ended = bench.await_end(0.0)
             bench.stop()
             return ended
@@ -94,7 +98,8 @@ def adder(bias: int) -> Callable[[Mapping[str, Any]], Mapping[str, Any]]:
 
 
 def _as_int64(number: int) -> int:
-    # A client that adds in another order may leave the range; C++ servers wrap around, rclpy's would die of it.
+    # A client that adds in another order may leave the range; C++ servers wrap around, rclpy's would die of
+    # it.
     return (number + 2**63) % 2**64 - 2**63
 
 
@@ -111,7 +116,11 @@ def negative(random: Random) -> tuple[int, int, int]:
 
 def extreme(random: Random) -> tuple[int, int, int]:
     """Numbers near both ends of an int64, whose sums stay inside it."""
-    return 2**63 - 1 - random.randint(0, 999), -(2**62) - random.randint(1, 999), -(2**62) + random.randint(1, 999)
+    return (
+        2**63 - 1 - random.randint(0, 999),
+        -(2**62) - random.randint(1, 999),
+        -(2**62) + random.randint(1, 999),
+    )
 
 
 # --- questions to the evidence -----------------------------------------------------------------------------
@@ -208,7 +217,8 @@ def waits_for_the_service(evidence: Evidence) -> Finding:
 def gives_up_in_time(evidence: Evidence) -> Finding:
     """Without a service it ends by itself and says so."""
     part = evidence.part(ABSENT)
-    # A client that gives up quickly may be gone before the graph has shown it; the other parts have seen it then.
+    # A client that gives up quickly may be gone before the graph has shown it; the other parts have seen it
+    # then.
     asked = any(p.endpoints("client") or requests(p) for p in evidence)
     told = bool(part.said()) or bool(part.traceback) or bool(part.ending and part.ending.name == "raised")
     passed = asked and part.ending is not None and told
@@ -236,11 +246,19 @@ def _how_it_went(part: Part) -> str:
 def call_never_spun(evidence: Evidence) -> Advice | None:
     """It called, was answered and hangs."""
     for part in _seen_parts(evidence):
-        if part.ending is None and part.of("response") and not reports(part) and len(requests(part)) <= expected_calls(evidence):
+        if (
+            part.ending is None
+            and part.of("response")
+            and not reports(part)
+            and len(requests(part)) <= expected_calls(evidence)
+        ):
             return Advice(
-                "The service answered, but your client never took the answer: nothing spins it while it waits. "
-                "call() blocks for ever then, and so does any wait inside a callback of the same callback group.",
-                "Outside of callbacks, use call_async and rclpy.spin_until_future_complete(node, future), or spin the "
+                "The service answered, but your client never took the answer: nothing spins it while it "
+                "waits. "
+                "call() blocks for ever then, and so does any wait inside a callback of the same callback "
+                "group.",
+                "Outside of callbacks, use call_async and rclpy.spin_until_future_complete(node, future), "
+                "or spin the "
                 "node in a background executor while you use call().",
             )
     return None
@@ -252,9 +270,11 @@ def awaits_in_vain(evidence: Evidence) -> Advice | None:
     if not stuck or reports(stuck[0]):
         return None
     return Advice(
-        "The service answered, and your node spins, but the code that awaits the answer is never resumed: it awaits "
+        "The service answered, and your node spins, but the code that awaits the answer is never resumed: "
+        "it awaits "
         "inside a callback of the same callback group that the answer needs.",
-        "Give the client a callback group of its own (ReentrantCallbackGroup or another MutuallyExclusive one), or go "
+        "Give the client a callback group of its own (ReentrantCallbackGroup or another MutuallyExclusive "
+        "one), or go "
         "on in future.add_done_callback(...).",
     )
 
@@ -269,7 +289,8 @@ def first_answer_ignored(evidence: Evidence) -> Advice | None:
     if _pair(made[1]) != sorted((a + b, c)) or _pair(made[1]) == sorted((answers(part)[0], c)):
         return None
     return Advice(
-        f"The service answered {answers(part)[0]} to the first call, but your second call does not use that answer: "
+        f"The service answered {answers(part)[0]} to the first call, but your second call does not use that "
+        f"answer: "
         "it adds up on its own.",
         "Take first.sum from the first answer and put it into the second request.",
     )
@@ -282,18 +303,22 @@ def fields_never_filled(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         "Every call asks for 0 + 0: the fields of the request were never filled.",
-        "A request has the fields a and b. A misspelt keyword in AddTwoInts.Request(...) is ignored silently.",
+        "A request has the fields a and b. A misspelt keyword in AddTwoInts.Request(...) is ignored "
+        "silently.",
     )
 
 
 def one_call_only(evidence: Evidence) -> Advice | None:
     """It ends by itself after one call or none."""
-    part = next((p for p in _seen_parts(evidence) if p.ending and len(requests(p)) < expected_calls(evidence)), None)
-    if part is None or not part.endpoints("client") and not requests(part):
+    part = next(
+        (p for p in _seen_parts(evidence) if p.ending and len(requests(p)) < expected_calls(evidence)), None
+    )
+    if part is None or (not part.endpoints("client") and not requests(part)):
         return None
     count = len(requests(part))
     return Advice(
-        f"Your client called the service {'once' if count == 1 else 'not at all'}; the task asks for two calls.",
+        f"Your client called the service {'once' if count == 1 else 'not at all'}; the task asks for two "
+        f"calls.",
         "Call once with a and b, then again with the first answer and c.",
     )
 
@@ -316,7 +341,8 @@ def wrong_arguments(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         f"The calls carry the wrong numbers ({finding.seen}).",
-        "The first call adds a and b, the second adds the first answer and c. Look at which field gets which number, "
+        "The first call adds a and b, the second adds the first answer and c. Look at which field gets "
+        "which number, "
         "and whether one request object is reused before it was sent.",
     )
 
@@ -328,14 +354,17 @@ def waits_for_nobody(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         "When the service is not there, your client waits without end.",
-        "Give the wait a limit: `if not client.wait_for_service(timeout_sec=5.0):` say so and stop. A while loop needs "
+        "Give the wait a limit: `if not client.wait_for_service(timeout_sec=5.0):` say so and stop. A while "
+        "loop needs "
         "a count.",
     )
 
 
 def waits_forever(evidence: Evidence) -> Advice | None:
     """With a service that is there, it neither calls nor ends."""
-    stuck = [p for p in _seen_parts(evidence) if p.endpoints("client") and p.ending is None and not requests(p)]
+    stuck = [
+        p for p in _seen_parts(evidence) if p.endpoints("client") and p.ending is None and not requests(p)
+    ]
     if not stuck:
         return None
     return Advice(
@@ -353,7 +382,8 @@ def gave_up_too_early(evidence: Evidence) -> Advice | None:
     if not any(requests(p) for p in _seen_parts(evidence)):
         return None
     return Advice(
-        "The service came a moment late, and your client had already given up (or called before it was there).",
+        "The service came a moment late, and your client had already given up (or called before it was "
+        "there).",
         "Wait for the service with wait_for_service and a few seconds of patience before the first call.",
     )
 

@@ -1,18 +1,23 @@
 """Exercise 1.3: a client that cancels its goal after a few feedback messages and reports how the goal ended.
 
-The judge is the action server. In a first part it cancels as it is asked to; in a second one it refuses and the goal
+The judge is the action server. In a first part it cancels as it is asked to; in a second one it refuses and
+the goal
 succeeds, so that a client that only claims "canceled" is told from one that looked at the status.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from autograder.exercises import common_mistakes as common
-from autograder.exercises.evidence import Event, Evidence, Part
 from autograder.exercises.hangs import HANGS
 from autograder.exercises.model import Advice, Bench, Criterion, Exercise, Finding, Look, Mistake
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.exercises.evidence import Event, Evidence, Part
 
 HONOURED = "the server cancels"
 REFUSED = "the server refuses to cancel"
@@ -152,7 +157,9 @@ def cancels_in_the_window(evidence: Evidence) -> Finding:
 def cancels_once(evidence: Evidence) -> Finding:
     """No second cancel request before late feedback arrives."""
     cancels = _cancels(evidence.main)
-    return Finding(len(cancels) == 1, "one cancel request", f"{len(cancels)} cancel request{'s' * (len(cancels) != 1)}")
+    return Finding(
+        len(cancels) == 1, "one cancel request", f"{len(cancels)} cancel request{'s' * (len(cancels) != 1)}"
+    )
 
 
 def ignores_late_feedback(evidence: Evidence) -> Finding:
@@ -243,8 +250,10 @@ def never_spun(evidence: Evidence) -> Advice | None:
     if not goals(part) or part.first("cancel") is not None or not part.of("unanswered"):
         return None
     return Advice(
-        "Your client sent its goal, but it takes in nothing that comes back: no callback of it is called any more.",
-        "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future), in one place, and never "
+        "Your client sent its goal, but it takes in nothing that comes back: no callback of it is called "
+        "any more.",
+        "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future), in one "
+        "place, and never "
         "inside a callback.",
     )
 
@@ -256,7 +265,8 @@ def cancel_missing(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         "Your client sent its goal and got its feedback, but it never asked to cancel.",
-        "Count in the feedback callback, and at the third message call goal_handle.cancel_goal_async(). Keep the "
+        "Count in the feedback callback, and at the third message call goal_handle.cancel_goal_async(). "
+        "Keep the "
         "goal_handle from the goal response.",
     )
 
@@ -279,9 +289,11 @@ def cancel_too_late(evidence: Evidence) -> Advice | None:
     if count is None or count <= LAST_FEEDBACK:
         return None
     return Advice(
-        f"Your client asked to cancel only after {count} feedback messages; the task asks for {FIRST_FEEDBACK} to "
+        f"Your client asked to cancel only after {count} feedback messages; the task asks for "
+        f"{FIRST_FEEDBACK} to "
         f"{LAST_FEEDBACK}.",
-        f"Cancel in the feedback callback itself, when the count reaches {FIRST_FEEDBACK}: a timer of a fixed length "
+        f"Cancel in the feedback callback itself, when the count reaches {FIRST_FEEDBACK}: a timer of a "
+        f"fixed length "
         "does not know how fast the server is.",
     )
 
@@ -292,7 +304,8 @@ def cancel_repeated(evidence: Evidence) -> Advice | None:
     if total < 2:
         return None
     return Advice(
-        f"Your client asked to cancel {total} times. Feedback goes on arriving until the server has ended the goal.",
+        f"Your client asked to cancel {total} times. Feedback goes on arriving until the server has ended "
+        f"the goal.",
         "Remember that you have asked: test `count == 3` rather than `count >= 3`, or keep a flag.",
     )
 
@@ -304,11 +317,14 @@ def status_not_reported(evidence: Evidence) -> Advice | None:
         return None
     if part.first("result_request") is None:
         return Advice(
-            "Your client asked to cancel, but it never asked for the result, so it cannot know how the goal ended.",
-            "Call goal_handle.get_result_async() once the goal is accepted, and read result.status when it is done.",
+            "Your client asked to cancel, but it never asked for the result, so it cannot know how the goal "
+            "ended.",
+            "Call goal_handle.get_result_async() once the goal is accepted, and read result.status when it "
+            "is done.",
         )
     return Advice(
-        "The goal ended with the status CANCELED (5), but your client did not say so after it got the result.",
+        "The goal ended with the status CANCELED (5), but your client did not say so after it got the "
+        "result.",
         "When the result is there, log its status: future.result().status, by name or by number.",
     )
 
@@ -320,7 +336,8 @@ def status_misreported(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         f"The judge refused the cancel request and the goal succeeded, but your client said “{claim}”.",
-        "Compare result.status with GoalStatus.STATUS_CANCELED before you say so: a cancel is a request, and the "
+        "Compare result.status with GoalStatus.STATUS_CANCELED before you say so: a cancel is a request, "
+        "and the "
         "server may refuse it.",
     )
 

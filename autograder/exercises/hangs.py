@@ -1,7 +1,9 @@
 """Mistakes that a hung program's stack gives away: who waits for what, and in which thread.
 
-The stack is what Python's faulthandler prints (innermost call first); the judge asks for it once a subject that should
-go on has fallen silent. From rclpy 7.1: ``Client.call`` waits in ``client.py``, the action client's blocking calls in
+The stack is what Python's faulthandler prints (innermost call first); the judge asks for it once a subject
+that should
+go on has fallen silent. From rclpy 7.1: ``Client.call`` waits in ``client.py``, the action client's blocking
+calls in
 ``action/client.py``, ``Rate.sleep`` in ``timer.py``, callbacks run below ``executors.py``.
 """
 
@@ -10,13 +12,25 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from autograder.exercises.evidence import Evidence, Part
 from autograder.exercises.model import Advice, Mistake
 
+if TYPE_CHECKING:
+    from autograder.exercises.evidence import Evidence, Part
+
 _FRAME = re.compile(r'^\s*File "(?P<file>[^"]*)", line \d+,? in (?P<function>\S+)')
-_BLOCKING = {"client.py": {"call"}, "action/client.py": {"send_goal", "cancel_goal", "get_result", "_cancel_goal"}}
-_SPINS = {"spin", "spin_once", "spin_until_future_complete", "_spin_once_impl", "spin_once_until_future_complete"}
+_BLOCKING = {
+    "client.py": {"call"},
+    "action/client.py": {"send_goal", "cancel_goal", "get_result", "_cancel_goal"},
+}
+_SPINS = {
+    "spin",
+    "spin_once",
+    "spin_until_future_complete",
+    "_spin_once_impl",
+    "spin_once_until_future_complete",
+}
 
 
 @dataclass(frozen=True)
@@ -53,7 +67,9 @@ def _blocks(stack: Stack) -> bool:
 
 def _in_callback(stack: Stack) -> bool:
     """Whether the innermost code of the student's was called by an executor."""
-    own = next((i for i, frame in enumerate(stack) if not frame.rclpy and frame.function != "wait"), len(stack))
+    own = next(
+        (i for i, frame in enumerate(stack) if not frame.rclpy and frame.function != "wait"), len(stack)
+    )
     return any(frame.rclpy == "executors.py" for frame in stack[own:])
 
 
@@ -80,41 +96,53 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
     (
         "nested_spin",
         lambda found: any(map(_spins_in_callback, found)),
-        "A callback of yours spins, and waits inside that spin for ever: the executor that called it cannot go on.",
-        "Never spin inside a callback. Go on in future.add_done_callback(...), or make the callback async and await.",
+        "A callback of yours spins, and waits inside that spin for ever: the executor that called it cannot "
+        "go on.",
+        "Never spin inside a callback. Go on in future.add_done_callback(...), or make the callback async "
+        "and await.",
     ),
     (
         "call_in_same_group",
         lambda found: any(_blocks(stack) and _in_callback(stack) for stack in found),
-        "A callback of yours makes a blocking call and waits for ever: the answer would have to come through the same "
+        "A callback of yours makes a blocking call and waits for ever: the answer would have to come "
+        "through the same "
         "callback group, which is busy with this very callback.",
-        "Use the asynchronous call and go on in future.add_done_callback(...); or give the client a callback group of "
+        "Use the asynchronous call and go on in future.add_done_callback(...); or give the client a "
+        "callback group of "
         "its own and spin with several threads.",
     ),
     (
         "node_taken_from_executor",
-        lambda found: any(map(_blocks, found)) and any(_spins(stack) and not _blocks(stack) for stack in found),
-        "A blocking call waits for ever although a thread of yours spins: that executor no longer has the node.",
-        "Spin a node in one place only. rclpy.spin_once or spin_until_future_complete, called beside another executor, "
+        lambda found: (
+            any(map(_blocks, found)) and any(_spins(stack) and not _blocks(stack) for stack in found)
+        ),
+        "A blocking call waits for ever although a thread of yours spins: that executor no longer has the "
+        "node.",
+        "Spin a node in one place only. rclpy.spin_once or spin_until_future_complete, called beside "
+        "another executor, "
         "takes the node away from it.",
     ),
     (
         "call_never_spun",
         lambda found: any(map(_blocks, found)),
-        "A blocking call waits for ever: the answer has come, but nothing spins the node, so nobody takes it.",
-        "Use call_async and rclpy.spin_until_future_complete(node, future), or spin the node in a background executor "
+        "A blocking call waits for ever: the answer has come, but nothing spins the node, so nobody takes "
+        "it.",
+        "Use call_async and rclpy.spin_until_future_complete(node, future), or spin the node in a "
+        "background executor "
         "while you use call().",
     ),
     (
         "rate_never_spun",
         lambda found: any(map(_sleeps_on_rate, found)),
-        "rate.sleep() waits for ever: a rate is a timer, and a timer only fires while something spins the node.",
+        "rate.sleep() waits for ever: a rate is a timer, and a timer only fires while something spins the "
+        "node.",
         "Spin the node in a second thread, or use create_timer and rclpy.spin in place of the loop.",
     ),
     (
         "never_spun",
         lambda found: bool(found) and not any(frame.rclpy for stack in found for frame in stack),
-        "Your program is busy with code of its own and nothing spins the node, so none of its callbacks is ever called.",
+        "Your program is busy with code of its own and nothing spins the node, so none of its callbacks is "
+        "ever called.",
         "Call rclpy.spin(node) at the end of main(), or spin in a second thread beside your loop.",
     ),
 )

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from functools import partial
-from random import Random
+from typing import TYPE_CHECKING
 
 from autograder.exercises import common_mistakes as common
-from autograder.exercises.evidence import Event, Evidence, Part
 from autograder.exercises.hangs import HANGS
 from autograder.exercises.model import Advice, Bench, Criterion, Exercise, Finding, Look, Mistake
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from random import Random
+
+    from autograder.exercises.evidence import Event, Evidence, Part
 
 TEXTS = 6
 """Texts that are sent, each once the one before was said."""
@@ -70,8 +74,10 @@ def _said_after_sent(part: Part, event: Event) -> bool:
 def invented(part: Part, sent: Sequence[str]) -> list[str]:
     """What it claims to have heard although nobody sent it.
 
-    Its own way of saying is learnt from the lines that carry a sent text: what stands before and after the text. A
-    line with the same frame and another text in it was invented. Where it said none of the texts, a line with a
+    Its own way of saying is learnt from the lines that carry a sent text: what stands before and after the
+    text. A
+    line with the same frame and another text in it was invented. Where it said none of the texts, a line with
+    a
     quoted text is taken for such a claim.
     """
     spoken = part.said()
@@ -119,7 +125,9 @@ def says_nothing_else(evidence: Evidence) -> Finding:
     sent = [str(event.data["fields"]["data"]) for event in _sent(evidence.main, topic)]
     heard_any = any(_is_said(text, evidence.main) for text in sent)
     made_up = invented(evidence.main, sent)
-    seen = f"“{made_up[0]}”" if made_up else "only what was sent" if heard_any else "it said none of the texts"
+    seen = (
+        f"“{made_up[0]}”" if made_up else "only what was sent" if heard_any else "it said none of the texts"
+    )
     return Finding(heard_any and not made_up, "only what was sent", seen)
 
 
@@ -139,10 +147,12 @@ def not_logged(evidence: Evidence) -> Advice | None:
     if len(part.said(after=sent[0])) == 0:
         return Advice(
             f"Your node is subscribed to {topic}, but when a text arrives it says nothing.",
-            "In the callback, log the text: self.get_logger().info(f'I heard: \"{msg.data}\"'). Is the node spun?",
+            "In the callback, log the text: self.get_logger().info(f'I heard: \"{msg.data}\"'). Is the node "
+            "spun?",
         )
     return Advice(
-        f"When “{sent[0].data['fields']['data']}” was sent, your node said “{part.said(after=sent[0])[0]}”: the text "
+        f"When “{sent[0].data['fields']['data']}” was sent, your node said “{part.said(after=sent[0])[0]}”: "
+        f"the text "
         "that arrived is not in it.",
         "Put msg.data into the line that you log.",
     )

@@ -5,11 +5,14 @@ from __future__ import annotations
 import re
 from itertools import pairwise
 from statistics import median
+from typing import TYPE_CHECKING
 
 from autograder.exercises import common_mistakes as common
-from autograder.exercises.evidence import Evidence, Event, Part, Reference
 from autograder.exercises.hangs import HANGS
 from autograder.exercises.model import Advice, Bench, Criterion, Exercise, Finding, Look, Mistake
+
+if TYPE_CHECKING:
+    from autograder.exercises.evidence import Event, Evidence, Part, Reference
 
 MESSAGES = {Look.FAST: 8, Look.REAL_TIME: 7}
 """Messages that are listened to; six intervals in real time, whose median one late message does not move."""
@@ -33,7 +36,9 @@ def scenario(bench: Bench) -> None:
     if bench.await_endpoint("publisher", topic):
         bench.release()
         period = _reference_period(bench.reference)
-        bench.run_time(2 * enough * period, until=lambda: bench.heard(topic) >= enough, quiet=SILENCE * period)
+        bench.run_time(
+            2 * enough * period, until=lambda: bench.heard(topic) >= enough, quiet=SILENCE * period
+        )
         if bench.heard(topic) < enough:
             bench.note_whether_it_spins()
     bench.stop()
@@ -102,7 +107,8 @@ def says_the_text(evidence: Evidence) -> Finding:
 def starts_right(evidence: Evidence) -> bool:
     """Whether the first number is the reference's, also where messages were sent before anybody could hear them.
 
-    A loop may publish in the moment in which it makes its publisher, which no listener can be quick enough for. DDS
+    A loop may publish in the moment in which it makes its publisher, which no listener can be quick enough
+    for. DDS
     numbers each publisher's messages from 1, so that what was lost is known.
     """
     topic, _, expected = _expected(evidence)
@@ -131,9 +137,13 @@ def keeps_the_rate(evidence: Evidence) -> Finding:
     wanted = _reference_period(evidence.reference)
     gaps = intervals(evidence.main.of("message", topic))
     if not gaps:
-        return Finding(False, f"one every {wanted:g} s", f"{len(evidence.main.of('message', topic))} messages in all")
+        return Finding(
+            False, f"one every {wanted:g} s", f"{len(evidence.main.of('message', topic))} messages in all"
+        )
     seen = median(gaps)
-    return Finding(abs(seen - wanted) <= RATE_TOLERANCE * wanted, f"one every {wanted:g} s", f"one every {seen:.2g} s")
+    return Finding(
+        abs(seen - wanted) <= RATE_TOLERANCE * wanted, f"one every {wanted:g} s", f"one every {seen:.2g} s"
+    )
 
 
 def _row(numbers: list[int]) -> str:
@@ -197,7 +207,8 @@ def empty_text(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         "Your messages arrive, but their text is empty: the field was never filled.",
-        "A String has one field, data. Write msg.data = ...; a misspelt keyword in String(...) is ignored silently.",
+        "A String has one field, data. Write msg.data = ...; a misspelt keyword in String(...) is ignored "
+        "silently.",
     )
 
 
@@ -224,8 +235,10 @@ def published_before_discovery(evidence: Evidence) -> Advice | None:
     if not ended or not claims or (heard and heard[-1].t - heard[0].t > ONE_MOMENT):
         return None
     return Advice(
-        "Your program published everything in its first moment and ended before anybody could be connected to it.",
-        "Publish from a timer and keep the program spinning: it takes a moment until publisher and subscription have "
+        "Your program published everything in its first moment and ended before anybody could be connected "
+        "to it.",
+        "Publish from a timer and keep the program spinning: it takes a moment until publisher and "
+        "subscription have "
         "found each other.",
     )
 
@@ -238,7 +251,8 @@ def wrong_text(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         f"Your talker says {finding.seen}; the task asks for {finding.expected}",
-        "Compare the two letter by letter: capitals, the comma, the exclamation mark and the space before the "
+        "Compare the two letter by letter: capitals, the comma, the exclamation mark and the space before "
+        "the "
         "number all count, because other nodes read this text.",
     )
 

@@ -7,14 +7,16 @@ reads like its specification and can be tested without ROS.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from random import Random
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
-from autograder.exercises.callers import ActionCaller, Caller
-from autograder.exercises.evidence import Evidence
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from random import Random
+
+    from autograder.exercises.callers import ActionCaller, Caller
+    from autograder.exercises.evidence import Evidence
 
 
 class Look(StrEnum):
@@ -67,7 +69,8 @@ class Mistake:
     Attributes:
         key: A stable name, listed in ``docs/mistakes.md``.
         recognise: Gives the advice where the evidence shows this mistake, else None.
-        certain: The evidence proves the failure whatever the machine's load was, so a second look in real time
+        certain: The evidence proves the failure whatever the machine's load was, so a second look in real
+            time
             would only cost the student time.
     """
 
@@ -144,7 +147,8 @@ class Bench(Protocol):
     def start(self, *arguments: Any, **options: Any) -> None:
         """Start the subject; a class is made but not yet spun, a command or function runs at once.
 
-        ``options`` are keyword arguments that only a notebook's function understands (a command ignores them).
+        ``options`` are keyword arguments that only a notebook's function understands (a command ignores
+        them).
         """
         ...
 
@@ -172,7 +176,9 @@ class Bench(Protocol):
         """Create a publisher with the default QoS of the course (reliable, depth 10)."""
         ...
 
-    def serve(self, service: str, type_name: str, answer: Callable[[Mapping[str, Any]], Mapping[str, Any]]) -> Server:
+    def serve(
+        self, service: str, type_name: str, answer: Callable[[Mapping[str, Any]], Mapping[str, Any]]
+    ) -> Server:
         """Serve; each request and response goes into the transcript."""
         ...
 
@@ -256,7 +262,8 @@ class Exercise:
         scenario: Drives the bench through all parts.
         criteria: What must hold, in the order of the card.
         mistakes: Known mistakes, most telling first.
-        roles: The endpoints that make up the subject's public face, such as ``("publisher",)``; `record` waits
+        roles: The endpoints that make up the subject's public face, such as ``("publisher",)``; `record`
+            waits
             for one of them.
         limit: Seconds of wall time after which the judge gives up on a check, all looks together.
         arguments: What a command is called with, in words; empty where it takes none.

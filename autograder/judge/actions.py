@@ -1,7 +1,9 @@
 """An action server that does only what the scenario tells it to, and writes every request down.
 
-It is made of the three services and two topics that an action consists of (design.ros2.org, "Actions"), not of
-rclpy's ActionServer: that one does not call back for a second cancel of one goal and decides by itself when to
+It is made of the three services and two topics that an action consists of (design.ros2.org, "Actions"), not
+of
+rclpy's ActionServer: that one does not call back for a second cancel of one goal and decides by itself when
+to
 answer, and here each cancel request counts.
 """
 
@@ -9,16 +11,19 @@ from __future__ import annotations
 
 import threading
 import uuid
-from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
 from action_msgs.srv import CancelGoal
 from rclpy.qos import QoSProfile, qos_profile_action_status_default
 
 from autograder.judge.interfaces import filled, interface, to_data
-from autograder.judge.recorder import Recorder
-from autograder.judge.wire import Wire
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.judge.recorder import Recorder
+    from autograder.judge.wire import Wire
 
 STATUS = {
     "accepted": GoalStatus.STATUS_ACCEPTED,
@@ -34,7 +39,7 @@ FEEDBACK_MATCH = 3.0
 
 
 class ScriptedActionServer:
-    """One action; goals are accepted as they come, the newest is the current one."""
+    """One action; goals are accepted as they come (or all refused), the newest is the current one."""
 
     def __init__(
         self,
@@ -43,6 +48,7 @@ class ScriptedActionServer:
         action: str,
         type_name: str,
         *,
+        accept_goal: bool,
         accept_cancel: bool,
         client_is_gone: Callable[[], bool],
     ) -> None:
@@ -50,6 +56,7 @@ class ScriptedActionServer:
         self._recorder = recorder
         self._name = action
         self._type = interface(type_name)
+        self._accept_goal = accept_goal
         self._accept_cancel = accept_cancel
         self._client_is_gone = client_is_gone
         self._goal_id: Any = None
@@ -57,7 +64,9 @@ class ScriptedActionServer:
         self._lock = threading.Lock()
         self._result: Any = None
         node, parts = wire.node, self._type.Impl
-        self._feedback = node.create_publisher(parts.FeedbackMessage, f"{action}/_action/feedback", QoSProfile(depth=10))
+        self._feedback = node.create_publisher(
+            parts.FeedbackMessage, f"{action}/_action/feedback", QoSProfile(depth=10)
+        )
         self._statuses = node.create_publisher(
             GoalStatusArray, f"{action}/_action/status", qos_profile_action_status_default
         )
@@ -69,15 +78,17 @@ class ScriptedActionServer:
         self._results = node.create_service(
             parts.GetResultService, f"{action}/_action/get_result", self._take_result_request
         )
-        # rclpy answers a request when its callback returns; the answer to this one comes when the goal has ended.
+        # rclpy answers a request when its callback returns; the answer to this one comes when the goal has
+        # ended.
         self._answer = self._results.send_response
-        self._results.send_response = self._answer_or_wait
+        self._results.send_response = self._answer_or_wait  # type: ignore[method-assign]
         self._services.append(self._results)
 
     def await_goal(self, within: float) -> bool:
         """Wait until a goal arrived; False where none came in ``within`` seconds.
 
-        Feedback that is sent before its sender's subscription was met would be lost, so that is waited for, too.
+        Feedback that is sent before its sender's subscription was met would be lost, so that is waited for,
+        too.
         """
         if not self._await("goal", within):
             return False
@@ -128,18 +139,19 @@ class ScriptedActionServer:
         return came()
 
     def _take_goal(self, request: Any, response: Any) -> Any:
-        self._goal_id = request.goal_id
-        self._result = None
-        self._set_status(GoalStatus.STATUS_EXECUTING)
-        response.accepted = True
+        response.accepted = self._accept_goal
         response.stamp = self._wire.node.get_clock().now().to_msg()
+        if self._accept_goal:
+            self._goal_id = request.goal_id
+            self._result = None
+            self._set_status(GoalStatus.STATUS_EXECUTING)
         self._recorder.record("goal", self._name, fields=to_data(request.goal))
         return response
 
     def _take_cancel(self, request: Any, response: Any) -> Any:
         # An all-zero id and stamp mean "cancel every goal" (action_msgs/srv/CancelGoal).
-        asked = _text(request.goal_info.goal_id)
-        known = self._goal_id is not None and asked in (_text(self._goal_id), str(uuid.UUID(int=0)))
+        asked = goal_text(request.goal_info.goal_id)
+        known = self._goal_id is not None and asked in (goal_text(self._goal_id), str(uuid.UUID(int=0)))
         accepted = self._accept_cancel and known and self._status in (
             GoalStatus.STATUS_EXECUTING, GoalStatus.STATUS_CANCELING)  # fmt: skip
         if accepted:
@@ -154,7 +166,7 @@ class ScriptedActionServer:
         return response
 
     def _take_result_request(self, request: Any, response: Any) -> Any:
-        known = self._goal_id is not None and _text(request.goal_id) == _text(self._goal_id)
+        known = self._goal_id is not None and goal_text(request.goal_id) == goal_text(self._goal_id)
         self._recorder.record("result_request", self._name, known=known)
         response.status = GoalStatus.STATUS_UNKNOWN
         return None if known else response
@@ -172,5 +184,6 @@ class ScriptedActionServer:
         self._statuses.publish(GoalStatusArray(status_list=[line]))
 
 
-def _text(goal_id: Any) -> str:
+def goal_text(goal_id: Any) -> str:
+    """A goal's id (``unique_identifier_msgs/msg/UUID``) as text."""
     return str(uuid.UUID(bytes=bytes(bytearray(int(b) & 0xFF for b in goal_id.uuid))))

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable, Mapping
-from random import Random
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from autograder.exercises.evidence import Evidence, Part, Reference
 from autograder.exercises.model import Look
@@ -17,9 +15,14 @@ from autograder.judge.callers import RecordedCaller
 from autograder.judge.clock import SimulatedClock
 from autograder.judge.recorder import Recorder
 from autograder.judge.services import Answer, RecordedServer
-from autograder.judge.subjects import Subject
 from autograder.judge.topics import Ear, LogReader, Mouth
 from autograder.judge.wire import JudgeFailed, Wire
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from random import Random
+
+    from autograder.judge.subjects import Subject
 
 APPEAR = 12.0
 """Seconds of wall time in which a subject that runs must show up on the graph at all. Generous: starting slowly is
@@ -134,7 +137,11 @@ class TestBench:
             if type_name is None:
                 return False
             self._recorder.record("interface", "topic", **{role: {name: type_name}})
-        counterpart = {"publisher": self._ears, "subscription": self._mouths}.get(role, {}).get(name)
+        counterparts: dict[str, Mapping[str, Ear | Mouth]] = {
+            "publisher": self._ears,
+            "subscription": self._mouths,
+        }
+        counterpart = counterparts.get(role, {}).get(name)
         if counterpart is None or counterpart.type_name != self._recorder.part().endpoints(role)[name]:
             return True  # there is nobody to be matched with
         return self._recorder.wait(
@@ -242,7 +249,8 @@ class TestBench:
             self.doubtful = self.doubtful or self._clock.doubtful
             return
         self._recorder.wait(
-            lambda: over() or self._subject.ended or (quiet is not None and self._recorder.idle > quiet), seconds
+            lambda: over() or self._subject.ended or (quiet is not None and self._recorder.idle > quiet),
+            seconds,
         )
 
     def _follow_clock(self) -> bool:

@@ -1,8 +1,11 @@
 """Simulated time: the judge publishes ``/clock`` and steps it, so that seconds cost milliseconds.
 
-Each step is followed by a question to the subject's parameter service. The answer proves that its executor has
-turned since the step, so the result does not depend on how busy the machine is. What does not follow the clock (a
-``time.sleep``, a loop that spins only now and then) shows itself: it publishes while the clock stands still, or its
+Each step is followed by a question to the subject's parameter service. The answer proves that its executor
+has
+turned since the step, so the result does not depend on how busy the machine is. What does not follow the
+clock (a
+``time.sleep``, a loop that spins only now and then) shows itself: it publishes while the clock stands still,
+or its
 executor is slow to answer; the caller then looks again in real time.
 """
 
@@ -10,17 +13,19 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
 
-from autograder.judge.graph import NodeName
-from autograder.judge.recorder import Recorder
-from autograder.judge.wire import Wire
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.judge.graph import NodeName
+    from autograder.judge.recorder import Recorder
+    from autograder.judge.wire import Wire
 
 STEP = 0.05
 """Simulated seconds a step: small beside any period of the course, so that a period is seen to this precision."""
@@ -64,7 +69,9 @@ class SimulatedClock:
         answer = self._ask(self._set, request)
         if answer is None or not answer.results or not answer.results[0].successful:
             return False
-        hears = self._recorder.wait(lambda: self._publisher.get_subscription_count() > 0, ANSWER_LIMIT, poll=0.002)
+        hears = self._recorder.wait(
+            lambda: self._publisher.get_subscription_count() > 0, ANSWER_LIMIT, poll=0.002
+        )
         if not hears:
             return False
         self._recorder.simulated_now = self._now
@@ -108,7 +115,7 @@ class SimulatedClock:
     def _publish(self) -> None:
         message = Clock()
         message.clock.sec = int(self._now)
-        message.clock.nanosec = int(round((self._now - int(self._now)) * 1e9))
+        message.clock.nanosec = round((self._now - int(self._now)) * 1e9)
         self._publisher.publish(message)
 
     def _probe(self) -> bool:

@@ -5,13 +5,18 @@ from __future__ import annotations
 import os
 import secrets
 import shutil
-from collections.abc import Sequence
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 from autograder import exercises
-from autograder.exercises.model import Exercise
 from autograder.judge.fork import Child
 from autograder.verdict import Verdict, from_json, not_checked, to_json
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from autograder.exercises.model import Exercise
+
 
 class CommandNotFound(LookupError):
     """The command does not exist or may not be executed."""
@@ -41,12 +46,16 @@ def check_command(
     """
     exercise = exercises.get(exercise_id)
     if shutil.which(command[0], path=_search_path(cwd)) is None:
-        raise CommandNotFound(f"there is no program {command[0]!r} to run here; is it spelt right, and executable?")
+        raise CommandNotFound(
+            f"there is no program {command[0]!r} to run here; is it spelt right, and executable?"
+        )
     chosen = seed or secrets.token_hex(8)
     child = Child(lambda: to_json(judged_here(exercise, command, chosen, cwd)), exercise.limit + SPARE)
     outcome = child.result()
     if outcome.data is None:
-        return not_checked(exercise.id, exercise.title, exercise.points, outcome.trouble, "Run `autograder doctor`.")
+        return not_checked(
+            exercise.id, exercise.title, exercise.points, outcome.trouble, "Run `autograder doctor`."
+        )
     return from_json(outcome.data)
 
 
@@ -67,6 +76,8 @@ def judged_here(exercise: Exercise, command: Sequence[str], seed: str, cwd: Path
     try:
         expected = reference.load(exercise.id)
         with domain.lease() as domain_id:
-            return trial.check(exercise, CommandSubject(command, cwd), expected, seed=seed, domain_id=domain_id)
+            return trial.check(
+                exercise, CommandSubject(command, cwd), expected, seed=seed, domain_id=domain_id
+            )
     except (domain.NoFreeDomainError, reference.NoReference, JudgeFailed) as error:
         return not_checked(exercise.id, exercise.title, exercise.points, str(error))

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
 import signal
 import subprocess
 import threading
 import time
-from collections.abc import Sequence
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
-from autograder.judge.recorder import Recorder
 from autograder.judge.settings import subject_environment
 from autograder.judge.subjects import CannotStart
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.judge.recorder import Recorder
 
 MAX_LINE = 4_000
 """Characters of one line that are kept."""
@@ -118,7 +122,8 @@ class CommandSubject:
             reader.start()
         code = process.wait()
         for reader in readers:
-            # All that it printed must be read before its end is known. A grandchild may hold the pipe open, though.
+            # All that it printed must be read before its end is known. A grandchild may hold the pipe open,
+            # though.
             reader.join(timeout=READ_LIMIT)
         # What the judge has ended did not end by itself.
         recorder.record("subject", "aborted" if self._dying.is_set() else "exited", code=code)
@@ -148,10 +153,8 @@ def _die_with_the_judge() -> None:
 
 
 def _signal_group(group: int, number: int) -> None:
-    try:
+    with contextlib.suppress(ProcessLookupError, PermissionError):
         os.killpg(group, number)
-    except (ProcessLookupError, PermissionError):
-        pass
 
 
 def kill_leftovers(limit: float = 1.0) -> None:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-import socket
+from typing import TYPE_CHECKING
 
 from autograder import exercises
-from autograder.exercises.model import Exercise
 from autograder.judge import domain, record, reference, trial
 from autograder.judge.link import Link
 from autograder.judge.protocol import Report
 from autograder.judge.remote_subject import RemoteSubject
 from autograder.judge.wire import JudgeFailed
 from autograder.verdict import Verdict, not_checked
+
+if TYPE_CHECKING:
+    import socket
+
+    from autograder.exercises.model import Exercise
 
 
 def converse(connection: socket.socket, *, seed: str, expected: str | None, recording: bool) -> Report:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from autograder.ros_domain import NoFreeDomainError, claim_free_domain
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 __all__ = ["NoFreeDomainError", "lease"]
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import array
 import importlib
-from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 
 class UnknownInterface(LookupError):
@@ -22,7 +24,9 @@ def interface(type_name: str) -> Any:
         package, kind, name = type_name.split("/")
         return getattr(importlib.import_module(f"{package}.{kind}"), name)
     except (ValueError, ImportError, AttributeError) as error:
-        raise UnknownInterface(f"no interface {type_name!r} in this environment: is its package built?") from error
+        raise UnknownInterface(
+            f"no interface {type_name!r} in this environment: is its package built?"
+        ) from error
 
 
 def to_data(message: Any) -> Any:

@@ -1,19 +1,23 @@
 """The words between a notebook and the judge: JSON lines over a Unix socket.
 
-The notebook's side is untrusted. Whatever it says only affects what the subject is taken to have said or done on its
+The notebook's side is untrusted. Whatever it says only affects what the subject is taken to have said or done
+on its
 own account; what happens on the wire the judge sees for itself.
 
-Notebook to judge: ``check``, ``ready``, ``constructed``, ``raised``, ``callback_raised``, ``returned``, ``output``,
+Notebook to judge: ``check``, ``ready``, ``constructed``, ``raised``, ``callback_raised``, ``returned``,
+``output``,
 ``stopped``. Judge to notebook: ``begin``, ``start``, ``release``, ``stop``, ``verdict``.
 """
 
 from __future__ import annotations
 
 import json
-import socket
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
+
+if TYPE_CHECKING:
+    import socket
 
 MAX_LINE = 1_000_000
 """Bytes of one message; a longer one ends the conversation."""

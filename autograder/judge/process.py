@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import select
 import subprocess
 import sys
-from pathlib import Path
-from types import TracebackType
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import msgspec
 
 from autograder.judge.protocol import Close, Open, Report
-from autograder.verdict import Verdict
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from types import TracebackType
+
+    from autograder.verdict import Verdict
 
 START_LIMIT = 60.0
 """Seconds of wall time in which a judge must be up; it takes well under one on an idle machine."""
@@ -56,7 +60,9 @@ class JudgeProcess:
             raise JudgeDied("the judge did not start; `autograder doctor` says what is missing")
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         self.stop()
 
     def open(self, exercise_id: str, *, record: bool = False) -> None:
@@ -91,14 +97,10 @@ class JudgeProcess:
         for stream in (process.stdin, process.stdout):
             if stream is not None:
                 stream.close()
-        try:
+        with contextlib.suppress(subprocess.TimeoutExpired):
             process.wait(timeout=2.0)
-        except subprocess.TimeoutExpired:
-            pass
-        try:
+        with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, 9)
-        except ProcessLookupError:
-            pass
         process.wait()
         self.socket_path.unlink(missing_ok=True)
 

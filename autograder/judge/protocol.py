@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from autograder.verdict import Verdict
+from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
 
 
 class Open(msgspec.Struct, tag="open", frozen=True):

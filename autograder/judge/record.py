@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from random import Random
+from typing import TYPE_CHECKING
 
 from autograder.exercises.evidence import Evidence, Reference
 from autograder.exercises.model import Exercise, Look
 from autograder.judge.bench import TestBench
-from autograder.judge.subjects import Subject
 from autograder.judge.trial import look
+
+if TYPE_CHECKING:
+    from autograder.judge.subjects import Subject
 
 SEED = "reference"
 """Recording draws the same inputs each time."""
@@ -22,7 +25,8 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
     """Look at the reference solution's interface, then run the scenario on it.
 
     Raises:
-        NotRecordable: It never had an endpoint of the exercise's roles, or it is not right by its own measure.
+        NotRecordable: It never had an endpoint of the exercise's roles, or it is not right by its own
+            measure.
     """
     subject.begin(domain_id)
     interface = _interface(exercise, subject, domain_id)
@@ -31,7 +35,9 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
     bare = Reference(exercise.id, interface)
     seen = look(exercise, subject, bare, Look.FAST, seed=SEED, domain_id=domain_id)
     if seen.doubtful:
-        raise NotRecordable(f"{exercise.id}: the reference solution did not follow the clock; is the machine busy?")
+        raise NotRecordable(
+            f"{exercise.id}: the reference solution did not follow the clock; is the machine busy?"
+        )
     return Reference(exercise.id, interface, seen.evidence.parts)
 
 

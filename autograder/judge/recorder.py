@@ -5,10 +5,12 @@ from __future__ import annotations
 import copy
 import threading
 import time
-from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from autograder.exercises.evidence import Event, Part
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
 
 MAX_EVENTS = 20_000
 """Events that one part may hold: a flood is cut here instead of filling the memory."""
@@ -17,7 +19,8 @@ MAX_EVENTS = 20_000
 class Recorder:
     """An append-only list of events with a condition to wait on.
 
-    Times are seconds since :meth:`begin`. ``simulated_now`` is asked at each event, so that a message carries the
+    Times are seconds since :meth:`begin`. ``simulated_now`` is asked at each event, so that a message carries
+    the
     simulated time at which it arrived.
     """
 

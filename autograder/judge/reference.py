@@ -1,20 +1,26 @@
 """Reference outputs on disk: what the reference solutions do on the wire, as JSON that people review.
 
-Recording keeps what the task decides (what was published, asked, answered) and drops what the machine decides (wall
+Recording keeps what the task decides (what was published, asked, answered) and drops what the machine decides
+(wall
 times, node names made up by chance, the order of log lines between two channels).
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from autograder import course
 from autograder.exercises.evidence import Event, Part, Reference
 
-_KEPT = ("message", "sent", "request", "response", "goal", "feedback", "cancel", "result")
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+_KEPT = (
+    "message", "sent", "request", "response", "goal", "feedback", "cancel", "result", "asked", "answered",
+    "goal_sent", "goal_answer", "feedback_heard", "cancel_sent", "cancel_answer", "result_heard",
+)  # fmt: skip
 
 _MACHINE = ("number", "sent")
 """Data of an event that differ from run to run."""
@@ -41,7 +47,9 @@ def load(exercise_id: str) -> Reference:
     except FileNotFoundError as error:
         raise NoReference(f"{file} does not exist: run `autograder record {exercise_id}`") from error
     except (ValueError, KeyError, TypeError) as error:
-        raise NoReference(f"{file} is not a reference output ({error}): run `autograder record {exercise_id}`") from error
+        raise NoReference(
+            f"{file} is not a reference output ({error}): run `autograder record {exercise_id}`"
+        ) from error
 
 
 def parse(data: Mapping[str, Any]) -> Reference:
@@ -50,7 +58,10 @@ def parse(data: Mapping[str, Any]) -> Reference:
         Part(
             part["name"],
             part["inputs"],
-            [Event(e.get("t", 0.0), e["kind"], e["name"], e.get("data", {}), e.get("sim")) for e in part["events"]],
+            [
+                Event(e.get("t", 0.0), e["kind"], e["name"], e.get("data", {}), e.get("sim"))
+                for e in part["events"]
+            ],
         )
         for part in data["parts"]
     ]
@@ -61,7 +72,12 @@ def dump(reference: Reference) -> str:
     """The JSON form, the same for every recording of the same behaviour; one line for each event."""
     head = {"exercise": reference.exercise, "interface": _sorted(reference.interface)}
     lines = json.dumps(head, indent=1, ensure_ascii=False).splitlines()[:-1]
-    return "\n".join([*lines[:-1], lines[-1] + ",", ' "parts": [', ",\n".join(map(_part, reference.parts)), " ]", "}"]) + "\n"
+    return (
+        "\n".join(
+            [*lines[:-1], lines[-1] + ",", ' "parts": [', ",\n".join(map(_part, reference.parts)), " ]", "}"]
+        )
+        + "\n"
+    )
 
 
 def _part(part: Part) -> str:
@@ -76,6 +92,8 @@ def _sorted(interface: Mapping[str, Mapping[str, str]]) -> dict[str, dict[str, s
 
 def _events(part: Part) -> list[dict[str, Any]]:
     kept = [event for event in part.events if event.kind in _KEPT]
+    # Goals that run at once share one transcript; which of them is a moment ahead is the machine's doing.
+    kept.sort(key=lambda event: event.data.get("goal", 0))
     start = next((event.sim for event in kept if event.sim is not None), None)
     return [_event(event, start) for event in kept]
 

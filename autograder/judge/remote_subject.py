@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import threading
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from autograder.judge.link import Link, LinkClosed
-from autograder.judge.recorder import Recorder
+
+if TYPE_CHECKING:
+    from autograder.judge.recorder import Recorder
 
 MAX_TEXT = 4_000
 """Characters that are kept of one thing that the notebook says."""

@@ -1,18 +1,19 @@
 """The judge process of a notebook: warm, it forks a child for each check that is asked for on its socket.
 
-The parent has imported ROS and made no node and no thread, so that a fork is safe and each check begins with a fresh
+The parent has imported ROS and made no node and no thread, so that a fork is safe and each check begins with
+a fresh
 participant, which meets its subject at once.
 """
 
 from __future__ import annotations
 
+import contextlib
 import os
 import secrets
 import selectors
 import socket
 import sys
-from pathlib import Path
-from typing import BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 
 import msgspec
 
@@ -21,6 +22,9 @@ from autograder.judge import conversation
 from autograder.judge.command import SPARE
 from autograder.judge.fork import Child
 from autograder.judge.protocol import Close, Open, Order, Report
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 CLOSE_LIMIT = 10.0
 """Seconds that a check may still take after its cell has ended; its kernel is gone then or about to be."""
@@ -66,7 +70,9 @@ class JudgeServer:
                 return
             seed = order.seed if order else secrets.token_hex(8)
             expected, recording = (order.exercise, order.record) if order else (None, False)
-            limit = max(exercises.get(name).limit for name in ([expected] if expected else exercises.all_ids()))
+            limit = max(
+                exercises.get(name).limit for name in ([expected] if expected else exercises.all_ids())
+            )
             child = Child(
                 lambda: msgspec.json.encode(
                     conversation.converse(connection, seed=seed, expected=expected, recording=recording)
@@ -111,10 +117,8 @@ class JudgeServer:
 
 
 def _refuse(connection: socket.socket, why: str) -> None:
-    try:
+    with contextlib.suppress(OSError):
         connection.sendall(msgspec.json.encode({"say": "refused", "why": why}) + b"\n")
-    except OSError:
-        pass
 
 
 def run(path: Path, *, controlled: bool) -> None:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from autograder.judge.interfaces import filled, interface, to_data
-from autograder.judge.recorder import Recorder
-from autograder.judge.wire import Wire
+
+if TYPE_CHECKING:
+    from autograder.judge.recorder import Recorder
+    from autograder.judge.wire import Wire
 
 Answer = Callable[[Mapping[str, Any]], Mapping[str, Any]]
 """From the request's fields to the response's."""

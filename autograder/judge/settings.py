@@ -1,7 +1,9 @@
 """The environment that a judge's or a subject's process needs before ROS is imported.
 
-Measured on Fast DDS of Jazzy: a participant announces itself every 3 s, so one that is older than about a second
-often meets a new process only seconds later. The profile beside this file lets the judge's participants announce
+Measured on Fast DDS of Jazzy: a participant announces itself every 3 s, so one that is older than about a
+second
+often meets a new process only seconds later. The profile beside this file lets the judge's participants
+announce
 themselves every 100 ms; no subject needs it.
 """
 
@@ -17,7 +19,8 @@ PROFILE = Path(__file__).with_name("fastdds_profile.xml")
 def ros_environment() -> dict[str, str]:
     """Variables that both sides of a check share: loopback only, plain logs, no shared memory.
 
-    Shared memory is left out because it is lost between sandboxes, and because a killed subject would leave its
+    Shared memory is left out because it is lost between sandboxes, and because a killed subject would leave
+    its
     segments behind.
     """
     return {

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
-from autograder.judge.recorder import Recorder
+if TYPE_CHECKING:
+    from autograder.judge.recorder import Recorder
 
 
 class Subject(Protocol):
     """A node class or a function in a notebook, or a command.
 
-    Implementations write into the recorder: ``output`` events for each line it prints and ``subject`` events named
+    Implementations write into the recorder: ``output`` events for each line it prints and ``subject`` events
+    named
     ``constructed``, ``returned``, ``raised``, ``callback_raised`` or ``exited``.
     """
 

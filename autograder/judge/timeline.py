@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from autograder.exercises.evidence import Event, Evidence
 from autograder.verdict import Moment
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from autograder.exercises.evidence import Event, Evidence
 
 MAX_MOMENTS = 80
 """Moments that a verdict carries; the first ones tell the story."""
@@ -21,6 +24,14 @@ _DIRECTION = {
     "cancel": "from_subject",
     "result_request": "from_subject",
     "result": "to_subject",
+    "asked": "to_subject",
+    "answered": "from_subject",
+    "goal_sent": "to_subject",
+    "goal_answer": "from_subject",
+    "feedback_heard": "from_subject",
+    "cancel_sent": "to_subject",
+    "cancel_answer": "from_subject",
+    "result_heard": "from_subject",
     "log": "from_subject",
     "mismatch": "note",
     "subject": "note",
@@ -62,9 +73,14 @@ def _fields(data: Mapping[str, Any]) -> str:
 
 _LABELS: dict[str, Callable[[Event], str]] = {
     "goal": lambda e: f"goal {_fields(e.data)}",
-    "cancel": lambda e: "cancel request",
-    "result_request": lambda e: "asks for the result",
+    "cancel": lambda _: "cancel request",
+    "result_request": lambda _: "asks for the result",
     "result": lambda e: str(e.data["status"]),
+    "goal_sent": lambda e: f"goal {_fields(e.data)}",
+    "goal_answer": lambda e: "accepted" if e.data["accepted"] else "refused",
+    "cancel_sent": lambda _: "cancel request",
+    "cancel_answer": lambda e: "will cancel" if e.data["accepted"] else "will not cancel",
+    "result_heard": lambda e: f"status {e.data['status']}: {_fields(e.data)}",
     "log": lambda e: str(e.data["text"]),
     "mismatch": lambda e: f"{e.data['policy']} does not fit",
     "subject": lambda e: e.name.replace("_", " "),
@@ -72,4 +88,5 @@ _LABELS: dict[str, Callable[[Event], str]] = {
 
 
 def _label(event: Event) -> str:
-    return _LABELS.get(event.kind, lambda e: _fields(e.data))(event)
+    label = _LABELS.get(event.kind)
+    return label(event) if label else _fields(event.data)

@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
-from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy, qos_policy_name_from_kind
+from rclpy.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_policy_name_from_kind,
+)
 
 from autograder.judge.interfaces import filled, interface, to_data
-from autograder.judge.recorder import Recorder
-from autograder.judge.wire import Wire
 
-# Reliable as the course's own listener, so that what cannot reach that one is seen not to reach this one; deep, so
+if TYPE_CHECKING:
+    from autograder.judge.recorder import Recorder
+    from autograder.judge.wire import Wire
+
+# Reliable as the course's own listener, so that what cannot reach that one is seen not to reach this one;
+# deep, so
 # that a slow moment of the judge loses nothing.
 _AS_THE_LISTENER = QoSProfile(depth=1000)
 _LOG_HISTORY = QoSProfile(
@@ -31,7 +40,7 @@ class Ear:
         self.subscription = wire.node.create_subscription(
             interface(type_name),
             topic,
-            self._hear,
+            self._hear,  # type: ignore[arg-type]  # rclpy gives the message info to whoever takes two arguments
             _AS_THE_LISTENER,
             event_callbacks=SubscriptionEventCallbacks(
                 matched=self._match, incompatible_qos=self._mismatch, use_default_callbacks=False
@@ -39,7 +48,8 @@ class Ear:
         )
 
     def _hear(self, message: Any, info: Any) -> None:
-        # The publisher's own count of its messages tells what was sent before anybody could hear it, and its own
+        # The publisher's own count of its messages tells what was sent before anybody could hear it, and its
+        # own
         # time of sending is not blurred by the way here (rmw_message_info_t; given by rmw_fastrtps).
         self._recorder.record(
             "message",

@@ -5,14 +5,17 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, replace
 from random import Random
+from typing import TYPE_CHECKING
 
 from autograder.exercises.crashes import traceback_of
 from autograder.exercises.evidence import Evidence, Reference
 from autograder.exercises.model import Advice, Exercise, Look, Mistake
 from autograder.judge import timeline
 from autograder.judge.bench import TestBench
-from autograder.judge.subjects import Subject
 from autograder.verdict import Criterion, Diagnosis, State, Verdict
+
+if TYPE_CHECKING:
+    from autograder.judge.subjects import Subject
 
 MAX_DETAIL = 6_000
 """Characters of a traceback that a card shows."""
@@ -31,17 +34,24 @@ class Seen:
     doubtful: bool
 
 
-def check(exercise: Exercise, subject: Subject, reference: Reference, *, seed: str, domain_id: int) -> Verdict:
+def check(
+    exercise: Exercise, subject: Subject, reference: Reference, *, seed: str, domain_id: int
+) -> Verdict:
     """Judge a subject.
 
-    A fast pass counts; what fails fast is looked at again in real time, unless the evidence proves the failure
+    A fast pass counts; what fails fast is looked at again in real time, unless the evidence proves the
+    failure
     whatever the machine's load is.
     """
     began = time.monotonic()
     subject.begin(domain_id)
     seen = look(exercise, subject, reference, Look.FAST, seed=seed, domain_id=domain_id)
     verdict = judge(exercise, seen.evidence, seed)
-    if exercise.second_look and (seen.doubtful or not verdict.passed) and not _is_certain(exercise, seen.evidence):
+    if (
+        exercise.second_look
+        and (seen.doubtful or not verdict.passed)
+        and not _is_certain(exercise, seen.evidence)
+    ):
         again = look(exercise, subject, reference, Look.REAL_TIME, seed=seed, domain_id=domain_id)
         verdict = judge(exercise, replace(again.evidence, before=seen.evidence), seed)
     return replace(verdict, seconds=round(time.monotonic() - began, 3))

@@ -5,12 +5,21 @@ from __future__ import annotations
 import contextlib
 import importlib
 
-_INTERFACES = ("std_msgs.msg", "rcl_interfaces.msg", "rosgraph_msgs.msg", "my_robot_interfaces.srv", "my_robot_interfaces.action")
+_INTERFACES = (
+    "std_msgs.msg",
+    "rcl_interfaces.msg",
+    "rosgraph_msgs.msg",
+    "my_robot_interfaces.srv",
+    "my_robot_interfaces.action",
+)
 
 
 def imports() -> None:
-    """Import every exercise, the interfaces of the course and their compiled type supports."""
+    """Import the judge, every exercise, the interfaces of the course and their compiled type supports."""
     from autograder import exercises
+
+    for name in ("command_subject", "remote_subject", "trial"):
+        importlib.import_module(f"autograder.judge.{name}")
 
     for exercise_id in exercises.all_ids():
         exercises.get(exercise_id)
@@ -18,5 +27,6 @@ def imports() -> None:
         with contextlib.suppress(ImportError):
             module = importlib.import_module(name)
             for kind in vars(module).values():
-                if isinstance(kind, type) and hasattr(type(kind), "__import_type_support__"):
-                    type(kind).__import_type_support__()
+                load = getattr(type(kind), "__import_type_support__", None)
+                if load is not None:
+                    load()

@@ -6,10 +6,11 @@ import secrets
 import threading
 from typing import Any
 
-from autograder.ros_participant import receivers_wait
 from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
+
+from autograder.ros_participant import receivers_wait
 
 
 class JudgeFailed(RuntimeError):

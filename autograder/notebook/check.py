@@ -106,7 +106,7 @@ def _show(verdict: Verdict) -> None:
     from IPython.display import display
 
     bundle = mimebundle(verdict)
-    if get_ipython() is None:  # type: ignore[no-untyped-call]
+    if get_ipython() is None:
         print(bundle["text/plain"])
     else:
         display(bundle, raw=True)  # type: ignore[no-untyped-call]

@@ -1,18 +1,21 @@
 """A ROS context for checks alone: fresh, on the judge's domain, and rclpy's default for as long as a check runs.
 
-A student's class says ``super().__init__("talker_node")`` and means the default context. While a check runs, that is
+A student's class says ``super().__init__("talker_node")`` and means the default context. While a check runs,
+that is
 this one, so that nodes of the notebook's demonstrations are neither heard nor disturbed.
 """
 
 from __future__ import annotations
 
-from types import TracebackType
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import rclpy
 import rclpy.utilities
 from rclpy.context import Context
 from rclpy.signals import SignalHandlerOptions
+
+if TYPE_CHECKING:
+    from types import TracebackType
 
 _GLOBAL_EXECUTOR = "__executor"
 """The name in ``rclpy/__init__.py``."""
@@ -66,4 +69,4 @@ class CheckContext:
     @staticmethod
     def _put(context: Context | None) -> None:
         with rclpy.utilities.g_context_lock:
-            rclpy.utilities.g_default_context = context
+            rclpy.utilities.g_default_context = context  # type: ignore[assignment]

@@ -1,12 +1,14 @@
 """The notebook's end of the conversation with the judge, and the judge process where nobody has given one.
 
-It speaks the words that ``autograder/judge/link.py`` lists, and shares no code with the judge on purpose: what runs
+It speaks the words that ``autograder/judge/link.py`` lists, and shares no code with the judge on purpose:
+what runs
 here is in the student's hands.
 """
 
 from __future__ import annotations
 
 import atexit
+import contextlib
 import json
 import os
 import secrets
@@ -49,11 +51,8 @@ class JudgeLink:
     def say(self, word: str, **rest: Any) -> None:
         """Say one thing; nothing happens when the judge is gone, which :meth:`hear` tells."""
         line = json.dumps({"say": word, **rest}, default=str).encode() + b"\n"
-        with self._lock:
-            try:
-                self._socket.sendall(line)
-            except OSError:
-                pass
+        with self._lock, contextlib.suppress(OSError):
+            self._socket.sendall(line)
 
     def hear(self) -> dict[str, Any]:
         """The judge's next words.

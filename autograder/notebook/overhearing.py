@@ -1,6 +1,7 @@
 """What a subject says while it is checked: its log lines and what it prints, told to the judge and kept off the cell.
 
-Only threads that began with the check are overheard, so that a demonstration node that still runs in the background
+Only threads that began with the check are overheard, so that a demonstration node that still runs in the
+background
 is not taken for the subject.
 """
 
@@ -10,11 +11,13 @@ import os
 import sys
 import threading
 import traceback
-from collections.abc import Callable
-from types import TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.impl.rcutils_logger import RcutilsLogger
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import TracebackType
 
 
 class Overhearing:
@@ -33,14 +36,15 @@ class Overhearing:
     def __enter__(self) -> Self:
         self._usual_log = RcutilsLogger.log
         self._usual_streams = (sys.stdout, sys.stderr)
-        usual_log, overheard = self._usual_log, self._overheard
+        usual_log: Any = self._usual_log
+        overheard = self._overheard
 
         def log(logger: RcutilsLogger, message: Any, severity: Any, **options: Any) -> bool:
             if overheard():
                 self._tell(str(message))
-            return usual_log(logger, message, severity, **options)
+            return bool(usual_log(logger, message, severity, **options))
 
-        RcutilsLogger.log = log
+        setattr(RcutilsLogger, "log", log)  # noqa: B010  (mypy forbids to assign to a method)
         sys.stdout = _Ear(sys.stdout, self._tell, overheard)
         sys.stderr = _Ear(sys.stderr, self._tell, overheard)
         self._silence_compiled_code()
@@ -49,7 +53,7 @@ class Overhearing:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        RcutilsLogger.log = self._usual_log
+        setattr(RcutilsLogger, "log", self._usual_log)  # noqa: B010
         for ear in (sys.stdout, sys.stderr):
             if isinstance(ear, _Ear):
                 ear.finish()
@@ -68,7 +72,9 @@ class Overhearing:
                 continue
             lines.append(f"Thread {thread.name} (most recent call first):")
             calls = traceback.extract_stack(frames[thread.ident])
-            lines += [f'  File "{call.filename}", line {call.lineno} in {call.name}' for call in reversed(calls)]
+            lines += [
+                f'  File "{call.filename}", line {call.lineno} in {call.name}' for call in reversed(calls)
+            ]
         return "\n".join(lines)
 
     def _overheard(self) -> bool:

@@ -7,15 +7,17 @@ import inspect
 import threading
 import traceback
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Empty
 
 from autograder.notebook.spin_threads import Failure, SpinThreads
 from autograder.notebook.student_tracebacks import student_frames
+
+if TYPE_CHECKING:
+    from rclpy.context import Context
 
 Tell = Callable[..., None]
 """Tells the judge one word with its data."""
@@ -44,7 +46,8 @@ class SubjectRun:
 
         Args:
             arguments: What the class or function is called with.
-            options: Passed on where a function has parameters of these names; for a class, ``threads`` says how
+            options: Passed on where a function has parameters of these names; for a class, ``threads`` says
+                how
                 many threads spin it.
         """
         self._arguments, self._options = arguments, options
@@ -83,7 +86,9 @@ class SubjectRun:
     def _make_and_spin(self) -> None:
         node = self._subject(*self._arguments)
         if not isinstance(node, Node):
-            raise TypeError(f"{self._subject.__name__} is no Node: write class {self._subject.__name__}(Node)")
+            raise TypeError(
+                f"{self._subject.__name__} is no Node: write class {self._subject.__name__}(Node)"
+            )
         self._tell("constructed", marker=_mark(node, self._number))
         self._released.wait()
         threads = SpinThreads(

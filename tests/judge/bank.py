@@ -1,6 +1,7 @@
 """The bank of right and wrong answers as data, and a program that judges it.
 
-By hand: ``python tests/judge/bank.py --repeat 10 --busy 2`` judges everything ten times beside two busy loops and
+By hand: ``python tests/judge/bank.py --repeat 10 --busy 2`` judges everything ten times beside two busy loops
+and
 prints what did not come out as expected.
 """
 
@@ -12,11 +13,14 @@ import select
 import sys
 import time
 import tomllib
-from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from autograder.verdict import Verdict, from_json
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
 
 ROOT = Path(__file__).resolve().parents[1] / "submissions"
 
@@ -62,7 +66,9 @@ def answers() -> Iterator[Answer]:
         for kind in ("correct", "wrong"):
             for name, entry in table.get(kind, {}).items():
                 file = expected.parent / kind / name
-                command = tuple(part.format(file=file) for part in entry.get("command", ["python3", "{file}"]))
+                command = tuple(
+                    part.format(file=file) for part in entry.get("command", ["python3", "{file}"])
+                )
                 diagnoses = (entry["diagnosis"], *entry.get("also", ())) if kind == "wrong" else ()
                 yield Answer(table["exercise"], file, (sys.executable, *command[1:]), diagnoses)
 
@@ -109,9 +115,8 @@ def warm_up() -> None:
     from autograder.judge import settings
 
     settings.prepare_judge()
-    from autograder.judge import command_subject, trial, warm
+    from autograder.judge import warm
 
-    assert trial and command_subject
     warm.imports()
 
 
@@ -127,8 +132,12 @@ def main() -> int:
     parser.add_argument("--repeat", type=int, default=1)
     parser.add_argument("--busy", type=int, default=0, help="busy loops beside it")
     parser.add_argument("--jobs", type=int, default=8)
-    parser.add_argument("--lines", action="store_true", help="print each verdict as a line of JSON (for the tests)")
-    parser.add_argument("--slow", type=float, default=0.0, help="also name checks of at least so many seconds")
+    parser.add_argument(
+        "--lines", action="store_true", help="print each verdict as a line of JSON (for the tests)"
+    )
+    parser.add_argument(
+        "--slow", type=float, default=0.0, help="also name checks of at least so many seconds"
+    )
     chosen = parser.parse_args()
     wanted = [a for a in answers() if not chosen.only or any(part in a.name for part in chosen.only)]
     loops = [multiprocessing.Process(target=_busy, daemon=True) for _ in range(chosen.busy)]
@@ -153,7 +162,10 @@ def main() -> int:
         began = time.monotonic()
         judge_all(wanted, jobs=chosen.jobs, seed=f"turn {turn}", done=done)
         if not chosen.lines:
-            print(f"turn {turn + 1}: {len(wanted)} answers in {time.monotonic() - began:.0f} s, {objections} objections")
+            print(
+                f"turn {turn + 1}: {len(wanted)} answers in {time.monotonic() - began:.0f} s, {objections} "
+                f"objections"
+            )
     for loop in loops:
         loop.terminate()
     return 1 if objections else 0

@@ -21,7 +21,8 @@ BANK = list(answers())
 @pytest.fixture(scope="session")
 def verdicts(request: pytest.FixtureRequest) -> dict[str, Verdict]:
     """The verdicts on all answers that this session asks for, judged several at a time."""
-    wanted = [item.callspec.params["answer"].name for item in request.session.items if "verdicts" in _fixtures(item)]
+    asking = [item for item in request.session.items if "verdicts" in getattr(item, "fixturenames", ())]
+    wanted = [getattr(item, "callspec").params["answer"].name for item in asking]  # noqa: B009  (untyped in pytest)
     done = subprocess.run(
         [sys.executable, str(Path(__file__).with_name("bank.py")), "--lines", *wanted],
         stdout=subprocess.PIPE,
@@ -30,10 +31,6 @@ def verdicts(request: pytest.FixtureRequest) -> dict[str, Verdict]:
     )
     pairs = (line.split(" ", 1) for line in done.stdout.splitlines())
     return {name: from_json(verdict) for name, verdict in pairs}
-
-
-def _fixtures(item: pytest.Item) -> list[str]:
-    return list(getattr(item, "fixturenames", ()))
 
 
 @pytest.mark.ros
@@ -53,6 +50,8 @@ def test_the_bank_is_large_enough(exercise_id: str) -> None:
 
 def test_every_program_is_in_its_table() -> None:
     listed = {answer.file for answer in BANK}
-    there = {file for kind in ("correct", "wrong") for file in Path(BANK[0].file.parents[2]).glob(f"*/{kind}/*.py")}
+    there = {
+        file for kind in ("correct", "wrong") for file in Path(BANK[0].file.parents[2]).glob(f"*/{kind}/*.py")
+    }
     there = {file for file in there if file.parents[1].name in exercises.all_ids()}
     assert listed == there

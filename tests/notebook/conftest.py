@@ -17,8 +17,8 @@ from rclpy.node import Node
 from std_msgs.msg import String
 
 from autograder.notebook.executors import stop_all
-from autograder.ros_domain import claim_free_domain
 from autograder.notebook.ros_session import start_ros
+from autograder.ros_domain import claim_free_domain
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

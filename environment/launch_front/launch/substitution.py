@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from .launch_context import LaunchContext
 
 
-class SubstitutionFailure(Exception):  # noqa: N818 (the name that launch files import)
+class SubstitutionFailure(Exception):
     """A substitution has no value."""
 
 
