@@ -49,7 +49,7 @@ def test_topics_services_and_actions_are_seen(make: Callable[..., Node]) -> None
     ends = (ActionServer(one, Fibonacci, "count", print), ActionClient(other, Fibonacci, "/count"))
     graph = read_graph()
     for end in ends:
-        end.destroy()  # they would outlive their nodes
+        end.destroy()  # type: ignore[no-untyped-call]  # they would outlive their nodes
     add = Channel(Kind.SERVICE, "/add", "my_robot_interfaces/srv/AddTwoInts")
     count = Channel(Kind.ACTION, "/count", "my_robot_interfaces/action/Fibonacci")
     assert graph.nodes == ("/desk/other", "/one")
