@@ -9,18 +9,16 @@ from __future__ import annotations
 
 import contextlib
 import os
-import sqlite3
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import sqlalchemy.exc
 from rich.console import Console
 
 from autograder.grading import engine, gradebook
 from autograder.grading.class_directory import ClassDirectory, Refused, Submission
-from autograder.grading.errors import ClassIncomplete, DiskFull, GradingError, is_disk_full
+from autograder.grading.errors import ClassIncomplete, GradingError, clear_disk_errors, is_disk_full
 from autograder.grading.journal import Journal
 from autograder.grading.preparing import tasks_of
 from autograder.grading.progress import BatchProgress
@@ -87,7 +85,7 @@ def grade(
     began = time.monotonic()
     directory = ClassDirectory(Path(path))
     console = console or Console(stderr=True)
-    with directory.lock(), _disk_full_is_clear(directory.path):
+    with directory.lock(), clear_disk_errors(directory.path):
         _check_release(directory)
         batch = _Batch(directory, console, jobs or os.cpu_count() or 1, judge)
         batch.collect(assignments, students)
@@ -296,13 +294,3 @@ def _check_release(directory: ClassDirectory) -> None:
                     f"{directory.path / 'source' / assignment}. Enter it: "
                     f"cd {directory.path} && nbgrader generate_assignment {assignment} --force"
                 )
-
-
-@contextlib.contextmanager
-def _disk_full_is_clear(path: Path) -> Iterator[None]:
-    try:
-        yield
-    except (OSError, NotWritten, sqlite3.Error, sqlalchemy.exc.SQLAlchemyError) as error:
-        if is_disk_full(error):
-            raise DiskFull(path) from error
-        raise

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
 
@@ -64,3 +66,28 @@ def is_disk_full(error: BaseException | None) -> bool:
             return True
         error = error.__cause__ or error.__context__
     return False
+
+
+@contextlib.contextmanager
+def clear_disk_errors(path: Path) -> Iterator[None]:
+    """Say in an instructor's words what the disk says.
+
+    Args:
+        path: The class that is worked on.
+
+    Raises:
+        DiskFull: There is no room left, whoever noticed it.
+        GradingError: Something may not be read or written.
+    """
+    try:
+        yield
+    except GradingError:
+        raise
+    except Exception as error:
+        if is_disk_full(error):
+            raise DiskFull(path) from error
+        if isinstance(error, PermissionError):
+            raise GradingError(
+                f"{error.filename or path} may not be read or written by you. Look at its owner and its mode."
+            ) from error
+        raise

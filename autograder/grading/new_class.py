@@ -11,7 +11,7 @@ from nbgrader.coursedir import CourseDirectory
 
 from autograder.grading import nodes
 from autograder.grading.class_directory import CONFIG_NAME, STATE_NAME, ClassDirectory
-from autograder.grading.errors import ClassExists, GradingError
+from autograder.grading.errors import ClassExists, GradingError, clear_disk_errors
 from autograder.grading.seeds import create_secret
 from autograder.grading.writer import quiet
 from autograder.masters.errors import MasterError
@@ -117,14 +117,15 @@ def new_class(
     _check_place(path, course_root)
     sources = _sources(course_root, assignments)
     made_folder = not path.exists()
-    path.mkdir(parents=True, exist_ok=True)
     try:
-        _fill(path, sources, CONFIG.format(cell_seconds=cell_seconds, notebook_seconds=notebook_seconds))
+        with clear_disk_errors(path):
+            path.mkdir(parents=True, exist_ok=True)
+            _fill(path, sources, CONFIG.format(cell_seconds=cell_seconds, notebook_seconds=notebook_seconds))
     except BaseException:
         # Half a class would only be in the way of the next try.
-        for entry in path.iterdir():
+        for entry in path.iterdir() if path.is_dir() else ():
             shutil.rmtree(entry) if entry.is_dir() else entry.unlink()
-        if made_folder:
+        if made_folder and path.is_dir():
             path.rmdir()
         raise
     return NewClass(path, tuple(sources))

@@ -11,12 +11,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import msgspec
-from nbgrader.converters import Autograde, GenerateFeedback, NbGraderException
+from nbgrader.converters import Autograde, BaseConverter, GenerateFeedback, NbGraderException
 from nbgrader.coursedir import CourseDirectory
 from traitlets.config import Config
 
 from autograder.grading import gradebook
 from autograder.grading.class_directory import SUFFIX, ClassDirectory, Submission
+from autograder.grading.errors import is_disk_full
 from autograder.grading.journal import write_whole
 from autograder.grading.points import scores_of
 
@@ -122,8 +123,11 @@ class Writer:
         Raises:
             OSError: There is no room on the disk.
         """
+        converter = _Feedback(assignment, submissions, self._course())
         with quiet(self._directory.state), contextlib.suppress(NbGraderException):
-            _Feedback(assignment, submissions, self._course()).start()
+            converter.start()
+        if converter.cause is not None and is_disk_full(converter.cause):
+            raise converter.cause
 
     def has_feedback(self, submission: Submission, tasks: Sequence[Task]) -> bool:
         """Whether there is a page for each notebook."""
@@ -149,7 +153,21 @@ class Writer:
         return self._records / submission.assignment / f"{submission.student}.json"
 
 
-class _Autograde(Autograde):
+class _Remembering(BaseConverter):
+    """A conversion that remembers what went wrong, which nbgrader only logs."""
+
+    cause: BaseException | None = None
+
+    def convert_single_notebook(self, notebook_filename: str) -> None:
+        """Convert one notebook."""
+        try:
+            super().convert_single_notebook(notebook_filename)
+        except Exception as error:
+            self.cause = error
+            raise
+
+
+class _Autograde(_Remembering, Autograde):
     """nbgrader's conversion of one submission.
 
     It expects the notebooks of the assignment, not those that happen to be in the folder: a notebook that was
@@ -163,7 +181,6 @@ class _Autograde(Autograde):
         super().__init__(coursedir=course, config=course.config)
         self.force = True
         self.finished = {task.key(): execution for task, execution in results}
-        self.cause: BaseException | None = None
         self._submission = submission
         self._expected = [str(submission.folder / f"{task.notebook}{SUFFIX}") for task, _ in results]
 
@@ -172,16 +189,8 @@ class _Autograde(Autograde):
         self.assignments = {str(self._submission.folder): self._expected}
         self.notebooks: list[str] = []
 
-    def convert_single_notebook(self, notebook_filename: str) -> None:
-        """Convert one notebook, remembering what nbgrader would only log."""
-        try:
-            super().convert_single_notebook(notebook_filename)
-        except Exception as error:
-            self.cause = error
-            raise
 
-
-class _Feedback(GenerateFeedback):
+class _Feedback(_Remembering, GenerateFeedback):
     """nbgrader's feedback for some submissions of one assignment."""
 
     def __init__(self, assignment: str, submissions: Sequence[Submission], course: CourseDirectory) -> None:
@@ -201,11 +210,18 @@ class _Feedback(GenerateFeedback):
             self.assignments[str(folder)] = sorted(str(path) for path in folder.glob(f"*{SUFFIX}"))
 
 
+class _LogFile(logging.FileHandler):
+    """A log that gives up in silence: on a full disk its own complaints would drown the one that counts."""
+
+    def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802  (logging's name)
+        """Do nothing."""
+
+
 @contextlib.contextmanager
 def quiet(state: Path) -> Iterator[None]:
     """Nbgrader's words go to a file beside the class, not between the lines of a progress bar."""
     logger = logging.getLogger("traitlets")
-    handler = logging.FileHandler(state / "nbgrader.log", delay=True)
+    handler = _LogFile(state / "nbgrader.log", delay=True)
     handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
     before, propagates = list(logger.handlers), logger.propagate
     logger.handlers[:] = [handler]

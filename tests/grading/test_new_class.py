@@ -1,16 +1,14 @@
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import errno
+from pathlib import Path
 
 import nbformat
 import pytest
 from conftest import MASTER, TinyClass
 
-from autograder.grading.errors import ClassExists, GradingError
+from autograder.grading.errors import ClassExists, DiskFull, GradingError
 from autograder.grading.new_class import new_class
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 @pytest.fixture
@@ -76,6 +74,29 @@ def test_half_a_class_is_removed_again(course: Path, tmp_path: Path, monkeypatch
     with pytest.raises(GradingError, match="could not generate the assignment lab_1_2"):
         new_class(tmp_path / "class", course)
     assert not (tmp_path / "class").exists()
+
+
+def test_a_full_disk_is_said_and_leaves_nothing(
+    course: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_text", full)
+    with pytest.raises(DiskFull, match="Free some room"):
+        new_class(tmp_path / "class", course)
+    assert not (tmp_path / "class").exists()
+
+
+def test_a_place_that_may_not_be_written_is_said(
+    course: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def forbidden(path: Path, *_: object, **__: object) -> None:
+        raise PermissionError(errno.EACCES, "Permission denied", str(path))
+
+    monkeypatch.setattr(Path, "mkdir", forbidden)
+    with pytest.raises(GradingError, match="may not be read or written by you"):
+        new_class(tmp_path / "class", course)
 
 
 def test_a_bad_master_is_said_and_leaves_nothing(course: Path, tmp_path: Path) -> None:
