@@ -1,0 +1,36 @@
+"""A subject that does nothing earns nothing, whatever the exercise."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder import exercises
+from autograder.exercises.evidence import Event, Evidence, Part
+from autograder.judge import reference
+
+
+@pytest.mark.parametrize("exercise_id", exercises.all_ids())
+@pytest.mark.parametrize("nodes", [[], ["/a_node"]], ids=["nothing", "a bare node"])
+def test_doing_nothing_earns_nothing(exercise_id: str, nodes: list[str]) -> None:
+    stored = reference.load(exercise_id)
+    survey = Event(0.5, "interface", "graph", {"nodes": nodes})
+    returned = Event(0.6, "subject", "returned", {"value": None})
+    parts = [Part(part.name, part.inputs, [survey, returned]) for part in stored.parts]
+    evidence = Evidence(parts, stored)
+    passed = [c.name for c in exercises.get(exercise_id).criteria if c.judge(evidence).passed]
+    assert passed == []
+
+
+@pytest.mark.parametrize("exercise_id", exercises.all_ids())
+def test_an_exercise_is_worth_ten_points(exercise_id: str) -> None:
+    assert exercises.get(exercise_id).points == 10
+
+
+@pytest.mark.parametrize("exercise_id", exercises.all_ids())
+def test_each_criterion_and_mistake_can_look_at_any_evidence(exercise_id: str) -> None:
+    exercise = exercises.get(exercise_id)
+    evidence = Evidence([], reference.load(exercise_id))
+    for criterion in exercise.criteria:
+        assert not criterion.judge(evidence).passed
+    for mistake in exercise.mistakes:
+        mistake.recognise(evidence)

@@ -1,0 +1,57 @@
+"""What the grader expects follows from the reference solution, and from nothing else."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+TALKER = """
+import rclpy
+from std_msgs.msg import String
+
+rclpy.init()
+node = rclpy.create_node("talker")
+publisher = node.create_publisher(String, "{topic}", 10)
+count = iter(range(1000))
+node.create_timer(0.5, lambda: publisher.publish(String(data=f"Hello, world! {{next(count)}}")))
+rclpy.spin(node)
+"""
+
+
+def _autograder(*words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "autograder", *words], capture_output=True, text=True, check=False, timeout=120
+    )
+
+
+@pytest.mark.ros
+def test_recording_again_gives_the_same_file() -> None:
+    done = _autograder("record", "--check", "lab_1_2.talker", "exercise_1_3.cancel")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.count("unchanged") == 2
+
+
+@pytest.mark.ros
+def test_a_changed_reference_solution_changes_what_is_expected(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shutil.copytree(ROOT / "solutions", tmp_path / "solutions")
+    master = tmp_path / "solutions" / "01_ros2_fundamentals" / "lab_1_2.md"
+    text = master.read_text(encoding="utf-8")
+    assert '"chatter"' in text
+    master.write_text(text.replace('"chatter"', '"gossip"'), encoding="utf-8")
+    monkeypatch.setenv("AUTOGRADER_COURSE", str(tmp_path))
+    recorded = _autograder("record", "lab_1_2.talker")
+    assert recorded.returncode == 0, recorded.stderr
+
+    codes = {}
+    for topic in ("chatter", "gossip"):
+        program = tmp_path / f"{topic}.py"
+        program.write_text(TALKER.format(topic=topic), encoding="utf-8")
+        codes[topic] = _autograder("check", "lab_1_2.talker", "--", sys.executable, str(program)).returncode
+    assert codes == {"chatter": 1, "gossip": 0}
