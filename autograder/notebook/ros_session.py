@@ -25,6 +25,9 @@ _DEFAULTS = {
     # A log line on stderr makes stock nbgrader give a right answer no points.
     "RCUTILS_LOGGING_USE_STDOUT": "1",
     "RCUTILS_COLORIZED_OUTPUT": "0",
+    # Line by line. Where a kernel's output does not go to a terminal (a batch, a hub), C's library would keep
+    # log lines back until there are 4 KB of them, and they would come under another cell or never.
+    "RCUTILS_LOGGING_BUFFERED_STREAM": "1",
     # A field of the wrong type is named at once, instead of arriving as garbage.
     _CHECK_FIELDS: "1",
 }
