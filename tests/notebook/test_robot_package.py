@@ -1,0 +1,94 @@
+"""Completing a student's package changes what is missing and nothing else."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.notebook.robot_package import complete_package
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SETUP = """\
+from setuptools import setup
+
+setup(
+    name="my_robot_pkg",
+    entry_points={
+        'console_scripts': [
+%s        ],
+    },
+)
+"""
+
+
+@pytest.fixture
+def source(tmp_path: Path) -> Path:
+    """A package as the course has one."""
+    folder = tmp_path / "source"
+    (folder / "my_robot_pkg").mkdir(parents=True)
+    (folder / "package.xml").write_text("<package/>")
+    (folder / "setup.py").write_text("course")
+    for name in ("talker", "listener"):
+        (folder / "my_robot_pkg" / f"{name}.py").write_text(f"the course's {name}")
+    return folder
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    """A student's package after lab 1.1."""
+    folder = tmp_path / "ros2_ws/src/my_robot_pkg"
+    (folder / "my_robot_pkg").mkdir(parents=True)
+    (folder / "package.xml").write_text("<package/>")
+    (folder / "setup.py").write_text(SETUP % "            'simple_node = my_robot_pkg.simple_node:main',\n")
+    return folder
+
+
+def entries(package: Path) -> list[str]:
+    tree = ast.parse((package / "setup.py").read_text())
+    (programs,) = (node for node in ast.walk(tree) if isinstance(node, ast.List))
+    return [ast.literal_eval(element) for element in programs.elts]
+
+
+def test_without_a_package_the_courses_own_is_taken(tmp_path: Path, source: Path) -> None:
+    assert "no my_robot_pkg" in complete_package(tmp_path / "ros2_ws", source)
+    assert (tmp_path / "ros2_ws/src/my_robot_pkg/setup.py").read_text() == "course"
+
+
+def test_what_is_missing_is_added_once(tmp_path: Path, source: Path, package: Path) -> None:
+    assert (
+        complete_package(tmp_path / "ros2_ws", source) == "Added to your my_robot_pkg: talker and listener."
+    )
+    assert entries(package) == [
+        "talker = my_robot_pkg.talker:main",
+        "listener = my_robot_pkg.listener:main",
+        "simple_node = my_robot_pkg.simple_node:main",
+    ]
+    assert (package / "my_robot_pkg/talker.py").read_text() == "the course's talker"
+    assert "Nothing was changed" in complete_package(tmp_path / "ros2_ws", source)
+    assert len(entries(package)) == 3
+
+
+def test_what_the_student_wrote_stays(tmp_path: Path, source: Path, package: Path) -> None:
+    (package / "setup.py").write_text(SETUP % '            "talker=my_robot_pkg.mine:main",\n')
+    (package / "my_robot_pkg/listener.py").write_text("mine")
+    assert complete_package(tmp_path / "ros2_ws", source) == "Added to your my_robot_pkg: listener."
+    assert entries(package) == ["listener = my_robot_pkg.listener:main", "talker=my_robot_pkg.mine:main"]
+    assert (package / "my_robot_pkg/listener.py").read_text() == "mine"
+    assert not (package / "my_robot_pkg/talker.py").exists()
+
+
+def test_an_entry_point_in_a_comment_does_not_count(tmp_path: Path, source: Path, package: Path) -> None:
+    (package / "setup.py").write_text(SETUP % "            # 'talker = my_robot_pkg.talker:main',\n")
+    assert "talker and listener" in complete_package(tmp_path / "ros2_ws", source)
+
+
+def test_a_setup_without_the_list_is_left_alone(tmp_path: Path, source: Path, package: Path) -> None:
+    (package / "setup.py").write_text("from setuptools import setup\n\nsetup()\n")
+    said = complete_package(tmp_path / "ros2_ws", source)
+    assert "no list of console_scripts" in said
+    assert '"talker = my_robot_pkg.talker:main",' in said
+    assert (package / "setup.py").read_text() == "from setuptools import setup\n\nsetup()\n"
