@@ -111,6 +111,8 @@ def _run(file: Path, socket: Path) -> str:
     """Run the program; what it printed, for the case that it fails."""
     done = subprocess.run(
         [sys.executable, str(file)],
+        # A solution about files writes them where it runs.
+        cwd=file.parent,
         env=os.environ | {"AUTOGRADER_JUDGE_SOCKET": str(socket)},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,

@@ -95,11 +95,15 @@ def _without_tracebacks(events: Sequence[Event]) -> Iterator[Event]:
         yield event
 
 
+REPORTS = ("@workspace ", "@process ")
+"""How a line begins that a runner reports: of a build, of a launched process. These are not the subject's words."""
 _PREFIX = re.compile(r"^\[\w+\] \[[\d.]+\] \[[^\]]*\]: ")
 """What rcutils puts before a line on a terminal: level, time stamp, logger. These are nobody's words."""
 
 
 def _spoken(event: Event) -> str | None:
+    if event.kind == "output" and str(event.data["text"]).startswith(REPORTS):
+        return None
     if event.kind in ("log", "output"):
         return _PREFIX.sub("", str(event.data["text"]))
     if event.kind == "subject" and event.name == "returned" and event.data.get("value") is not None:

@@ -168,6 +168,10 @@ class Bench(Protocol):
         """
         ...
 
+    def await_node(self) -> bool:
+        """Wait until a node of the subject's is on the graph; gives up when the subject has ended."""
+        ...
+
     def listen(self, topic: str, type_name: str) -> None:
         """Subscribe as the course's listener does: reliable, so that a best-effort talker is found out."""
         ...
@@ -194,6 +198,18 @@ class Bench(Protocol):
         self, action: str, type_name: str, *, accept_goal: bool = True, accept_cancel: bool = True
     ) -> ActionCounterpart:
         """Serve an action whose every step the scenario decides."""
+        ...
+
+    def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
+        """Put a node of the judge's on the graph for the subject to look at; ``{topic: type}`` for each side."""
+        ...
+
+    def compare_type(self, service: str, like: str) -> None:
+        """Write down whether the type of a service of the subject's has the fields of the type ``like``."""
+        ...
+
+    def note_its_log(self) -> None:
+        """Write down each text of its log once, for the reference output."""
         ...
 
     def heard(self, topic: str) -> int:
@@ -269,6 +285,9 @@ class Exercise:
         arguments: What a command is called with, in words; empty where it takes none.
         sample_arguments: Arguments with which ``record`` looks at the reference solution's interface.
         second_look: Whether what fails fast is looked at again in real time.
+        runner: What `autograder.workspaces` does with a path that is given in place of a command: ``"hello"``,
+            ``"interface"`` or ``"launch"``; empty where a path is no subject.
+        wraps_commands: Whether commands are run by that runner too.
     """
 
     id: str
@@ -282,6 +301,8 @@ class Exercise:
     arguments: str = ""
     sample_arguments: tuple[Any, ...] = field(default=())
     second_look: bool = True
+    runner: str = ""
+    wraps_commands: bool = False
 
     @property
     def points(self) -> float:

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.exercises.evidence import Evidence, Part, Reference
 from autograder.exercises.model import Look
-from autograder.judge import clock, graph
+from autograder.judge import clock, graph, type_hashes
 from autograder.judge.action_client import RecordedActionClient
 from autograder.judge.actions import ScriptedActionServer
 from autograder.judge.callers import RecordedCaller
 from autograder.judge.clock import SimulatedClock
+from autograder.judge.interfaces import service_fields
+from autograder.judge.planted import PlantedNode
 from autograder.judge.recorder import Recorder
 from autograder.judge.services import Answer, RecordedServer
 from autograder.judge.topics import Ear, LogReader, Mouth
@@ -148,6 +150,16 @@ class TestBench:
             lambda: counterpart.matched > 0 or self._subject.ended or self._mismatched(name), MATCH
         )
 
+    def await_node(self) -> bool:
+        """Wait until a node of the subject's is on the graph; gives up when the subject has ended."""
+
+        def there() -> bool:
+            return bool(graph.subject_nodes(self.wire.node))
+
+        self._recorder.wait(lambda: there() or self._subject.ended, APPEAR, poll=GRAPH_POLL)
+        self.note_interface()
+        return there()
+
     def await_any_endpoint(self, roles: tuple[str, ...]) -> graph.Interface:
         """Wait until the subject has an endpoint of one of these roles; the whole interface as it is then."""
         self._await_graph(lambda: any(self._survey()[role] for role in roles))
@@ -197,6 +209,10 @@ class TestBench:
         self._mouths[topic] = mouth
         self._open.callback(self.wire.node.destroy_publisher, mouth.publisher)
         return mouth
+
+    def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
+        """Put a node on the graph until the part ends."""
+        self._open.callback(PlantedNode(self.wire, name, publishes=publishes, subscribes=subscribes).close)
 
     def serve(self, service: str, type_name: str, answer: Answer) -> RecordedServer:
         """Serve until the part ends."""
@@ -323,6 +339,24 @@ class TestBench:
 
         self._recorder.wait(over, within)
         return holds()
+
+    def compare_type(self, service: str, like: str) -> None:
+        """Write down whether a service's type has the fields of the type ``like``, by its hashes on the graph."""
+        made = self._survey()["service"].get(service, "")
+        expected = type_hashes.expected_hashes(like, made.partition("/")[0])
+        seen: dict[str, str] = {}
+
+        def announced() -> bool:
+            seen.update(type_hashes.served_hashes(self.wire.node, service))
+            return len(seen) == len(expected) or self._subject.ended
+
+        self._recorder.wait(announced, MATCH, poll=GRAPH_POLL)
+        self._recorder.record("type", service, type=made, same=seen == expected, fields=service_fields(like))
+
+    def note_its_log(self) -> None:
+        """Write down each text of its log once, for the reference output."""
+        for text in dict.fromkeys(event.data["text"] for event in self._recorder.part().of("log")):
+            self._recorder.record("said", "log", text=text)
 
     def inputs(self) -> Mapping[str, Any]:
         """The inputs of the part that is running."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import secrets
 import shutil
+import sys
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import exercises
@@ -13,7 +15,6 @@ from autograder.verdict import Verdict, from_json, not_checked, to_json
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from autograder.exercises.model import Exercise
 
@@ -22,6 +23,8 @@ class CommandNotFound(LookupError):
     """The command does not exist or may not be executed."""
 
 
+LAUNCH_FILES = (".py", ".xml", ".yaml", ".yml")
+"""How a launch file's name ends."""
 SPARE = 10.0
 """Seconds beyond an exercise's own limit before its judge is taken to have died."""
 
@@ -45,7 +48,7 @@ def check_command(
         CommandNotFound: There is no such program.
     """
     exercise = exercises.get(exercise_id)
-    if shutil.which(command[0], path=_search_path(cwd)) is None:
+    if not is_path(exercise, command, cwd) and shutil.which(command[0], path=_search_path(cwd)) is None:
         raise CommandNotFound(
             f"there is no program {command[0]!r} to run here; is it spelt right, and executable?"
         )
@@ -57,6 +60,22 @@ def check_command(
             exercise.id, exercise.title, exercise.points, outcome.trouble, "Run `autograder doctor`."
         )
     return from_json(outcome.data)
+
+
+def as_run(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> Sequence[str]:
+    """The command that is really run: a path in place of a command is built, run or launched by a runner."""
+    runner = [sys.executable, "-m", "autograder.workspaces", exercise.id]
+    if is_path(exercise, command, cwd):
+        return [*runner, command[0]]
+    return [*runner, "--", *command] if exercise.wraps_commands else command
+
+
+def is_path(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> bool:
+    """Whether a command is the path of a workspace or a launch file, for an exercise that takes one."""
+    if not exercise.runner or len(command) != 1:
+        return False
+    path = Path(cwd or ".", command[0])
+    return path.is_dir() if exercise.runner != "launch" else path.suffix in LAUNCH_FILES
 
 
 def _search_path(cwd: Path | None) -> str | None:
@@ -76,8 +95,7 @@ def judged_here(exercise: Exercise, command: Sequence[str], seed: str, cwd: Path
     try:
         expected = reference.load(exercise.id)
         with domain.lease() as domain_id:
-            return trial.check(
-                exercise, CommandSubject(command, cwd), expected, seed=seed, domain_id=domain_id
-            )
+            subject = CommandSubject(as_run(exercise, command, cwd), cwd)
+            return trial.check(exercise, subject, expected, seed=seed, domain_id=domain_id)
     except (domain.NoFreeDomainError, reference.NoReference, JudgeFailed) as error:
         return not_checked(exercise.id, exercise.title, exercise.points, str(error))

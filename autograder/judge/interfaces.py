@@ -29,6 +29,13 @@ def interface(type_name: str) -> Any:
         ) from error
 
 
+def service_fields(type_name: str) -> dict[str, dict[str, str]]:
+    """The fields of a service type in their order: ``{"request": {name: type}, "response": {name: type}}``."""
+    service = interface(type_name)
+    sides = {"request": service.Request, "response": service.Response}
+    return {side: dict(message.get_fields_and_field_types()) for side, message in sides.items()}
+
+
 def to_data(message: Any) -> Any:
     """A message as JSON-able data: nested dicts, lists, numbers, text; bytes as a list of numbers."""
     if hasattr(message, "get_fields_and_field_types"):

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 _KEPT = (
     "message", "sent", "request", "response", "goal", "feedback", "cancel", "result", "asked", "answered",
     "goal_sent", "goal_answer", "feedback_heard", "cancel_sent", "cancel_answer", "result_heard",
+    "said", "type",
 )  # fmt: skip
 
 _MACHINE = ("number", "sent")

@@ -118,6 +118,10 @@ class RemoteSubject:
         elif say == "constructed":
             self._marker = _text(message.get("marker"))[:200] or None
             recorder.record("subject", "constructed")
+        elif say == "exited":
+            self._ended = True
+            code = message.get("code")
+            recorder.record("subject", "exited", code=code if isinstance(code, int) else None)
         elif say == "callback_raised":
             recorder.record("subject", "callback_raised", traceback=_text(message.get("traceback")))
         elif say in ("returned", "raised"):

@@ -9,6 +9,7 @@ from autograder.cards.bundle import mimebundle
 from autograder.notebook.check_context import CheckContext
 from autograder.notebook.judge_link import JudgeLink, JudgeUnreachable
 from autograder.notebook.overhearing import Overhearing
+from autograder.notebook.path_run import PathRun, is_path
 from autograder.notebook.ros_session import prepare_environment
 from autograder.notebook.subject_run import SubjectRun
 from autograder.verdict import Verdict, from_builtins, not_checked
@@ -21,15 +22,16 @@ def check(exercise: str, subject: Any) -> float:
 
     Args:
         exercise: The exercise's id, such as ``"lab_1_2.talker"``.
-        subject: A class derived from ``Node``, or a function; not an instance and not the result of a call.
+        subject: A class derived from ``Node``, or a function; not an instance and not the result of a call. For
+            an exercise about files, the path of the workspace or of the launch file.
 
     Returns:
         The points earned. A grader takes its points from the judge itself, not from here.
 
     Raises:
-        TypeError: The subject is neither a class nor a function; the message says what to write instead.
+        TypeError: The subject is neither a class nor a function nor a path; the message says what to write instead.
     """
-    if not (inspect.isclass(subject) or callable(subject)):
+    if not (inspect.isclass(subject) or callable(subject) or is_path(subject)):
         raise TypeError(_what_to_pass(exercise, subject))
     prepare_environment()
     verdict = _ask(exercise, subject)
@@ -62,7 +64,7 @@ def _converse(link: JudgeLink, exercise: str, subject: Any) -> Verdict:
     first = link.hear()
     if first["say"] != "begin":
         return _last_words(exercise, first)
-    run: SubjectRun | None = None
+    run: SubjectRun | PathRun | None = None
     number = 0
 
     def tell_output(line: str) -> None:
@@ -77,7 +79,11 @@ def _converse(link: JudgeLink, exercise: str, subject: Any) -> Verdict:
                 if say == "start":
                     place.ensure(fresh=bool(words.get("fresh")))
                     number = int(words["run"])
-                    run = SubjectRun(number, subject, place.context, link.say)
+                    run = (
+                        PathRun(number, exercise, subject, int(first["domain"]), link.say)
+                        if is_path(subject)
+                        else SubjectRun(number, subject, place.context, link.say)
+                    )
                     run.start(words["arguments"], words["options"])
                 elif say == "release" and run is not None:
                     run.release()

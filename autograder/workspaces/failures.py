@@ -1,0 +1,70 @@
+"""The one line of a build's log that tells why it failed."""
+
+from __future__ import annotations
+
+import re
+
+_COMPILER = re.compile(
+    r"^(?P<file>[^\s:][^:\n]*):(?P<line>\d+):(?:\d+:)? (?:fatal )?error: (?P<what>.*)$", re.MULTILINE
+)
+_CMAKE = re.compile(
+    r"^CMake Error at (?P<file>[^:\n]+):(?P<line>\d+)[^\n]*:\n+(?P<what>(?:[ \t]+\S.*\n?|\n(?=  \S))+)",
+    re.MULTILINE,
+)
+_CMAKE_PLAIN = re.compile(r"^CMake Error: (?P<what>.*)$", re.MULTILINE)
+_PYTHON = re.compile(
+    r"^(?P<what>(?:[\w.]*(?:Error|Exception|Invalid\w+)|[\w.]+\.[A-Z]\w+)(?::.*)?)$", re.MULTILINE
+)
+_PLACE = re.compile(r'^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)', re.MULTILINE)
+_SETUPTOOLS = re.compile(r"^error: (?P<what>.*)$", re.MULTILINE)
+_NINJA_MAKE = re.compile(r"^(?:make|gmake|ninja|---|<<<|>>>)")
+
+
+def telling_line(log: str) -> str:
+    """The line that matters of a failed build, with its place where one is named.
+
+    Args:
+        log: What colcon's commands printed, in order.
+
+    Returns:
+        One line; empty only for an empty log.
+    """
+    if found := _COMPILER.search(log):
+        return f"{_short(found['file'])}:{found['line']}: {found['what']}"
+    python = _python(log)
+    if found := _CMAKE.search(log):
+        # What a generator raised is the cause; that CMake's call of it failed is only the consequence.
+        if python and "execute_process" in found["what"]:
+            return python
+        what = " ".join(found["what"].split())
+        return f"{_short(found['file'])}:{found['line']}: {_first_sentences(what)}"
+    if found := _CMAKE_PLAIN.search(log):
+        return found["what"].strip()
+    if python:
+        return python
+    if found := _SETUPTOOLS.search(log):
+        return found["what"].strip()
+    lines = [line.strip() for line in log.splitlines() if line.strip() and not _NINJA_MAKE.match(line)]
+    return lines[-1] if lines else ""
+
+
+def _python(log: str) -> str:
+    errors = list(_PYTHON.finditer(log))
+    if not errors:
+        return ""
+    error = errors[-1]
+    own = [place for place in _PLACE.finditer(log, 0, error.start()) if "site-packages" not in place["file"]]
+    own = [
+        place for place in own if "/lib/python3" not in place["file"] and not place["file"].startswith("<")
+    ]
+    place = f"{_short(own[-1]['file'])}:{own[-1]['line']}: " if own else ""
+    return f"{place}{error['what'].strip()}"
+
+
+def _short(file: str) -> str:
+    """The last two parts of a path: the package and the file."""
+    return "/".join(file.split("/")[-2:])
+
+
+def _first_sentences(text: str, limit: int = 240) -> str:
+    return text if len(text) <= limit else text[: text.rfind(" ", 0, limit)] + " …"
