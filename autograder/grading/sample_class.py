@@ -108,15 +108,27 @@ def _make(path: Path, console: Console) -> None:
         shutil.rmtree(path)
     elif (path / CONFIG_NAME).exists():
         raise ClassExists(f"{path} is a class of your own. Name another folder: autograder demo FOLDER")
-    new_class(path, course.root(), cell_seconds=CELL_SECONDS, notebook_seconds=NOTEBOOK_SECONDS)
+    new_class(
+        path,
+        course.root(),
+        assignments=sorted({notebook.assignment for notebook in sample_notebooks()}),
+        cell_seconds=CELL_SECONDS,
+        notebook_seconds=NOTEBOOK_SECONDS,
+    )
     submit_sample(path)
     stamp.write_text(version)
 
 
 def _version(root: Path) -> str:
-    """Changes with the masters, with the bank and with the sample."""
+    """Changes with the masters and the answers that the sample is made of, and with the sample."""
     digest = hashlib.sha256(DATA.read_bytes())
-    for path in (*sorted((root / "solutions").glob("*/*.md")), *sorted((root / BANK).rglob("*.py"))):
+    notebooks = sample_notebooks()
+    names = {notebook.assignment for notebook in notebooks}
+    masters = [path for path in sorted((root / "solutions").glob("*/*.md")) if path.stem in names]
+    answers = [
+        root / BANK / file for file in sorted({file for notebook in notebooks for file in notebook.bank})
+    ]
+    for path in (*masters, *answers):
         digest.update(path.read_bytes())
     return digest.hexdigest()
 
