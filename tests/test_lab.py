@@ -1,0 +1,123 @@
+"""What ``autograder lab`` prepares before JupyterLab takes over."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jupyter_core.paths import jupyter_config_path
+from jupyterlab.labapp import LabApp
+from jupyterlab_server.config import get_page_config
+
+from autograder.lab import NoSuchFolderError, open_lab
+from autograder.ros_domain import claim_free_domain
+
+VARIABLES = ("ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY", "JUPYTER_CONFIG_PATH")
+
+
+class Started:
+    """What JupyterLab would have started with."""
+
+    def __init__(self, argv: list[str]) -> None:
+        self.argv = argv
+        self.folder = Path.cwd()
+        self.environ = dict(os.environ)
+        labextensions = Path(sys.prefix) / "share/jupyter/labextensions"
+        self.disabled = get_page_config([str(labextensions)])["disabledExtensions"]
+        self.config_path = jupyter_config_path()
+        self.domain_is_held = not _can_claim(int(os.environ.get("ROS_DOMAIN_ID", "0")))
+
+
+def _can_claim(domain: int) -> bool:
+    try:
+        claim_free_domain([domain]).release()
+    except RuntimeError:
+        return False
+    return True
+
+
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[Started]:
+    """Collects what JupyterLab is started with, and forgets it all afterwards."""
+    found: list[Started] = []
+    for name in VARIABLES:
+        # Set first, so that what the code under test sets is taken back as well.
+        monkeypatch.setenv(name, "")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(LabApp, "launch_instance", lambda argv: found.append(Started(argv)))
+    return found
+
+
+def test_the_session_has_a_free_domain_of_its_own_and_stays_on_this_host(
+    started: list[Started], tmp_path: Path
+) -> None:
+    open_lab(tmp_path)
+    assert started[0].domain_is_held
+    assert started[0].environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
+
+
+def test_two_sessions_have_two_domains(
+    started: list[Started], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def start_another(argv: list[str]) -> None:
+        started.append(Started(argv))
+        if len(started) == 1:
+            monkeypatch.setenv("ROS_DOMAIN_ID", "")
+            open_lab(tmp_path)
+
+    monkeypatch.setattr(LabApp, "launch_instance", start_another)
+    open_lab(tmp_path)
+    assert len({session.environ["ROS_DOMAIN_ID"] for session in started}) == 2
+
+
+def test_what_the_user_chose_stays(
+    started: list[Started], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", "17")
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")
+    monkeypatch.setenv("JUPYTER_CONFIG_PATH", "/my/settings")
+    open_lab(tmp_path)
+    assert started[0].environ["ROS_DOMAIN_ID"] == "17"
+    assert started[0].environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "SUBNET"
+    assert "/my/settings" in started[0].config_path
+
+
+def test_a_student_has_validate_and_nothing_of_the_instructors(
+    started: list[Started], tmp_path: Path
+) -> None:
+    open_lab(tmp_path)
+    off = {name.partition(":")[2] for name in started[0].disabled if name.startswith("@jupyter/nbgrader:")}
+    assert off == {"assignment-list", "course-list", "create-assignment", "formgrader", "menu"}
+
+
+@pytest.mark.parametrize("chapters", [["01_first"], ["01_first", "02_second"]])
+def test_it_opens_the_folder_inside_the_only_chapter(
+    started: list[Started], tmp_path: Path, chapters: list[str]
+) -> None:
+    for name in (*chapters, ".ipynb_checkpoints"):
+        (tmp_path / name).mkdir()
+    open_lab(tmp_path, ["--no-browser"])
+    assert started[0].folder == tmp_path
+    inside: list[Any] = [f"--ServerApp.preferred_dir={tmp_path / chapters[0]}"] if len(chapters) == 1 else []
+    assert started[0].argv == [*inside, "--no-browser"]
+
+
+def test_a_folder_that_is_not_there_is_a_clear_error(tmp_path: Path) -> None:
+    with pytest.raises(NoSuchFolderError, match="is not a folder"):
+        open_lab(tmp_path / "nowhere")
+
+
+def test_the_command_ends_with_2_and_says_what_to_correct() -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "autograder", "lab", "--no-browser"],
+        env=os.environ | {"ROS_DOMAIN_ID": "one"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert "ROS_DOMAIN_ID is 'one'" in done.stderr
