@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 GOLDEN = Path(__file__).parent / "golden"
 
-HTML_TAGS = "bdi details div li p pre small span strong style summary table tbody td th thead tr ul"
+HTML_TAGS = "bdi code details div li p pre small span strong style summary table tbody td th thead tr ul"
 SVG_TAGS = "desc g line path svg text title"
 TAGS = set(f"{HTML_TAGS} {SVG_TAGS}".split())
 ARIA = "aria-hidden aria-label aria-level role scope tabindex"
@@ -257,3 +257,22 @@ def test_the_traceback_is_folded_under_its_last_line(load: Callable[[str], Verdi
     summary = words(folded.all("summary")[0])
     assert summary == "The traceback, ending in: AttributeError: 'String' object has no attribute 'dta'"
     assert html.unescape(folded.all("pre")[0].text()).rstrip() == verdict.detail.rstrip()
+
+
+@pytest.mark.parametrize(
+    ("advice", "codes"),
+    [
+        ("End it with `return result` or `raise`.", ["return result", "raise"]),
+        ("A lone ` is a character.", []),
+        ("`<script>` is text", ["<script>"]),
+    ],
+)
+def test_code_in_the_advice_is_set_as_code(
+    load: Callable[[str], Verdict], advice: str, codes: list[str]
+) -> None:
+    verdict = load("talker_wrong_topic")
+    assert verdict.diagnosis is not None
+    card = Tree(card_html(replace(verdict, diagnosis=replace(verdict.diagnosis, next_step=advice)))).root
+    (next_step,) = card.all(css_class="agc-next")
+    assert [code.text() for code in next_step.all("code")] == codes
+    assert ("`" in next_step.text()) == (not codes)
