@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "CRASHES",
+    "NEVER_CONSTRUCTED",
     "NOTHING_THERE",
     "OTHER_CRASHES",
     "ended_too_early",
@@ -220,6 +221,17 @@ def _nothing_on_the_graph(evidence: Evidence) -> Advice | None:
         "Make the node (rclpy.init(), then your class or create_node) and keep the program running.",
     )
 
+
+def _never_constructed(evidence: Evidence) -> Advice | None:
+    if not any(part.first("subject", "never_constructed") for part in evidence):
+        return None
+    return Advice(
+        "Making your node never comes to an end: its __init__ goes on and on, or waits for something.",
+        "Let __init__ only make what the node needs, and leave the work to callbacks: no loop and no wait in it.",
+    )
+
+
+NEVER_CONSTRUCTED = Mistake("never_ended", _never_constructed, certain=True)
 
 NOTHING_THERE = (
     Mistake("main_guard", _main_guard, certain=True),

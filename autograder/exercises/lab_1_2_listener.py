@@ -183,6 +183,7 @@ EXERCISE = Exercise(
     ),
     mistakes=(
         *common.CRASHES,
+        common.NEVER_CONSTRUCTED,
         common.endpoint_name("subscription"),
         common.message_type("subscription"),
         common.qos_mismatch("subscription"),

@@ -271,6 +271,7 @@ EXERCISE = Exercise(
     ),
     mistakes=(
         *common.CRASHES,
+        common.NEVER_CONSTRUCTED,
         common.endpoint_name("publisher"),
         common.message_type("publisher"),
         common.qos_mismatch("publisher"),

@@ -216,6 +216,10 @@ class Bench(Protocol):
         """How many messages arrived on a topic so far in this part."""
         ...
 
+    def doubt(self) -> None:
+        """What is seen in this look must be confirmed in real time."""
+        ...
+
     def settle(self) -> None:
         """Wait until the subject's executors have taken what was sent to them, as far as they turn at all.
 

@@ -17,6 +17,7 @@ from action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
 from action_msgs.srv import CancelGoal
 from rclpy.qos import QoSProfile, qos_profile_action_status_default
 
+from autograder.judge.answering import patiently
 from autograder.judge.interfaces import filled, interface, to_data
 
 if TYPE_CHECKING:
@@ -80,7 +81,9 @@ class ScriptedActionServer:
         )
         # rclpy answers a request when its callback returns; the answer to this one comes when the goal has
         # ended.
-        self._answer = self._results.send_response
+        for service in self._services:
+            patiently(service)
+        self._answer = patiently(self._results)
         self._results.send_response = self._answer_or_wait  # type: ignore[method-assign]
         self._services.append(self._results)
 

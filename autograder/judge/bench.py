@@ -89,7 +89,7 @@ class TestBench:
         self._in_part = False
         self.note_interface()
         self._clean = self._subject.ended
-        self.parts.append(self._recorder.part())
+        self.parts.append(_made(self._recorder.part()))
         self._subject.stop()
         self._open.close()
         self._ears, self._mouths, self._clock, self._clock_refused, self._deaf = {}, {}, None, False, set()
@@ -292,6 +292,10 @@ class TestBench:
         # One message may still have been on its way when the clock stopped.
         return lambda: heard() <= before + 1
 
+    def doubt(self) -> None:
+        """What is seen in this look must be confirmed in real time."""
+        self.doubtful = True
+
     def settle(self) -> None:
         """Ask each node of the subject's twice; a node that did not answer once is not asked again in this part."""
         for node in self._nodes():
@@ -361,6 +365,13 @@ class TestBench:
     def inputs(self) -> Mapping[str, Any]:
         """The inputs of the part that is running."""
         return self._recorder.part().inputs
+
+
+def _made(part: Part) -> Part:
+    """The part; of a node whose constructor never ended only that counts: nobody could use it."""
+    if part.first("subject", "never_constructed") is None:
+        return part
+    return Part(part.name, part.inputs, [event for event in part.events if event.kind in ("subject", "stack")])
 
 
 class _Settling:

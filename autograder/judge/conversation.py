@@ -42,7 +42,7 @@ def converse(connection: socket.socket, *, seed: str, expected: str | None, reco
         why = f"the check cell of {expected} asked for {asked}"
         link.send("refused", why=why)
         return Report(trouble=why)
-    report = _report(exercise, RemoteSubject(link), seed, recording)
+    report = _report(exercise, RemoteSubject(link, is_class=first.get("kind") == "class"), seed, recording)
     link.send("verdict", verdict=_shown(exercise, report))
     return report
 

@@ -14,6 +14,8 @@ MAX_TEXT = 4_000
 """Characters that are kept of one thing that the notebook says."""
 MAX_STACK = 50_000
 """Characters that are kept of a hung subject's stacks."""
+CONSTRUCT_LIMIT = 10.0
+"""Seconds of wall time in which a node's constructor must have come to its end."""
 STOP_LIMIT = 3.0
 """Seconds of wall time in which the notebook must have stopped a run."""
 
@@ -23,8 +25,15 @@ class RemoteSubject:
 
     shares_participant = True
 
-    def __init__(self, link: Link) -> None:
+    def __init__(self, link: Link, *, is_class: bool = False) -> None:
+        """Take over a conversation.
+
+        Args:
+            link: The notebook's end.
+            is_class: The subject is a class, whose constructor must come to its end before anything else.
+        """
         self._link = link
+        self._is_class = is_class
         self._recorder: Recorder | None = None
         self._run = 0
         self._fresh = True
@@ -55,6 +64,10 @@ class RemoteSubject:
         self._stopped.clear()
         fresh, self._fresh = self._fresh, False
         self._tell("start", run=self._run, fresh=fresh, arguments=list(arguments), options=options)
+        if self._is_class and not recorder.wait(lambda: self._marker is not None or self.ended, CONSTRUCT_LIMIT):
+            recorder.record("stack", "subject", text=self.stack())
+            recorder.record("subject", "never_constructed")
+            self._ended = True
 
     def release(self) -> None:
         """Let the made node spin."""
@@ -68,7 +81,7 @@ class RemoteSubject:
     @property
     def marker(self) -> str | None:
         """The topic that the notebook made after the subject's constructor had ended."""
-        return self._marker
+        return self._marker or None
 
     def stack(self) -> str:
         """Ask the notebook where the subject's threads are."""
@@ -116,7 +129,7 @@ class RemoteSubject:
         elif say == "output":
             recorder.record("output", "notebook", text=_text(message.get("text")))
         elif say == "constructed":
-            self._marker = _text(message.get("marker"))[:200] or None
+            self._marker = _text(message.get("marker"))[:200]
             recorder.record("subject", "constructed")
         elif say == "exited":
             self._ended = True

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
+from autograder.judge.answering import patiently
 from autograder.judge.interfaces import filled, interface, to_data
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ class RecordedServer:
         self._name = service
         self._answer = answer
         self._service = wire.node.create_service(interface(type_name), service, self._serve)
+        patiently(self._service)
 
     def _serve(self, request: Any, response: Any) -> Any:
         fields = to_data(request)

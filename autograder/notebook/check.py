@@ -60,7 +60,7 @@ def _ask(exercise: str, subject: Any) -> Verdict:
 
 def _converse(link: JudgeLink, exercise: str, subject: Any) -> Verdict:
     """Do what the judge says until it has a verdict."""
-    link.say("check", exercise=exercise)
+    link.say("check", exercise=exercise, kind="class" if inspect.isclass(subject) else "function")
     first = link.hear()
     if first["say"] != "begin":
         return _last_words(exercise, first)
