@@ -23,7 +23,7 @@ from autograder.grading.journal import Journal
 from autograder.grading.preparing import tasks_of
 from autograder.grading.progress import BatchProgress
 from autograder.grading.rebuild import grade_id, is_check
-from autograder.grading.report import NOT_SUBMITTED, GradeReport, Row, rows_of, write_csv
+from autograder.grading.report import NOT_GRADED, NOT_SUBMITTED, GradeReport, Row, rows_of, write_csv
 from autograder.grading.worker import JUDGE
 from autograder.grading.writer import NotWritten, Writer
 
@@ -43,6 +43,7 @@ class _Work:
     results: dict[str, Execution] = field(default_factory=dict)
     """By notebook."""
     written: bool = False
+    """Whether the gradebook holds exactly these results."""
 
     @property
     def complete(self) -> bool:
@@ -105,6 +106,7 @@ class _Batch:
         self._journal = Journal(directory.state / "journal")
         self._writer = Writer(directory)
         self._works: list[_Work] = []
+        self._others: list[_Work] = []
         self._refused: list[Refused] = []
         self._problems: list[str] = []
         self._executed = 0
@@ -118,26 +120,35 @@ class _Batch:
         _check_known(students, sorted({submission.student for submission in found}), "student")
         self._refused = refused
         for submission in found:
-            wanted = not assignments or submission.assignment in assignments
-            if wanted and (not students or submission.student in students):
-                self._works.append(_Work(submission, tasks_of(self._directory, submission)))
+            work = _Work(submission, tasks_of(self._directory, submission))
+            chosen = not assignments or submission.assignment in assignments
+            chosen = chosen and (not students or submission.student in students)
+            (self._works if chosen else self._others).append(work)
 
     def plan(self, again: bool) -> None:
         """Settle what is known already, and take back the grades of all the rest."""
+        works = [*self._works, *self._others]
         in_gradebook = {
             assignment: gradebook.scores(self._directory.gradebook_url, assignment)
-            for assignment in {work.submission.assignment for work in self._works}
+            for assignment in {work.submission.assignment for work in works}
         }
         for work in self._works:
             for task in work.tasks:
                 if again:
                     self._journal.forget(task)
+        for work in works:
+            for task in work.tasks:
                 known = task.without_execution() if task.problem else self._journal.get(task)
                 if known is not None:
                     work.results[task.notebook] = known
-                    self._reused += not task.problem
             scores = in_gradebook[work.submission.assignment].get(work.submission.student, {})
             work.written = work.complete and self._writer.is_written(work.submission, work.tasks, scores)
+        for work in self._others:
+            if not work.written:
+                work.results.clear()  # known perhaps, but not what the gradebook says
+        self._reused = sum(
+            not task.problem for w in self._works for task in w.tasks if task.notebook in w.results
+        )
         self._writer.take_back([work.submission for work in self._works if not work.written])
 
     def run(self) -> None:
@@ -188,9 +199,9 @@ class _Batch:
                     )
 
     def report(self, seconds: float) -> GradeReport:
-        """The report; ``grades.csv`` is written here."""
-        rows = self._rows()
-        write_csv(self._directory.path / "grades.csv", rows)
+        """The report on what was asked for; ``grades.csv``, written here, has the whole class."""
+        rows = self._rows(self._works)
+        write_csv(self._directory.path / "grades.csv", self._rows([*self._works, *self._others]))
         return GradeReport(
             path=self._directory.path,
             rows=tuple(rows),
@@ -216,24 +227,22 @@ class _Batch:
             raise error
         self._problems.append(f"{error} (see {self._directory.state / 'nbgrader.log'})")
 
-    def _rows(self) -> list[Row]:
-        rows: list[Row] = []
-        by_student: dict[str, dict[str, _Work]] = {}
-        for work in self._works:
-            by_student.setdefault(work.submission.student, {})[work.submission.assignment] = work
-        for assignments in by_student.values():
-            for assignment in sorted({work.submission.assignment for work in self._works}):
-                rows += self._rows_of(
-                    next(iter(assignments.values())).submission.student,
-                    assignment,
-                    assignments.get(assignment),
-                )
-        return rows
+    def _rows(self, works: Sequence[_Work]) -> list[Row]:
+        found = {(work.submission.student, work.submission.assignment): work for work in works}
+        students = sorted({student for student, _ in found})
+        assignments = sorted({assignment for _, assignment in found})
+        return [
+            row
+            for student in students
+            for assignment in assignments
+            for row in self._rows_of(student, assignment, found.get((student, assignment)))
+        ]
 
     def _rows_of(self, student: str, assignment: str, work: _Work | None) -> list[Row]:
-        if work is None:
+        if work is None or not work.complete:
+            state = NOT_SUBMITTED if work is None else NOT_GRADED
             return [
-                Row(student, assignment, exercise, 0.0, worth, NOT_SUBMITTED)
+                Row(student, assignment, exercise, 0.0, worth, state)
                 for exercise, worth in _exercises(self._directory, assignment)
             ]
         rows = [row for task, execution in work.pairs for row in rows_of(task, execution)]

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from autograder.grading.task import Task
 
 NOT_SUBMITTED = "not_submitted"
+NOT_GRADED = "not_graded"
+"""Handed in, but left out of every run so far."""
 COLUMNS = ("student", "assignment", "exercise", "score", "max", "state", "diagnosis", "reason")
 _DANGEROUS = ("=", "+", "-", "@", "\t", "\r")
 
@@ -34,7 +36,7 @@ class Row:
         exercise: The exercise's id.
         score: Points in the gradebook.
         max_score: Points that can be had.
-        state: ``passed``, ``failed``, ``not_checked`` or ``not_submitted``.
+        state: ``passed``, ``failed``, ``not_checked``, ``not_graded`` or ``not_submitted``.
         diagnosis: The key of the mistake, empty for none.
         reason: Its text, empty for none.
     """

@@ -97,6 +97,11 @@ def test_only_the_named_students_and_assignments(tiny: TinyClass, fake_engine: F
     report = tiny.grade(students=["ben"], assignments=["lab_1_2"])
     assert fake_engine.ran == ["ben"]
     assert {row.student for row in report.rows} == {"ben"}
+    assert "ada,lab_1_2,lab_1_2.talker,0,10,not_graded" in (tiny.path / "grades.csv").read_text()
+    tiny.grade()
+    tiny.submit("ben", 2)
+    tiny.grade(students=["ben"])
+    assert "ada,lab_1_2,lab_1_2.talker,10,10,passed" in (tiny.path / "grades.csv").read_text()
     with pytest.raises(GradingError, match="no student named eve"):
         tiny.grade(students=["eve"])
     with pytest.raises(GradingError, match="no assignment named big"):
