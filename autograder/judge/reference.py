@@ -93,8 +93,9 @@ def _sorted(interface: Mapping[str, Mapping[str, str]]) -> dict[str, dict[str, s
 
 def _events(part: Part) -> list[dict[str, Any]]:
     kept = [event for event in part.events if event.kind in _KEPT]
-    # Goals that run at once share one transcript; which of them is a moment ahead is the machine's doing.
-    kept.sort(key=lambda event: event.data.get("goal", 0))
+    # Goals that run at once share one transcript. Which of them is a moment ahead, and whether a first feedback
+    # overtakes the answer to its goal, is the machine's doing.
+    kept.sort(key=lambda event: (event.data.get("goal", 0), event.kind not in ("goal_sent", "goal_answer")))
     start = next((event.sim for event in kept if event.sim is not None), None)
     return [_event(event, start) for event in kept]
 
