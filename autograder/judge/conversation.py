@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import contextlib
+from typing import TYPE_CHECKING, Any
 
 from autograder import exercises
 from autograder.judge import domain, record, reference, trial
-from autograder.judge.link import Link
+from autograder.judge.link import Link, LinkClosed
 from autograder.judge.protocol import Report
 from autograder.judge.remote_subject import RemoteSubject
 from autograder.judge.wire import JudgeFailed
@@ -27,24 +28,32 @@ def converse(connection: socket.socket, *, seed: str, expected: str | None, reco
         expected: The only exercise that may be asked for; None for any.
         recording: Record a reference output instead of judging against the stored one.
 
-    Raises:
-        LinkClosed: The notebook hung up before it had asked.
+    Returns:
+        What came of it; nothing where nothing was asked, or something else than what is expected.
     """
     link = Link(connection)
-    first = link.receive()
+    try:
+        first = link.receive()
+    except LinkClosed:
+        return Report()  # somebody came and asked nothing
     asked = str(first.get("exercise"))
     try:
         exercise = exercises.get(asked)
     except exercises.UnknownExercise as error:
-        link.send("refused", why=str(error))
-        return Report(trouble=str(error))
+        _tell(link, "refused", why=str(error))
+        return Report()
     if expected is not None and asked != expected:
-        why = f"the check cell of {expected} asked for {asked}"
-        link.send("refused", why=why)
-        return Report(trouble=why)
+        _tell(link, "refused", why=f"the check cell of {expected} asked for {asked}")
+        return Report()
     report = _report(exercise, RemoteSubject(link, is_class=first.get("kind") == "class"), seed, recording)
-    link.send("verdict", verdict=_shown(exercise, report))
+    _tell(link, "verdict", verdict=_shown(exercise, report))
     return report
+
+
+def _tell(link: Link, say: str, **words: Any) -> None:
+    # A verdict stands also where its notebook has gone away meanwhile.
+    with contextlib.suppress(LinkClosed):
+        link.send(say, **words)
 
 
 def _report(exercise: Exercise, subject: RemoteSubject, seed: str, recording: bool) -> Report:

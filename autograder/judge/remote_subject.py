@@ -49,7 +49,7 @@ class RemoteSubject:
     def begin(self, domain_id: int) -> None:
         """Let the notebook open a ROS context on the domain."""
         self._thread.start()
-        self._link.send("begin", domain=domain_id)
+        self._tell("begin", domain=domain_id)
         self._ready.wait(STOP_LIMIT)
 
     def renew(self) -> None:

@@ -26,6 +26,8 @@ from autograder.judge.protocol import Close, Open, Order, Report
 if TYPE_CHECKING:
     from pathlib import Path
 
+REFUSE_LIMIT = 0.5
+"""Seconds that somebody who is to be refused has to ask."""
 CLOSE_LIMIT = 10.0
 """Seconds that a check may still take after its cell has ended; its kernel is gone then or about to be."""
 
@@ -117,7 +119,10 @@ class JudgeServer:
 
 
 def _refuse(connection: socket.socket, why: str) -> None:
+    """Say no. What was asked is read first: closing on unread words would lose the answer (unix(7), ECONNRESET)."""
     with contextlib.suppress(OSError):
+        connection.settimeout(REFUSE_LIMIT)
+        connection.recv(65536)
         connection.sendall(msgspec.json.encode({"say": "refused", "why": why}) + b"\n")
 
 
