@@ -1,0 +1,35 @@
+"""Wrong, row 20: call() in a timer callback."""
+import sys
+
+import rclpy
+from my_robot_interfaces.srv import AddTwoInts
+from rclpy.node import Node
+
+
+class AddTwoIntsClient(Node):
+    def __init__(self):
+        super().__init__('add_two_ints_client')
+        self.cli = self.create_client(AddTwoInts, 'add_two_ints')
+
+    def ask(self, a, b):
+        request = AddTwoInts.Request()
+        request.a = a
+        request.b = b
+        response = self.cli.call(request)
+        return response.sum
+
+
+def main():
+    a, b = int(sys.argv[1]), int(sys.argv[2])
+    rclpy.init()
+    node = AddTwoIntsClient()
+    if not node.cli.wait_for_service(timeout_sec=5.0):
+        sys.exit('add_two_ints is not there')
+    node.create_timer(0.1, lambda: node.get_logger().info(f'{a} + {b} = {node.ask(a, b)}'))
+    rclpy.spin(node)
+    node.destroy_node()
+    rclpy.shutdown()
+
+
+if __name__ == '__main__':
+    main()

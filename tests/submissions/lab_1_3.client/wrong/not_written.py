@@ -1,0 +1,33 @@
+"""Wrong: a node, and the TODO is still open."""
+import sys
+
+import rclpy
+from my_robot_interfaces.srv import AddTwoInts
+from rclpy.node import Node
+
+
+class AddTwoIntsClient(Node):
+    def __init__(self):
+        super().__init__('add_two_ints_client')
+        # TODO: make a client
+
+    def ask(self, a, b):
+        request = AddTwoInts.Request()
+        request.a = a
+        request.b = b
+        future = self.cli.call_async(request)
+        rclpy.spin_until_future_complete(self, future)
+        return future.result().sum
+
+
+def main():
+    a, b = int(sys.argv[1]), int(sys.argv[2])
+    rclpy.init()
+    node = AddTwoIntsClient()
+    # TODO: call the service
+    node.destroy_node()
+    rclpy.shutdown()
+
+
+if __name__ == '__main__':
+    main()
