@@ -13,6 +13,7 @@ _MODULES = {
     "lab_1_2.talker": "lab_1_2_talker",
     "lab_1_2.listener": "lab_1_2_listener",
     "lab_1_3.server": "lab_1_3_server",
+    "inspecting_services.question": "inspecting_services_question",
     "exercise_1_2.three_ints": "exercise_1_2_three_ints",
     "exercise_1_3.cancel": "exercise_1_3_cancel",
 }

@@ -1,0 +1,16 @@
+"""Wrong: it always looks for AddTwoInts."""
+import sys
+import time
+
+import rclpy
+
+rclpy.init()
+node = rclpy.create_node('finder')
+end = time.monotonic() + 5
+while time.monotonic() < end:
+    for name, types in node.get_service_names_and_types():
+        if 'my_robot_interfaces/srv/AddTwoInts' in types:
+            print(name)
+            sys.exit()
+    time.sleep(0.05)
+print('no service')
