@@ -1,0 +1,164 @@
+"""What people read: links lead somewhere, pictures have words, and nothing tells of the machine it was made on."""
+
+from __future__ import annotations
+
+import html
+import json
+import re
+import subprocess
+from functools import cache
+from pathlib import Path
+from urllib.parse import unquote
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("solutions/*/*.md")])
+NOTEBOOKS = sorted(ROOT.glob("chapters/*/*.ipynb"))
+READ = [*PAGES, *NOTEBOOKS]
+each = pytest.mark.parametrize("path", READ, ids=lambda path: str(path.relative_to(ROOT)))
+
+FENCE = re.compile(r"^(?P<fence>`{3,}|~{3,})(?P<kind>.*?)^(?P=fence)`*[ \t]*$", re.MULTILINE | re.DOTALL)
+CODE = re.compile(r"(`+)(?!`).+?(?<!`)\1(?!`)", re.DOTALL)
+LINK = re.compile(
+    r"(?P<image>!?)\[(?P<text>(?:[^\[\]]|\[[^\]]*\])*)\]\((?P<target>[^()\s]*(?:\([^()]*\)[^()\s]*)*)\)"
+)
+HTML_LINK = re.compile(r"""\b(?:href|src)=["'](?P<target>[^"']*)["']""")
+HTML_IMAGE = re.compile(r"<img\b[^>]*>")
+
+
+@cache
+def markdown(path: Path) -> str:
+    """The Markdown of a page or of all text cells of a notebook."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix != ".ipynb":
+        return text
+    cells = json.loads(text)["cells"]
+    return "\n\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "markdown")
+
+
+def prose(path: Path) -> str:
+    """The Markdown without code, in which brackets mean something else."""
+    return CODE.sub("", FENCE.sub("", markdown(path)))
+
+
+@cache
+def anchors(path: Path) -> frozenset[str]:
+    """The anchors of a page's headings, as GitHub makes them, or as JupyterLab does for a notebook."""
+    found: list[str] = []
+    for line in FENCE.sub("", markdown(path)).splitlines():
+        if not (heading := re.match(r"#{1,6} +(.*?)\s*#*$", line)):
+            continue
+        title = html.unescape(
+            re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading[1]).replace("`", "").replace("*", "")
+        )
+        if path.suffix == ".ipynb":
+            anchor = title.replace(" ", "-")
+        else:
+            anchor = re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+        again = found.count(anchor)
+        found.append(anchor)
+        if again:
+            found.append(f"{anchor}-{again}")
+    return frozenset(found)
+
+
+def as_read(path: Path) -> Path:
+    """Where a page's links start from: those of a master are followed in the chapter that is made of it."""
+    if path.is_relative_to(ROOT / "solutions"):
+        return ROOT / "chapters" / path.relative_to(ROOT / "solutions").with_suffix(".ipynb")
+    return path
+
+
+def broken(path: Path, target: str) -> str:
+    """What is wrong with a link, or nothing."""
+    if re.match(r"[a-z]+:", target):
+        return "" if target.startswith(("https://", "mailto:")) else f"{target}: not https"
+    file, _, anchor = unquote(target).partition("#")
+    where = (as_read(path).parent / file).resolve() if file else path
+    if not where.exists():
+        return f"{target}: no such file"
+    if not where.is_relative_to(ROOT):
+        return f"{target}: outside of the course"
+    if anchor and anchor not in anchors(where):
+        return f"{target}: no such heading"
+    return ""
+
+
+@each
+def test_every_link_leads_somewhere(path: Path) -> None:
+    targets = [found["target"] for pattern in (LINK, HTML_LINK) for found in pattern.finditer(prose(path))]
+    assert not [why for target in targets if (why := broken(path, target))]
+
+
+@each
+def test_every_picture_has_words(path: Path) -> None:
+    text = prose(path)
+    silent = [found[0] for found in LINK.finditer(text) if found["image"] and len(found["text"].split()) < 3]
+    silent += [tag for tag in HTML_IMAGE.findall(text) if not re.search(r'alt="[^"]{10,}"', tag)]
+    for found in FENCE.finditer(markdown(path)):
+        drawn = found["kind"].lstrip("{").startswith("mermaid")
+        if drawn and not ("accTitle:" in found["kind"] and "accDescr:" in found["kind"]):
+            silent.append(found[0])
+    assert not silent
+
+
+def test_pictures_are_small_and_shown_somewhere() -> None:
+    shown = "\n".join(markdown(path) for path in READ)
+    for picture in (ROOT / "docs/images").glob("*.png"):
+        assert picture.stat().st_size < 300_000
+        assert f"images/{picture.name}" in shown
+
+
+def test_every_page_of_the_documentation_can_be_reached_from_the_readme() -> None:
+    reached, ahead = set(), [ROOT / "README.md"]
+    while ahead:
+        page = ahead.pop()
+        if page in reached or page.suffix != ".md" or not page.exists():
+            continue
+        reached.add(page)
+        targets = (unquote(found["target"]).partition("#")[0] for found in LINK.finditer(prose(page)))
+        ahead += [(page.parent / target).resolve() for target in targets if target and ":" not in target]
+    assert not [page.name for page in ROOT.glob("docs/*.md") if page not in reached]
+
+
+# `me`, `you` and the like stand in examples; `work` at the top is where a machine that builds keeps its clones.
+HOMES = re.compile(
+    rb"(?<![\w.$}/-])/(?:root|home/(?!(?:ada|me|student|user|you)\b)\w+|Users/\w+|work(?:space)?|builds?)/[\w.]"
+)
+
+
+def test_nothing_that_is_committed_names_a_folder_of_this_machine() -> None:
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=False)
+    if listed.returncode:
+        pytest.skip("this is no git clone")
+    found = []
+    for name in listed.stdout.decode().split("\0"):
+        path = ROOT / name
+        if not name or not path.is_file():
+            continue
+        found += [f"{name}: {match[0].decode()}" for match in HOMES.finditer(path.read_bytes())]
+    assert not found
+
+
+@pytest.mark.parametrize("folder", ["root", "home/" + "kim", "Users/" + "Kim", "work"])
+def test_a_folder_of_this_machine_is_found(folder: str) -> None:
+    assert HOMES.search(f'see "/{folder}/course/x.py"'.encode())
+    assert not HOMES.search(f"see my/{folder}/course/x.py and /home/you/x".encode())
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong"),
+    [
+        ("[a](missing.md)", True),
+        ("[a](README.md#where-to-go-next)", False),
+        ("[a](README.md#nowhere)", True),
+        ("[a](../outside.md)", True),
+        ("[a](http://example.org)", True),
+        ("[a](https://example.org)", False),
+    ],
+)
+def test_a_broken_link_is_found(text: str, wrong: bool) -> None:
+    found = LINK.search(text)
+    assert found is not None
+    assert bool(broken(ROOT / "README.md", found["target"])) == wrong
