@@ -43,7 +43,7 @@ def moments(evidence: Evidence) -> tuple[Moment, ...]:
     found = [
         Moment(
             t=_time(event, start),
-            lane="log" if event.kind == "log" else "subject" if event.kind == "subject" else event.name,
+            lane="log" if event.kind == "log" else "your code" if event.kind == "subject" else event.name,
             direction=_DIRECTION[event.kind],
             label=_label(event),
             part=part.name if len(evidence.parts) > 1 else "",
