@@ -123,4 +123,6 @@ def test_a_code_cell_is_introduced(master: Path) -> None:
 
 @each_master
 def test_no_machine_is_named(master: Path) -> None:
-    assert not re.search(r"/(home|root|work|tmp|opt|usr)/", release_text(source_notebook(master)))
+    # Where ROS is on the computers of others.
+    text = release_text(source_notebook(master)).replace("/opt/ros/jazzy/", "")
+    assert not re.search(r"/(home|root|work|tmp|opt|usr)/", text)
