@@ -10,10 +10,14 @@ if TYPE_CHECKING:
     from autograder.exercises.model import Exercise
 
 _MODULES = {
+    "lab_1_1.hello": "lab_1_1_hello",
     "lab_1_2.talker": "lab_1_2_talker",
     "lab_1_2.listener": "lab_1_2_listener",
+    "inspecting_topics.mismatch": "inspecting_topics_mismatch",
+    "lab_1_3.interface": "lab_1_3_interface",
     "lab_1_3.server": "lab_1_3_server",
     "inspecting_services.question": "inspecting_services_question",
+    "exercise_1_1.remap": "exercise_1_1_remap",
     "exercise_1_2.three_ints": "exercise_1_2_three_ints",
     "exercise_1_3.cancel": "exercise_1_3_cancel",
 }

@@ -22,7 +22,15 @@ def process_line(argv: Sequence[str]) -> str:
 def processes(part: Part) -> list[list[str]]:
     """The command lines of the processes that a launch started."""
     texts = [str(event.data["text"]) for event in part.of("output")]
-    return [list(map(str, json.loads(text[len(MARK) :]))) for text in texts if text.startswith(MARK)]
+    return [argv for text in texts if text.startswith(MARK) and (argv := _parsed(text[len(MARK) :]))]
+
+
+def _parsed(text: str) -> list[str]:
+    try:
+        words = json.loads(text)
+    except ValueError:
+        return []
+    return list(map(str, words)) if isinstance(words, list) else []
 
 
 def remappings(argv: Sequence[str]) -> list[tuple[str, str]]:

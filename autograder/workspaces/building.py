@@ -95,6 +95,8 @@ def build(workspace: Path) -> Build:
     failed = _FAILED.search(log)
     name = failed["name"] if failed else ""
     own = _log_of(log, name)
+    # What setup.py itself says when colcon first asks it goes past the package's part of the log.
+    own = log if "CalledProcessError" in telling_line(own) else own
     return Build(
         workspace, False, None, packages, seconds,
         trouble="build", package=name, line=telling_line(own), log=own[-MAX_LOG:],

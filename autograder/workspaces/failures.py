@@ -49,16 +49,23 @@ def telling_line(log: str) -> str:
 
 
 def _python(log: str) -> str:
-    errors = list(_PYTHON.finditer(log))
+    # That colcon's or CMake's call of a program failed is only the consequence of what that program says.
+    found = list(_PYTHON.finditer(log))
+    errors = [error for error in found if "CalledProcessError" not in error["what"]] or found
     if not errors:
         return ""
     error = errors[-1]
-    own = [place for place in _PLACE.finditer(log, 0, error.start()) if "site-packages" not in place["file"]]
-    own = [
-        place for place in own if "/lib/python3" not in place["file"] and not place["file"].startswith("<")
-    ]
-    place = f"{_short(own[-1]['file'])}:{own[-1]['line']}: " if own else ""
-    return f"{place}{error['what'].strip()}"
+    places = [place for place in _PLACE.finditer(log, 0, error.start()) if not _is_a_library(place["file"])]
+    if not places:
+        return error["what"].strip()
+    file, line = places[-1]["file"], places[-1]["line"]
+    # setuptools executes the text of setup.py, without its name.
+    file = "setup.py" if file == "<string>" and "run_setup" in log else file
+    return f"{_short(file)}:{line}: {error['what'].strip()}"
+
+
+def _is_a_library(file: str) -> bool:
+    return "site-packages" in file or "/lib/python3" in file or file.startswith("<frozen")
 
 
 def _short(file: str) -> str:

@@ -7,6 +7,7 @@ them apart is the command line of the process: that is how every launch hands a 
 from __future__ import annotations
 
 import os
+import re
 import shlex
 import signal
 import subprocess
@@ -18,7 +19,7 @@ from autograder import course
 from autograder.exercises.launch_report import process_line
 from autograder.workspaces.building import Build, build
 from autograder.workspaces.prefixes import with_prefixes
-from autograder.workspaces.processes import command_line, descendants
+from autograder.workspaces.processes import command_line, descendants, tell
 
 LOOK_EVERY = 0.05
 """Seconds between two looks at the launch's processes."""
@@ -39,15 +40,30 @@ def launch(command: Sequence[str], file: Path | None, report: Report) -> int:
         The launch's exit code; 1 when the student's workspace could not be built.
     """
     environment: dict[str, str] = dict(os.environ)
+    course_build = build(reference_workspace())
     workspace = workspace_of(file) if file is not None else None
-    if workspace is not None:
+    first = False
+    if file is not None and workspace is not None:
         made = build(workspace)
         report(made, "built")
         if not made.ok:
             return 1
         environment = with_prefixes(environment, made.prefixes)
-    environment = with_prefixes(environment, build(reference_workspace()).prefixes, last=True)
-    return _run(command, environment)
+        first = _lacks_programs(file, made, course_build)
+    return _run(command, with_prefixes(environment, course_build.prefixes, last=not first))
+
+
+def _lacks_programs(file: Path, made: Build, course_build: Build) -> bool:
+    """Whether a launch file names programs of the course's package that the student's has not got.
+
+    Who has written talker and listener in the notebooks alone has no programs to launch.
+    """
+    words = set(re.findall(r"\w+", file.read_text(encoding="utf-8", errors="replace")))
+    return bool(words & _programs(course_build) - _programs(made))
+
+
+def _programs(made: Build) -> set[str]:
+    return {program.name for prefix in made.prefixes for program in (prefix / "lib" / prefix.name).glob("*")}
 
 
 def workspace_of(file: Path) -> Path | None:
@@ -90,4 +106,4 @@ def _watch(pid: int, ended: threading.Event) -> None:
             line = command_line(child)
             if line and (child, line) not in known:
                 known.add((child, line))
-                print(process_line(shlex.split(line)), flush=True)
+                tell(process_line(shlex.split(line)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import os
 import shlex
 import signal
 from pathlib import Path
@@ -27,6 +28,11 @@ def command_line(pid: int) -> str:
     except OSError:
         return ""
     return shlex.join(word.decode("utf-8", "replace") for word in words)
+
+
+def tell(line: str) -> None:
+    """Print a line in one piece: what else writes to the same pipe cannot come between it and its end."""
+    os.write(1, f"{line}\n".encode("utf-8", "replace"))
 
 
 def end_with_the_parent() -> None:

@@ -19,7 +19,7 @@ from autograder.exercises.workspace_report import Interface, PackageReport, Work
 from autograder.workspaces.building import Build, build, look
 from autograder.workspaces.launching import launch
 from autograder.workspaces.prefixes import with_prefixes
-from autograder.workspaces.processes import end_with_the_parent
+from autograder.workspaces.processes import end_with_the_parent, tell
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -112,7 +112,7 @@ def report(made: Build, phase: str, missing: str = "") -> None:
             missing=missing,
         )
     )
-    print(line, flush=True)
+    tell(line)
 
 
 def ros2() -> str:

@@ -11,6 +11,7 @@ import argparse
 import multiprocessing
 import select
 import sys
+import tempfile
 import time
 import tomllib
 from dataclasses import dataclass
@@ -19,8 +20,14 @@ from typing import TYPE_CHECKING
 
 from autograder.verdict import Verdict, from_json
 
+sys.path.insert(0, str(Path(__file__).parent))
+from workspace_answers import unpack
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
+
+_PROGRAMS = {"python3": sys.executable, "ros2": str(Path(sys.executable).with_name("ros2"))}
+"""The programs that answers are run with, those of this environment."""
 
 ROOT = Path(__file__).resolve().parents[1] / "submissions"
 
@@ -32,14 +39,16 @@ class Answer:
     Attributes:
         exercise: The exercise's id.
         file: The program.
-        command: What runs it.
+        command: What runs it, with places for ``{file}`` and ``{workspace}``.
         diagnoses: The keys that are right; empty for a correct answer.
+        base: The workspace that the answer changes; None for a program.
     """
 
     exercise: str
     file: Path
     command: tuple[str, ...]
     diagnoses: tuple[str, ...]
+    base: Path | None = None
 
     @property
     def name(self) -> str:
@@ -66,11 +75,11 @@ def answers() -> Iterator[Answer]:
         for kind in ("correct", "wrong"):
             for name, entry in table.get(kind, {}).items():
                 file = expected.parent / kind / name
-                command = tuple(
-                    part.format(file=file) for part in entry.get("command", ["python3", "{file}"])
-                )
+                first, *rest = entry.get("command", table.get("command", ["python3", "{file}"]))
+                command = (_PROGRAMS.get(first, first), *rest)
                 diagnoses = (entry["diagnosis"], *entry.get("also", ())) if kind == "wrong" else ()
-                yield Answer(table["exercise"], file, (sys.executable, *command[1:]), diagnoses)
+                base = expected.parent / table["base"] if file.suffix == ".workspace" else None
+                yield Answer(table["exercise"], file, command, diagnoses, base)
 
 
 def judge_all(
@@ -107,7 +116,12 @@ def _judged(answer: Answer, seed: str) -> bytes:
     from autograder.judge.command import judged_here
     from autograder.verdict import to_json
 
-    return to_json(judged_here(exercises.get(answer.exercise), answer.command, seed, None))
+    with tempfile.TemporaryDirectory(prefix="answer-") as folder:
+        workspace = Path(folder) / "ros2_ws"
+        if answer.base is not None:
+            unpack(answer.file, answer.base, workspace)
+        command = [part.format(file=answer.file, workspace=workspace) for part in answer.command]
+        return to_json(judged_here(exercises.get(answer.exercise), command, seed, None))
 
 
 def warm_up() -> None:

@@ -1,0 +1,11 @@
+# Wrong: there is no program listner.
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    rules = [('chatter', '/robot/status_updates')]
+    return LaunchDescription([
+        Node(package='my_robot_pkg', executable='talker', remappings=rules),
+        Node(package='my_robot_pkg', executable='listner', remappings=rules),
+    ])

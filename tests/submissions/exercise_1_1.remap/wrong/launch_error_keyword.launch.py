@@ -1,0 +1,11 @@
+# Wrong: the argument is called remappings, not remap.
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    rules = [('chatter', '/robot/status_updates')]
+    return LaunchDescription([
+        Node(package='my_robot_pkg', executable='talker', remap=rules),
+        Node(package='my_robot_pkg', executable='listener', remap=rules),
+    ])

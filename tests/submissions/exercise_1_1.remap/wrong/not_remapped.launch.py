@@ -1,0 +1,11 @@
+# Wrong: both nodes as they are.
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    rules = []
+    return LaunchDescription([
+        Node(package='my_robot_pkg', executable='talker', remappings=rules),
+        Node(package='my_robot_pkg', executable='listener', remappings=rules),
+    ])

@@ -1,0 +1,11 @@
+# Wrong: the new name first.
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    rules = [('/robot/status_updates', 'chatter')]
+    return LaunchDescription([
+        Node(package='my_robot_pkg', executable='talker', remappings=rules),
+        Node(package='my_robot_pkg', executable='listener', remappings=rules),
+    ])

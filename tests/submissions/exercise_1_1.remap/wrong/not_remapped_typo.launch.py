@@ -1,0 +1,11 @@
+# Wrong: /robot/status_update, without its s.
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    rules = [('chatter', '/robot/status_update')]
+    return LaunchDescription([
+        Node(package='my_robot_pkg', executable='talker', remappings=rules),
+        Node(package='my_robot_pkg', executable='listener', remappings=rules),
+    ])

@@ -1,0 +1,12 @@
+# Wrong: a second talker under the old name.
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    rules = [('chatter', '/robot/status_updates')]
+    return LaunchDescription([
+        Node(package='my_robot_pkg', executable='talker', remappings=rules),
+        Node(package='my_robot_pkg', executable='listener', remappings=rules),
+        Node(package='my_robot_pkg', executable='talker', name='second'),
+    ])
