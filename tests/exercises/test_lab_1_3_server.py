@@ -1,0 +1,63 @@
+"""The criteria of the adding server's lab on hand-made evidence: no ROS is started."""
+
+from __future__ import annotations
+
+from random import Random
+
+from autograder.exercises.evidence import Event, Evidence, Part, Reference
+from autograder.exercises.lab_1_3_server import AT_ONCE, CALLS, EXERCISE, ordinary, single_calls
+
+SERVICE, TYPE = "/add_two_ints", "my_robot_interfaces/srv/AddTwoInts"
+ASKED = [*single_calls(Random("a")), *(ordinary(Random(n)) for n in range(AT_ONCE + 1))]
+LAST = len(ASKED) - 1
+
+
+def part(answered: dict[int, int], *, servers: int = 1) -> Part:
+    events = [
+        Event(0.0, "interface", "graph", {"nodes": ["/n"], "service": {SERVICE: TYPE}}),
+        Event(0.0, "servers", SERVICE, {"count": servers}),
+        *(Event(0.0, "asked", SERVICE, {"call": n, "fields": fields}) for n, fields in enumerate(ASKED)),
+        *(Event(0.0, "answered", SERVICE, {"call": n, "fields": {"sum": s}}) for n, s in answered.items()),
+    ]
+    return Part(CALLS, {}, events)
+
+
+SUMS = {number: fields["a"] + fields["b"] for number, fields in enumerate(ASKED)}
+
+
+def failed(seen: Part) -> set[str]:
+    evidence = Evidence([seen], Reference("lab_1_3.server", {"service": {SERVICE: TYPE}}, [part(SUMS)]))
+    return {c.name for c in EXERCISE.criteria if not c.judge(evidence).passed}
+
+
+def test_every_sum_that_is_asked_for_fits_into_64_bits() -> None:
+    for seed in range(200):
+        for numbers in single_calls(Random(seed)):
+            for value in (*numbers.values(), sum(numbers.values())):
+                assert -(2**63) <= value < 2**63
+
+
+def test_a_right_server_passes_everything() -> None:
+    assert failed(part(SUMS)) == set()
+
+
+def test_a_server_that_never_answers_passes_nothing() -> None:
+    assert failed(part({})) == {"service", "sums", "together", "alive"}
+    assert failed(Part(CALLS)) == {"service", "sums", "together", "alive"}
+
+
+def test_one_wrong_sum_is_wrong() -> None:
+    assert failed(part(SUMS | {3: SUMS[3] + 1})) == {"sums"}
+    assert failed(part(SUMS | {LAST - 2: 0})) == {"together"}
+
+
+def test_answers_to_calls_at_once_must_not_be_swapped() -> None:
+    assert failed(part(SUMS | {LAST - 1: SUMS[LAST - 2], LAST - 2: SUMS[LAST - 1]})) == {"together"}
+
+
+def test_who_does_not_answer_the_last_call_is_not_alive() -> None:
+    assert failed(part({number: s for number, s in SUMS.items() if number != LAST})) == {"alive"}
+
+
+def test_two_servers_of_one_name_are_one_too_many() -> None:
+    assert failed(part(SUMS, servers=2)) == {"service"}

@@ -1,0 +1,124 @@
+"""The criteria of the action server's lab on hand-made evidence: no ROS is started."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from autograder.exercises import fibonacci_server_criteria as criteria
+from autograder.exercises import lab_1_4_server
+from autograder.exercises.evidence import Event, Evidence, Part, Reference
+from autograder.exercises.fibonacci_goals import BAD_ORDERS, GOALS, LONG
+
+FIBONACCI = [0, 1, 1, 2, 3, 5]
+ACTION, TYPE = "/fibonacci", "my_robot_interfaces/action/Fibonacci"
+SURVEY = Event(0.0, "interface", "graph", {"nodes": ["/n"], "action_server": {ACTION: TYPE}})
+
+
+def goal(number: int, order: int, **changed: Any) -> list[Event]:
+    """All that a right server sends for one goal."""
+    numbers = changed.get("sequence", FIBONACCI[: order + 1])
+    feedback = changed.get("feedback", [FIBONACCI[:n] for n in range(3, order + 2)])
+
+    def event(kind: str, **data: Any) -> Event:
+        return Event(0.0, kind, ACTION, {"goal": number, **data})
+
+    accepted = changed.get("accepted", True)
+    events = [event("goal_sent", fields={"order": order}), event("goal_answer", accepted=accepted)]
+    if not accepted:
+        return events
+    events += [event("feedback_heard", fields={"partial_sequence": partial}) for partial in feedback]
+    if "cancel" in changed:
+        events += [event("cancel_sent"), event("cancel_answer", accepted=changed["cancel"])]
+    events.append(event("result_heard", status=changed.get("status", 4), fields={"sequence": numbers}))
+    return events
+
+
+def canceled(sequence: list[int], *, status: int = 5, accepted: bool = True) -> list[Event]:
+    return goal(
+        LONG, 20, feedback=[[0, 1, 1], [0, 1, 1, 2]], cancel=accepted, status=status, sequence=sequence
+    )
+
+
+RIGHT = [*goal(0, 5), *goal(1, 4), *goal(2, 3), *canceled([0, 1, 1, 2, 3])]
+REFUSALS = [
+    *goal(0, -3, accepted=False),
+    *goal(1, 47, accepted=False),
+    *goal(2, 99, accepted=False),
+    *goal(3, 2),
+]
+
+
+def evidence(goals: list[Event], bad: list[Event] | None = None) -> Evidence:
+    reference = Reference("lab_1_4.server", {"action_server": {ACTION: TYPE}}, [Part(GOALS, {}, RIGHT)])
+    parts = [Part(GOALS, {}, [SURVEY, *goals]), Part(BAD_ORDERS, {}, bad if bad is not None else REFUSALS)]
+    return Evidence(parts, reference)
+
+
+def failed(seen: Evidence) -> set[str]:
+    return {c.name for c in lab_1_4_server.EXERCISE.criteria if not c.judge(seen).passed}
+
+
+def test_a_right_server_passes_everything() -> None:
+    assert failed(evidence(RIGHT)) == set()
+
+
+def test_a_server_that_was_never_there_passes_nothing() -> None:
+    seen = Evidence([Part(GOALS)], evidence(RIGHT).reference)
+    assert failed(seen) == {c.name for c in lab_1_4_server.EXERCISE.criteria}
+
+
+@pytest.mark.parametrize(
+    ("feedback", "right"),
+    [
+        ([[0, 1], [0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]], True),
+        ([[0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3], FIBONACCI], True),
+        ([[0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]], True),
+        ([], False),
+        ([FIBONACCI], False),
+        ([[1], [2], [3], [5]], False),
+        ([[0, 1, 1], [0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]], False),
+        ([[0, 1, 1], [0, 1, 1, 2, 3]], False),
+        ([[0, 1, 1], [0, 1, 1, 2]], False),
+    ],
+)
+def test_feedback_grows_by_one_number(feedback: list[list[int]], right: bool) -> None:
+    seen = evidence([*goal(0, 5, feedback=feedback), *RIGHT[len(goal(0, 5)) :]])
+    assert criteria.gives_feedback(seen).passed is right
+
+
+@pytest.mark.parametrize(
+    ("sequence", "status", "accepted", "right"),
+    [
+        ([0, 1, 1, 2], 5, True, True),
+        ([0, 1, 1, 2, 3, 5, 8], 5, True, True),
+        ([], 5, True, False),
+        ([0, 1, 1], 5, True, False),
+        ([0, 1, 1, 2, 4], 5, True, False),
+        ([0, 1, 1, 2, 3], 4, True, False),
+        ([0, 1, 1, 2, 3], 4, False, False),
+    ],
+)
+def test_a_cancel_brings_the_part_that_was_computed(
+    sequence: list[int], status: int, accepted: bool, right: bool
+) -> None:
+    seen = evidence(
+        [*goal(0, 5), *goal(1, 4), *goal(2, 3), *canceled(sequence, status=status, accepted=accepted)]
+    )
+    assert criteria.lets_cancel(seen).passed is right
+
+
+def test_one_of_two_goals_with_the_others_numbers_is_wrong() -> None:
+    seen = evidence([*goal(0, 5), *goal(1, 4, sequence=FIBONACCI[:4]), *goal(2, 3), *canceled([0, 1, 1, 2])])
+    assert failed(seen) == {"sequence", "two"}
+
+
+def test_a_bad_order_that_is_taken_is_wrong_even_if_it_is_aborted_later() -> None:
+    seen = evidence(RIGHT, [*goal(0, -3, sequence=[], feedback=[], status=6), *goal(1, 2)])
+    assert failed(seen) == {"refuse"}
+
+
+def test_a_server_that_refuses_everything_does_not_refuse_rightly() -> None:
+    seen = evidence(RIGHT, [*REFUSALS[:6], *goal(3, 2, accepted=False)])
+    assert failed(seen) == {"refuse"}
