@@ -1,10 +1,13 @@
 """A picture of the running graph: nodes, and the topics, services and actions between them.
 
-It is SVG in the colours of JupyterLab's theme, with the same in words beside it for those who cannot see it.
+It is SVG, with the same in words beside it for those who cannot see it. It has a ground of its own, so that it
+is readable on a dark page as well, and is an ``img`` with data in it: JupyterLab takes SVG elements out of what
+it does not trust yet, and leaves their letters.
 """
 
 from __future__ import annotations
 
+import base64
 import itertools
 from dataclasses import dataclass
 from html import escape
@@ -23,15 +26,15 @@ _PAGE = 860
 """What a notebook's column takes; a wider picture is drawn from top to bottom."""
 
 _STYLE = """
-.ros-graph text { font: 13px/1 var(--jp-code-font-family, monospace); fill: var(--jp-ui-font-color1, #212121);
-  text-anchor: middle; dominant-baseline: central; }
-.ros-graph text.type { font-size: 10.5px; fill: var(--jp-ui-font-color2, #555); }
-.ros-graph rect { fill: var(--jp-layout-color1, #fff); stroke: var(--jp-ui-font-color1, #212121); }
-.ros-graph .node rect { fill: var(--jp-layout-color2, #eee); stroke-width: 2; }
-.ros-graph .service rect { stroke-dasharray: 5 3; }
-.ros-graph .action rect { stroke-dasharray: 1.5 2.5; }
-.ros-graph path.line { fill: none; stroke: var(--jp-ui-font-color2, #555); stroke-width: 1.5; }
-.ros-graph path.head { fill: var(--jp-ui-font-color2, #555); }
+.ground { fill: #fff; }
+text { font: 13px/1 monospace; fill: #212121; text-anchor: middle; dominant-baseline: central; }
+text.type { font-size: 10.5px; fill: #555; }
+.box rect { fill: #fff; stroke: #212121; }
+.node rect { fill: #e8eef7; stroke-width: 2; }
+.service rect { stroke-dasharray: 5 3; }
+.action rect { stroke-dasharray: 1.5 2.5; }
+path.line { fill: none; stroke: #555; stroke-width: 1.5; }
+path.head { fill: #555; }
 """
 
 
@@ -55,10 +58,12 @@ class GraphPicture:
         return "\n".join(self.graph.sentences())
 
     def _repr_html_(self) -> str:
-        words = "".join(f"<li>{escape(sentence)}</li>" for sentence in self.graph.sentences())
+        sentences = self.graph.sentences()
+        data = base64.b64encode(self.svg().encode()).decode()
+        words = "".join(f"<li>{escape(sentence)}</li>" for sentence in sentences)
         return (
-            f'<figure style="margin: 0">{self.svg()}'
-            f"<details><summary>The graph in words</summary><ul>{words}</ul></details></figure>"
+            f'<img alt="The running graph. {escape(" ".join(sentences))}" src="data:image/svg+xml;base64,{data}">'
+            f"<details><summary>The graph in words</summary><ul>{words}</ul></details>"
         )
 
     def svg(self) -> str:
@@ -163,15 +168,15 @@ class _Drawing:
         return (point[1], point[0]) if self._down else point
 
     def svg(self) -> str:
-        """The whole picture. It shrinks with the page and never grows beyond its own size."""
+        """The whole picture."""
         width, height = self._xy(self._extent())
         boxes = "".join(self._box(name) for name in self._centres if not is_place_holder(name))
         lines = "".join(self._line(line) for line in self._layout.lines)
         return (
-            f'<svg xmlns="http://www.w3.org/2000/svg" class="ros-graph" role="img" '
-            f'viewBox="0 0 {width:.0f} {height:.0f}" style="max-width: {width:.0f}px; width: 100%">'
-            f"<title>The running graph</title><desc>{escape(self._words)}</desc>"
-            f"<style>{_STYLE}</style>{lines}{boxes}</svg>"
+            f'<svg xmlns="http://www.w3.org/2000/svg" role="img" width="{width:.0f}" height="{height:.0f}" '
+            f'viewBox="0 0 {width:.0f} {height:.0f}">'
+            f"<title>The running graph</title><desc>{escape(self._words)}</desc><style>{_STYLE}</style>"
+            f'<rect class="ground" width="100%" height="100%" rx="6"/>{lines}{boxes}</svg>'
         )
 
     def _box(self, name: str) -> str:
@@ -186,7 +191,7 @@ class _Drawing:
         texts = f'<text x="{x:.1f}" y="{y - above:.1f}">{escape(label.name)}</text>'
         if label.type:
             texts += f'<text class="type" x="{x:.1f}" y="{y + 10:.1f}">{escape(label.small_print)}</text>'
-        return f'<g class="{label.shape}">{rect}{texts}</g>'
+        return f'<g class="box {label.shape}">{rect}{texts}</g>'
 
     def _line(self, line: Line) -> str:
         """A curve from box to box, along the places that were kept free, with a head where it points to."""
