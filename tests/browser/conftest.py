@@ -44,13 +44,13 @@ def chromium() -> str:
     return path
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def chapters(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A student's copy of the chapters."""
     return Path(shutil.copytree(ROOT / "chapters", tmp_path_factory.mktemp("student") / "chapters"))
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def lab(chapters: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """The address of a JupyterLab, token included, that knows nothing of the user's own settings."""
     home = tmp_path_factory.mktemp("home")
