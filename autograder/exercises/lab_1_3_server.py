@@ -1,20 +1,24 @@
 """Lab 1.3: a server that adds two integers.
 
-The judge is the client: calls one by one, with everyday, negative, zero and 64-bit numbers, then several at
-once, then
-one more to see that the node is still alive.
+The judge is the client: calls one by one, with everyday, negative, zero and 64-bit numbers, then several at once,
+then one more to see that the node is still alive.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from random import Random
+from typing import TYPE_CHECKING
 
 from autograder.exercises import common_mistakes as common
-from autograder.exercises.callers import Caller
-from autograder.exercises.evidence import Event, Evidence, Part
+from autograder.exercises.crashes import traceback_of
 from autograder.exercises.hangs import HANGS, stacks
 from autograder.exercises.model import Advice, Bench, Criterion, Exercise, Finding, Look, Mistake
+
+if TYPE_CHECKING:
+    from random import Random
+
+    from autograder.exercises.callers import Caller
+    from autograder.exercises.evidence import Event, Evidence, Part
 
 CALLS = "calls"
 ORDINARY = 6
@@ -189,6 +193,17 @@ def fields_never_filled(evidence: Evidence) -> Advice | None:
     )
 
 
+def returned_none(evidence: Evidence) -> Advice | None:
+    """A bare TypeError out of nowhere: all that a notebook shows of it, where rclpy's own lines are left out."""
+    if traceback_of(evidence).strip() != "TypeError":
+        return None
+    return Advice(
+        "The service callback did not return the response: rclpy could not send what came back, and the server died of "
+        "it.",
+        "End the callback with `return response`, on every way out.",
+    )
+
+
 def wrong_sum(evidence: Evidence) -> Advice | None:
     """An answer is not the sum."""
     part = evidence.main
@@ -239,6 +254,7 @@ EXERCISE = Exercise(
         Mistake("field_typo", fields_never_filled, certain=True),
         Mistake("wrong_sum", wrong_sum, certain=True),
         *common.CRASHES,
+        Mistake("callback_returned_none", returned_none, certain=True),
         common.endpoint_name("service"),
         common.message_type("service"),
         *common.OTHER_CRASHES,

@@ -8,8 +8,7 @@ that each answer is seen as it was sent, a refused cancel request among them.
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from action_msgs.msg import GoalInfo
 from action_msgs.srv import CancelGoal
@@ -18,8 +17,12 @@ from unique_identifier_msgs.msg import UUID
 
 from autograder.judge.actions import goal_text
 from autograder.judge.interfaces import filled, interface, to_data
-from autograder.judge.recorder import Recorder
-from autograder.judge.wire import Wire
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.judge.recorder import Recorder
+    from autograder.judge.wire import Wire
 
 GRAPH_POLL = 0.004
 """Seconds between two looks for a server."""

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from autograder.judge.interfaces import filled, interface, to_data
-from autograder.judge.recorder import Recorder
-from autograder.judge.wire import Wire
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from autograder.judge.recorder import Recorder
+    from autograder.judge.wire import Wire
 
 GRAPH_POLL = 0.004
 """Seconds between two looks for a server."""
