@@ -22,8 +22,8 @@ from autograder.judge.process import JudgeDied, JudgeProcess
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-RUN_LIMIT = 120.0
-"""Seconds of wall time in which one reference solution must have been seen."""
+RUN_LIMIT = 600.0
+"""Seconds of wall time in which one reference solution must have been seen; one may build a workspace twice."""
 
 _CALL = """
 

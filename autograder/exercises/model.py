@@ -113,7 +113,7 @@ class ActionCounterpart(Protocol):
     """An action server of the judge's that does only what the scenario tells it to."""
 
     def await_goal(self, within: float) -> bool:
-        """Wait until a goal arrived (it is accepted, unless goals are refused); False where none came in ``within`` seconds."""
+        """Wait until a goal arrived; False where none came in ``within`` seconds."""
         ...
 
     def send_feedback(self, **fields: Any) -> None:
@@ -292,6 +292,7 @@ class Exercise:
         runner: What `autograder.workspaces` does with a path that is given in place of a command: ``"hello"``,
             ``"interface"`` or ``"launch"``; empty where a path is no subject.
         wraps_commands: Whether commands are run by that runner too.
+        recorded: The kinds of events that a reference output keeps; None for all that it keeps of any exercise.
     """
 
     id: str
@@ -307,6 +308,7 @@ class Exercise:
     second_look: bool = True
     runner: str = ""
     wraps_commands: bool = False
+    recorded: tuple[str, ...] | None = None
 
     @property
     def points(self) -> float:

@@ -64,7 +64,7 @@ def _report(exercise: Exercise, subject: RemoteSubject, seed: str, recording: bo
                 return Report(trial.check(exercise, subject, stored, seed=seed, domain_id=domain_id))
             recorded = record.record(exercise, subject, domain_id=domain_id)
             verdict = trial.judge(exercise, record.as_evidence(recorded), seed)
-            return Report(verdict, reference.dump(recorded))
+            return Report(verdict, reference.dump(recorded, exercise.recorded))
     except (domain.NoFreeDomainError, reference.NoReference, record.NotRecordable, JudgeFailed) as error:
         return Report(trouble=str(error))
 

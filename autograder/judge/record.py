@@ -6,7 +6,9 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from autograder.exercises.evidence import Evidence, Reference
+from autograder.exercises.launch_report import processes
 from autograder.exercises.model import Exercise, Look
+from autograder.exercises.workspace_report import report_of
 from autograder.judge.bench import TestBench
 from autograder.judge.trial import look
 
@@ -51,6 +53,15 @@ def _interface(exercise: Exercise, subject: Subject, domain_id: int) -> dict[str
     try:
         bench.part("interface")
         bench.start(*exercise.sample_arguments)
-        return bench.await_any_endpoint(exercise.roles)
+        if exercise.runner:
+            # A workspace is built first, and shows its face only then.
+            bench.wait_until(_is_at_work, exercise.limit)
+        found = bench.await_any_endpoint(exercise.roles)
+        # Several programs are not all there at once: only what was waited for is sure to be the same each time.
+        return {role: found[role] for role in exercise.roles} if exercise.runner else found
     finally:
         bench.close()
+
+
+def _is_at_work(evidence: Evidence) -> bool:
+    return report_of(evidence.main) is not None or bool(processes(evidence.main))

@@ -8,13 +8,14 @@ times, node names made up by chance, the order of log lines between two channels
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from autograder import course
 from autograder.exercises.evidence import Event, Part, Reference
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
 _KEPT = (
@@ -69,8 +70,16 @@ def parse(data: Mapping[str, Any]) -> Reference:
     return Reference(data["exercise"], data["interface"], parts)
 
 
-def dump(reference: Reference) -> str:
-    """The JSON form, the same for every recording of the same behaviour; one line for each event."""
+def dump(reference: Reference, kinds: Sequence[str] | None = None) -> str:
+    """The JSON form, the same for every recording of the same behaviour; one line for each event.
+
+    Args:
+        reference: What was recorded.
+        kinds: The kinds of events to keep; None for all that are ever kept.
+    """
+    if kinds is not None:
+        parts = [replace(p, events=[e for e in p.events if e.kind in kinds]) for p in reference.parts]
+        reference = replace(reference, parts=parts)
     head = {"exercise": reference.exercise, "interface": _sorted(reference.interface)}
     lines = json.dumps(head, indent=1, ensure_ascii=False).splitlines()[:-1]
     return (

@@ -7,12 +7,15 @@ this one, so that nodes of the notebook's demonstrations are neither heard nor d
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING, Self
 
 import rclpy
 import rclpy.utilities
 from rclpy.context import Context
 from rclpy.signals import SignalHandlerOptions
+
+from autograder.ros_domain import DOMAIN_VARIABLE
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -35,6 +38,9 @@ class CheckContext:
         # rclpy.spin and its kin share one executor, which stays with the context it was first used on.
         self._usual_executor = getattr(rclpy, _GLOBAL_EXECUTOR, None)
         setattr(rclpy, _GLOBAL_EXECUTOR, None)
+        # What the subject starts as a process, such as the ros2 command, must be on the judge's domain, too.
+        self._usual_domain = os.environ.get(DOMAIN_VARIABLE)
+        os.environ[DOMAIN_VARIABLE] = str(self._domain_id)
         return self
 
     def __exit__(
@@ -43,6 +49,10 @@ class CheckContext:
         self._end()
         setattr(rclpy, _GLOBAL_EXECUTOR, self._usual_executor)
         self._put(self._usual)
+        if self._usual_domain is None:
+            os.environ.pop(DOMAIN_VARIABLE, None)
+        else:
+            os.environ[DOMAIN_VARIABLE] = self._usual_domain
 
     def ensure(self, *, fresh: bool) -> None:
         """Make a new context where one is asked for, or where the student's code has shut the last one down."""

@@ -1,0 +1,128 @@
+"""Build a workspace from a notebook, and use what was built in the running kernel.
+
+A kernel cannot be sourced: the loader reads ``LD_LIBRARY_PATH`` only when a process starts. What works, measured with a
+service type of a workspace on Jazzy, is to load the package's libraries once with their symbols open to all
+(``RTLD_GLOBAL``, 5 ms). The loader then finds each by its name, and so does rosidl's type support, which opens its
+libraries by name, too.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import html
+import importlib
+import os
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from autograder.workspaces.building import Build, build
+from autograder.workspaces.placing import CannotPlace, place
+from autograder.workspaces.prefixes import package_prefixes, python_folders, with_prefixes
+
+MAX_LOG = 4_000
+"""Characters of a failed build's log that are shown."""
+
+
+@dataclass(frozen=True, repr=False)
+class WorkspaceBuild:
+    """What `build_workspace` shows at the end of a cell.
+
+    Attributes:
+        build: How the build went.
+        note: What to know besides; empty where there is nothing.
+    """
+
+    build: Build
+    note: str = ""
+
+    @property
+    def ok(self) -> bool:
+        """Whether every package was built."""
+        return self.build.ok
+
+    def summary(self) -> str:
+        """One or two sentences."""
+        made = self.build
+        if not made.ok:
+            where = f"colcon could not build {made.package}: " if made.package else ""
+            return f"{where}{made.line}"
+        names = ", ".join(package.name for package in made.packages)
+        how = "built before from the same sources" if made.reused else f"built in {made.seconds:.1f} s"
+        return f"{names}: {how}.{f' {self.note}' if self.note else ''}"
+
+    def __repr__(self) -> str:
+        log = f"\n\n{self.build.log[-MAX_LOG:]}" if self.build.log else ""
+        return f"{self.summary()}{log}"
+
+    def _repr_html_(self) -> str:
+        line = html.escape(self.summary())
+        if self.ok:
+            return f"<p>{line}</p>"
+        log = html.escape(self.build.log[-MAX_LOG:])
+        whole = f"<details><summary>the log</summary><pre>{log}</pre></details>" if log else ""
+        return f"<p><strong>Not built.</strong> <code>{line}</code></p>{whole}"
+
+
+def build_workspace(folder: str | os.PathLike[str] = "ros2_ws") -> WorkspaceBuild:
+    """Build a workspace as ``colcon build`` does, and make its packages known to this kernel.
+
+    The same sources are not built a second time. The result is in the workspace's ``install`` folder, for terminals to
+    source; what this kernel starts from now on (``!ros2 run``, a launch) finds the packages without it, and so does
+    ``import``. A package that the kernel has already imported stays as it was: a note says so.
+
+    Args:
+        folder: The workspace, the folder that holds ``src``.
+    """
+    made = build(Path(folder))
+    if not made.ok:
+        return WorkspaceBuild(made)
+    try:
+        install = place(made)
+    except CannotPlace as error:
+        return WorkspaceBuild(made, str(error))
+    return WorkspaceBuild(made, _use(package_prefixes(install), made))
+
+
+def _use(prefixes: list[Path], made: Build) -> str:
+    names = {package.name for package in made.packages}
+    chosen = [prefix for prefix in prefixes if prefix.name in names]
+    os.environ.update(with_prefixes(os.environ, chosen))
+    stale = [] if made.reused else [prefix.name for prefix in chosen if prefix.name in sys.modules]
+    elsewhere = [prefix.name for prefix in chosen if _is_imported_from_elsewhere(prefix)]
+    for prefix in chosen:
+        for folder in map(str, reversed(python_folders(prefix))):
+            if folder not in sys.path:
+                sys.path.insert(0, folder)
+        if prefix.name not in sys.modules:
+            load_libraries(prefix)
+    importlib.invalidate_caches()
+    old = sorted({*stale, *elsewhere})
+    if not old:
+        return ""
+    return f"This kernel has imported {', '.join(old)} before and goes on with that one; restart it to use the new one."
+
+
+def load_libraries(prefix: Path) -> None:
+    """Load the libraries of a package, so that those who ask for them by name get these.
+
+    Raises:
+        OSError: One of them needs a library that is not there.
+    """
+    waiting = sorted((prefix / "lib").glob("lib*.so"))
+    while waiting:
+        # One may need another, and the order is nowhere written: go round until none is left.
+        failed: list[tuple[Path, OSError]] = []
+        for library in waiting:
+            try:
+                ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL)
+            except OSError as error:
+                failed.append((library, error))
+        if len(failed) == len(waiting):
+            raise failed[0][1]
+        waiting = [library for library, _ in failed]
+
+
+def _is_imported_from_elsewhere(prefix: Path) -> bool:
+    file = getattr(sys.modules.get(prefix.name), "__file__", None)
+    return file is not None and not Path(file).is_relative_to(prefix)
