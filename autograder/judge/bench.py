@@ -371,7 +371,9 @@ def _made(part: Part) -> Part:
     """The part; of a node whose constructor never ended only that counts: nobody could use it."""
     if part.first("subject", "never_constructed") is None:
         return part
-    return Part(part.name, part.inputs, [event for event in part.events if event.kind in ("subject", "stack")])
+    return Part(
+        part.name, part.inputs, [event for event in part.events if event.kind in ("subject", "stack")]
+    )
 
 
 class _Settling:

@@ -64,7 +64,9 @@ class RemoteSubject:
         self._stopped.clear()
         fresh, self._fresh = self._fresh, False
         self._tell("start", run=self._run, fresh=fresh, arguments=list(arguments), options=options)
-        if self._is_class and not recorder.wait(lambda: self._marker is not None or self.ended, CONSTRUCT_LIMIT):
+        if self._is_class and not recorder.wait(
+            lambda: self._marker is not None or self.ended, CONSTRUCT_LIMIT
+        ):
             recorder.record("stack", "subject", text=self.stack())
             recorder.record("subject", "never_constructed")
             self._ended = True
