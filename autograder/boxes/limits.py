@@ -22,9 +22,10 @@ class Limits:
         message_bytes: Largest single message that is read from a kernel.
     """
 
-    cell_seconds: float = 30.0
+    # A first colcon build of interfaces takes 10 s on an idle machine and most of a minute on a busy one.
+    cell_seconds: float = 120.0
     check_margin: float = 10.0
-    notebook_seconds: float = 180.0
+    notebook_seconds: float = 900.0
     interrupt_grace: float = 3.0
     start_seconds: float = 60.0
     cell_output_bytes: int = 200_000

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from nbgrader.converters import GenerateAssignment
 from nbgrader.coursedir import CourseDirectory
 
+from autograder.boxes.limits import Limits
 from autograder.grading import nodes
 from autograder.grading.class_directory import CONFIG_NAME, STATE_NAME, ClassDirectory
 from autograder.grading.errors import ClassExists, GradingError, clear_disk_errors
@@ -97,8 +98,8 @@ def new_class(
     course_root: Path,
     *,
     assignments: Sequence[str] = (),
-    cell_seconds: float = 30.0,
-    notebook_seconds: float = 180.0,
+    cell_seconds: float = Limits.cell_seconds,
+    notebook_seconds: float = Limits.notebook_seconds,
 ) -> NewClass:
     """Make a class directory with its gradebook, sources and release.
 
