@@ -121,7 +121,7 @@ def entry_point(evidence: Evidence) -> Advice | None:
         return Advice(
             f"The package is built, but it has no program {PROGRAM}: "
             + (f"setup.py names only {named}." if named else "setup.py names no entry point."),
-            f"In setup.py, 'console_scripts' must hold {line} Then build again.",
+            f"In setup.py, 'console_scripts' must hold {line.rstrip(',')}. Then build again.",
         )
     found = re.search(
         rf"No module named '{PACKAGE}\.(?P<module>\w+)'|module '{PACKAGE}\.\w+' has no attribute '(?P<name>\w+)'",
