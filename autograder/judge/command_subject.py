@@ -149,6 +149,8 @@ class _Budget:
 
 
 def _die_with_the_judge() -> None:
+    # A judge that runs in the background of a shell ignores Ctrl-C; its subjects must not.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
     _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
 
 
