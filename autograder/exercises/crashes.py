@@ -130,6 +130,12 @@ KNOWN = (
         "and send that.",
     ),
     Crash(
+        "result_missing",
+        r"The 'result' field must be a sub message of type '\w+_Result'",
+        "The execute callback of an action server returned no result.",
+        "End it with `return result`, a Fibonacci.Result() with its field filled, also where the goal is canceled.",
+    ),
+    Crash(
         "field_type",
         r"The '(?P<field>\w+)' (?:field|numpy\.ndarray) must|bad argument type for built-in operation"
         r"|must be an integer in \[|AssertionError: The '"
@@ -141,7 +147,7 @@ KNOWN = (
     Crash(
         "field_typo",
         r"AttributeError: '(?:String|U?Int\d+|\w+_(?:Request|Response|Goal|Result|Feedback|FeedbackMessage))' "
-        r"object has no attribute '(?P<name>\w+)'|Invalid arguments passed to constructor: .*'(?P<keyword>\w+)'",
+        r"object has no attribute '(?P<name>\w+)'|Invalid arguments passed to constructor: '?(?P<keyword>\w+(?:, \w+)*)",
         "The message has no field of the name {name}{keyword}.",
         "Look the fields up with `ros2 interface show` and spell the name exactly so. In an action's "
         "feedback "

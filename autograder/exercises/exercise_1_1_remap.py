@@ -47,6 +47,9 @@ def scenario(bench: Bench) -> None:
         bench.wait_until(lambda evidence: text in _all_words(evidence.main), SAYING[bench.look])
     if talks:
         bench.wait_until(lambda evidence: len(_from_subject(evidence.main, topic)) >= MESSAGES, LATE)
+    if talks and listens:
+        # The launch's processes are reported beside the wire, on a busy machine a moment later.
+        bench.wait_until(lambda evidence: by_the_launch(evidence).passed, PAUSE[bench.look])
     bench.stop()
 
 

@@ -272,6 +272,10 @@ class TestBench:
     def _follow_clock(self) -> bool:
         if self._clock is None and not self._clock_refused and (self._ears or self._mouths):
             self._clock_refused = True
+            if any(self.wire.node.count_publishers(topic) > 1 for topic in self._ears):
+                # Two nodes of one name share their parameter services: one of them would keep to real time.
+                self.doubtful = True
+                return False
             node = next(iter(self._nodes()), None)
             if node is not None:
                 stepped = SimulatedClock(self.wire, self._recorder, node)
