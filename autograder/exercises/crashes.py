@@ -147,7 +147,8 @@ KNOWN = (
     Crash(
         "field_typo",
         r"AttributeError: '(?:String|U?Int\d+|\w+_(?:Request|Response|Goal|Result|Feedback|FeedbackMessage))' "
-        r"object has no attribute '(?P<name>\w+)'|Invalid arguments passed to constructor: '?(?P<keyword>\w+(?:, \w+)*)",
+        r"object has no attribute '(?P<name>\w+)'"
+        r"|Invalid arguments passed to constructor: '?(?P<keyword>\w+(?:, \w+)*)",
         "The message has no field of the name {name}{keyword}.",
         "Look the fields up with `ros2 interface show` and spell the name exactly so. In an action's "
         "feedback "
