@@ -23,7 +23,7 @@ BEGINNING = {Look.FAST: 20.0, Look.REAL_TIME: 40.0}
 """Seconds of wall time in which a launch must have started its first process, or ended."""
 BUILDING = 180.0
 """Seconds of wall time that building the student's workspace may take."""
-PAUSE = {Look.FAST: 2.0, Look.REAL_TIME: 6.0}
+PAUSE = {Look.FAST: 3.0, Look.REAL_TIME: 10.0}
 """Seconds of wall time that a launch may let pass between its first process and its second."""
 LATE = 3.0
 """Seconds of wall time, of six periods, in which the talker must have spoken."""
@@ -272,7 +272,7 @@ EXERCISE = Exercise(
         *workspace.BUILD,
         Mistake("only_one_remapped", only_one_remapped, certain=True),
         Mistake("not_remapped", not_remapped, certain=True),
-        Mistake("renamed_in_code", renamed_in_code, certain=True),
+        Mistake("renamed_in_code", renamed_in_code),
         Mistake("someone_stayed", someone_stayed, certain=True),
         *common.CRASHES,
         Mistake("syntax_error", syntax_error, certain=True),
