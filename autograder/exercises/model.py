@@ -79,20 +79,6 @@ class Mistake:
     certain: bool = False
 
 
-class Endpoint(Protocol):
-    """A publisher, subscription, client or server of the subject's, as the graph names it."""
-
-    @property
-    def name(self) -> str:
-        """The full name of its topic, service or action."""
-        ...
-
-    @property
-    def type(self) -> str:
-        """Its interface type, such as ``std_msgs/msg/String``."""
-        ...
-
-
 class Speaker(Protocol):
     """A publisher of the judge's."""
 

@@ -366,10 +366,6 @@ class TestBench:
         for text in dict.fromkeys(event.data["text"] for event in self._recorder.part().of("log")):
             self._recorder.record("said", "log", text=text)
 
-    def inputs(self) -> Mapping[str, Any]:
-        """The inputs of the part that is running."""
-        return self._recorder.part().inputs
-
 
 def _made(part: Part) -> Part:
     """The part; of a node whose constructor never ended only that counts: nobody could use it."""

@@ -14,8 +14,6 @@ from autograder.notebook.ros_session import prepare_environment
 from autograder.notebook.subject_run import SubjectRun
 from autograder.verdict import Verdict, from_builtins, not_checked
 
-_last: dict[str, Verdict] = {}
-
 
 def check(exercise: str, subject: Any) -> float:
     """Let the judge check a subject, and show the verdict as a card.
@@ -35,14 +33,8 @@ def check(exercise: str, subject: Any) -> float:
         raise TypeError(_what_to_pass(exercise, subject))
     prepare_environment()
     verdict = _ask(exercise, subject)
-    _last[exercise] = verdict
     _show(verdict)
     return verdict.score
-
-
-def last_verdict(exercise: str) -> Verdict | None:
-    """The verdict of the last check of an exercise in this kernel, or None."""
-    return _last.get(exercise)
 
 
 def _ask(exercise: str, subject: Any) -> Verdict:
