@@ -21,6 +21,7 @@ from autograder.exercises.fibonacci_reports import (
     said_of_result,
     unshown_feedback,
 )
+from autograder.exercises.giving_up import gave_up
 from autograder.exercises.hangs import HANGS
 from autograder.exercises.model import Advice, Mistake
 from autograder.exercises.service_clients import mentions
@@ -52,13 +53,12 @@ def waits_forever(evidence: Evidence) -> Advice | None:
 
 
 def gave_up_too_early(evidence: Evidence) -> Advice | None:
-    """It ended before the late server came."""
-    if evidence.part(LATE).ending is None or asked_for(evidence.part(LATE)):
-        return None
-    if not any(asked_for(evidence.part(name)) for name in SERVED):
+    """It ended before it had met the server."""
+    served = [evidence.part(name) for name in SERVED]
+    if not gave_up(served, evidence.part(ABSENT), lambda part: bool(asked_for(part))):
         return None
     return Advice(
-        "The server came a moment late, and your client had already given up.",
+        "The server was there, or came a moment late, and your client had already given up.",
         "Wait for it with wait_for_server and a few seconds of patience before you send the goal.",
     )
 

@@ -184,7 +184,7 @@ EXERCISE = Exercise(
         Mistake("field_typo", fields_never_filled, certain=True),
         Mistake("wrong_arguments", wrong_arguments, certain=True),
         Mistake("gave_up_too_early", gave_up_too_early),
-        Mistake("no_call", no_call, certain=True),
+        Mistake("no_call", no_call),
         Mistake("wrong_sum_reported", common.only_if_ended(wrong_sum_reported), certain=True),
         Mistake("sum_not_reported", common.only_if_ended(sum_not_reported), certain=True),
         Mistake("wrong_sum_reported", wrong_sum_reported),

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
+from autograder.exercises.giving_up import gave_up
 from autograder.exercises.hangs import stacks
 from autograder.exercises.model import Advice, Bench, Finding
 
@@ -258,17 +259,23 @@ def waits_forever(evidence: Evidence) -> Advice | None:
 
 
 def gave_up_too_early(evidence: Evidence) -> Advice | None:
-    """It ended before the late service came."""
-    part = evidence.part(LATE)
-    if part.ending is None or requests(part):
-        return None
-    if not any(requests(p) for p in served_parts(evidence)):
+    """It ended before it had met the service."""
+    if not gave_up(served_parts(evidence), evidence.part(ABSENT), lambda part: bool(requests(part))):
         return None
     return Advice(
-        "The service came a moment late, and your client had already given up (or called before it was "
-        "there).",
+        "The service was there, or came a moment late, and your client had already given up (or called before it "
+        "had met the service).",
         "Wait for the service with wait_for_service and a few seconds of patience before the first call.",
     )
+
+
+def only_if_called(recognise: Callable[[Evidence], Advice | None]) -> Callable[[Evidence], Advice | None]:
+    """The same, but only where each run with a service came to a call: time had no part in the number of calls then."""
+
+    def called_each_time(evidence: Evidence) -> Advice | None:
+        return recognise(evidence) if all(map(requests, served_parts(evidence))) else None
+
+    return called_each_time
 
 
 def silent_end(evidence: Evidence) -> Advice | None:
