@@ -1,4 +1,4 @@
-"""Set the course up in ``.venv``: ``python3 -m environment.bootstrap [--tests] [--token TEXT]``.
+"""Set the course up in ``.venv``: ``python3 -m environment.bootstrap [--tests] [--with EXTRA] [--token TEXT]``.
 
 Called by ``./course``, with any Python from 3.11 on and its standard library only. Each step is stamped with
 what it was made from (see steps.py), so running this again does what is left to do: nothing, as a rule.
@@ -17,13 +17,14 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from environment import ros_flavour, system_packages
+from environment.lock import EXTRAS
 from environment.place import Place
 from environment.ros_flavour import Machine, NoRosError, Ros
 from environment.setup_steps import Setup, SetupError
 from environment.steps import run_steps
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
 ROOT = Path(__file__).resolve().parent.parent
 # What the environment with everything takes, and some air for the build, in bytes.
@@ -103,8 +104,24 @@ def _explain_failure(log_path: Path) -> None:
     say(f"the whole log is {log_path}")
 
 
-def set_up(place: Place, environ: Mapping[str, str], with_tests: bool) -> None:
+def _extras(place: Place, asked: Sequence[str]) -> list[str]:
+    """Return what is installed besides, now and from now on: an extra that was asked for once stays."""
+    noted = place.notes / "extras"
+    before = noted.read_text(encoding="utf-8").split() if noted.is_file() else []
+    wanted = [name for name in EXTRAS if name in before or name in asked]
+    if wanted:
+        noted.write_text(" ".join(wanted) + "\n", encoding="utf-8")
+    return wanted
+
+
+def set_up(place: Place, environ: Mapping[str, str], with_tests: bool, extras: Sequence[str] = ()) -> None:
     """Bring the environment up to date.
+
+    Args:
+        place: where everything is.
+        environ: the user's variables.
+        with_tests: also what ``./course test`` needs.
+        extras: also what these extras of pyproject.toml need.
 
     Raises:
         SetupError, NoRosError, MissingPackagesError: it cannot be done; the text says what to do.
@@ -118,7 +135,7 @@ def set_up(place: Place, environ: Mapping[str, str], with_tests: bool) -> None:
     log_path = place.notes / "setup.log"
     with log_path.open("a", encoding="utf-8") as log:
         system_packages.require("setup", log, say)
-        steps = Setup(place, ros, sourced, log).steps(with_tests)
+        steps = Setup(place, ros, sourced, log).steps(with_tests, _extras(place, extras))
         try:
             done = run_steps(steps, place.notes / "stamps", place.root, say)
         except SetupError:
@@ -145,6 +162,9 @@ def main(arguments: list[str] | None = None) -> int:
         prog="python3 -m environment.bootstrap", description=__doc__.splitlines()[0]
     )
     parser.add_argument("--tests", action="store_true", help="also what ./course test needs")
+    parser.add_argument(
+        "--with", dest="extras", action="append", choices=EXTRAS, default=[], help="also what this needs"
+    )
     parser.add_argument("--token", help="what ./course compares to know that nothing changed since")
     options = parser.parse_args(arguments)
     place = Place(ROOT, _find_base_python())
@@ -156,7 +176,7 @@ def main(arguments: list[str] | None = None) -> int:
         except BlockingIOError:
             say("another set-up is running, waiting for it")
             fcntl.flock(folder, fcntl.LOCK_EX)
-        set_up(place, os.environ, options.tests)
+        set_up(place, os.environ, options.tests, options.extras)
         if options.token:
             (place.notes / "token").write_text(f"{options.token}\n", encoding="utf-8")
     except (SetupError, NoRosError, system_packages.MissingPackagesError) as error:

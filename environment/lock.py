@@ -1,11 +1,11 @@
 """Resolve the dependencies into hashed lock files: ``python3 -m environment.lock [--upgrade]``.
 
-The three lock files in ``requirements/`` are one resolution, cut into the parts that a set-up installs
-separately:
+The lock files in ``requirements/`` are one resolution, cut into the parts that a set-up installs separately:
 
 * ``course.lock``: the dependencies of pyproject.toml and the build tools;
 * ``ros.lock``: the ROS wheels and what only they need, left out where a Jazzy is sourced;
-* ``dev.lock``: what ``./course test`` needs besides.
+* ``dev.lock``: what ``./course test`` needs besides;
+* ``cluster.lock``, ``postgresql.lock``: what the extra of that name needs besides, installed where it is asked for.
 
 Without ``--upgrade`` a version that is locked stays as long as the inputs allow it. The locks name no package
 index: pip takes the one it is configured for, and the hashes make sure that it is the same file.
@@ -22,10 +22,15 @@ import tempfile
 import tomllib
 import venv
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 ROOT = Path(__file__).resolve().parent.parent
 REQUIREMENTS = ROOT / "environment" / "requirements"
-LOCKS = ("course", "ros", "dev")
+EXTRAS = ("cluster", "postgresql")
+LOCKS = ("course", "ros", "dev", *EXTRAS)
 
 # The resolver that writes the locks. It is needed for nothing else, so it is not locked itself.
 RESOLVER = "uv==0.13.8"
@@ -40,6 +45,8 @@ _PURPOSE = {
     "course": "What the course and its autograder run on.",
     "ros": "ROS 2 Jazzy as wheels, and what only they need.",
     "dev": "What the checks and tests of the project need besides.",
+    "cluster": "What grading on a Dask cluster needs besides.",
+    "postgresql": "What a gradebook in PostgreSQL needs besides.",
 }
 _INPUTS_LINE = re.compile(r"^# inputs sha256:([0-9a-f]{64})$", re.MULTILINE)
 _BLOCK_START = re.compile(r"^([A-Za-z0-9][A-Za-z0-9._-]*)==")
@@ -82,19 +89,27 @@ def split_blocks(lock: str) -> list[tuple[str, str]]:
     return [(name, "\n".join(lines)) for name, lines in blocks]
 
 
-def cut(everything: str, course: set[str], with_dev: set[str]) -> dict[str, str]:
-    """Cut one resolution into the bodies of the three locks, each requirement in exactly one of them.
+def cut(everything: str, course: set[str], extras: Mapping[str, set[str]]) -> dict[str, str]:
+    """Cut one resolution into the bodies of the locks.
+
+    What the course needs is in its lock alone. Whatever else several extras need is in each of their locks,
+    since any of them may be installed without the others.
 
     Args:
         everything: the text of the whole resolution.
         course: the names that the course needs without ROS.
-        with_dev: the same with the ``dev`` extra.
+        extras: the same with each extra.
     """
     bodies: dict[str, list[str]] = {name: [] for name in LOCKS}
     for name, block in split_blocks(everything):
-        part = "course" if name in course else "dev" if name in with_dev else "ros"
-        bodies[part].append(block)
+        wanting = [extra for extra, names in extras.items() if name in names]
+        for part in ["course"] if name in course else wanting or ["ros"]:
+            bodies[part].append(block)
     return {part: "\n".join(blocks) + "\n" for part, blocks in bodies.items()}
+
+
+def _names(lock: str) -> set[str]:
+    return {name for name, _ in split_blocks(lock)}
 
 
 def _resolve(resolver: Path, work: Path, inputs: list[Path], *options: str) -> str:
@@ -110,7 +125,7 @@ def _resolve(resolver: Path, work: Path, inputs: list[Path], *options: str) -> s
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Write the three lock files."""
+    """Write the lock files."""
     parser = argparse.ArgumentParser(prog="python3 -m environment.lock", description=__doc__.splitlines()[0])
     parser.add_argument("--upgrade", action="store_true", help="take the newest versions the inputs allow")
     upgrade = ["--upgrade"] if parser.parse_args(arguments).upgrade else []
@@ -124,14 +139,18 @@ def main(arguments: list[str] | None = None) -> int:
         # The resolver prefers the versions it finds in its output file.
         locked = [REQUIREMENTS / f"{name}.lock" for name in LOCKS]
         everything.write_text("".join(path.read_text(encoding="utf-8") for path in locked if path.exists()))
-        _resolve(uv, everything, [ros, tools, pyproject], "--generate-hashes", "--extra", "dev", *upgrade)
+        extras = [word for extra in ("dev", *EXTRAS) for word in ("--extra", extra)]
+        _resolve(uv, everything, [ros, tools, pyproject], "--generate-hashes", *extras, *upgrade)
         same = ("--constraint", str(everything), "--no-annotate")
         course = _resolve(uv, work / "course.txt", [tools, pyproject], *same)
-        with_dev = _resolve(uv, work / "dev.txt", [tools, pyproject], "--extra", "dev", *same)
+        wanted = {
+            extra: _resolve(uv, work / f"{extra}.txt", [tools, pyproject], "--extra", extra, *same)
+            for extra in ("dev", *EXTRAS)
+        }
         bodies = cut(
             everything.read_text(encoding="utf-8"),
-            {name for name, _ in split_blocks(course)},
-            {name for name, _ in split_blocks(with_dev)},
+            _names(course),
+            {extra: _names(lock) for extra, lock in wanted.items()},
         )
     for name, body in bodies.items():
         header = _HEADER.format(purpose=_PURPOSE[name], digest=inputs_digest())

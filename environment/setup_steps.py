@@ -14,13 +14,13 @@ from typing import IO, TYPE_CHECKING
 
 from environment import course_process, ros_flavour
 from environment.jupyter_files import kernel_install_options, write_jupyter_files
-from environment.lock import split_blocks
+from environment.lock import EXTRAS, split_blocks
 from environment.place import INTERFACES, Place, environment_paths, environment_values
 from environment.ros2_command.install import install as install_ros2_command
 from environment.steps import Step, files_below
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
     from pathlib import Path
 
     from environment.ros_flavour import Ros
@@ -49,8 +49,8 @@ class Setup:
     environ: Mapping[str, str]
     log: IO[str]
 
-    def steps(self, with_tests: bool) -> list[Step]:
-        """Return the steps in their order; those of the tests only when they are asked for."""
+    def steps(self, with_tests: bool, extras: Collection[str] = ()) -> list[Step]:
+        """Return the steps in their order; those of the tests and of extras only when they are asked for."""
         place = self.place
         locks = [place.lock("course")] if self.ros.is_sourced else [place.lock("course"), place.lock("ros")]
         # The notice is for the user: it does not make another environment.
@@ -71,12 +71,14 @@ class Setup:
             Step("jupyter", "configuring JupyterLab", jupyter, self._configure_jupyter),
             Step("project", "installing the autograder", project, self._install_project),
         ]
-        if with_tests:
-            dev = [place.lock("dev")]
-            steps.append(
-                Step("dev", "installing what the tests need", tuple(dev), lambda: self._install(dev))
-            )
+        wanted = {"dev": "the tests need"} if with_tests else {}
+        wanted |= {name: f"the extra {name} needs" for name in EXTRAS if with_tests or name in extras}
+        steps += [self._extra(name, f"installing what {what}") for name, what in wanted.items()]
         return steps
+
+    def _extra(self, name: str, doing: str) -> Step:
+        lock = self.place.lock(name)
+        return Step(name, doing, (lock,), lambda: self._install([lock]))
 
     def _what_is_installed(self) -> str:
         if self.ros.is_sourced:

@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from environment.lock import LOCKS, REQUIREMENTS, ROOT, cut, inputs_digest, recorded_digest, split_blocks
+from environment.lock import (
+    EXTRAS,
+    LOCKS,
+    REQUIREMENTS,
+    ROOT,
+    cut,
+    inputs_digest,
+    recorded_digest,
+    split_blocks,
+)
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -35,11 +44,18 @@ def lock_text(name: str) -> str:
 
 
 def test_a_resolution_is_cut_so_that_nothing_is_lost_or_doubled() -> None:
-    bodies = cut(RESOLUTION, course={"six"}, with_dev={"six", "ruff"})
+    bodies = cut(RESOLUTION, course={"six"}, extras={"dev": {"six", "ruff"}, "cluster": {"six"}})
     assert [name for name, _ in split_blocks(bodies["course"])] == ["six"]
     assert [name for name, _ in split_blocks(bodies["dev"])] == ["ruff"]
     assert [name for name, _ in split_blocks(bodies["ros"])] == ["numpy", "numpy", "ros-rclpy"]
     assert bodies["ros"].splitlines() == RESOLUTION.splitlines()[1:8]
+    assert not split_blocks(bodies["cluster"])
+
+
+def test_what_two_extras_need_is_in_the_lock_of_each() -> None:
+    bodies = cut(RESOLUTION, course=set(), extras={"dev": {"ruff"}, "cluster": {"ruff", "six"}})
+    assert [name for name, _ in split_blocks(bodies["dev"])] == ["ruff"]
+    assert [name for name, _ in split_blocks(bodies["cluster"])] == ["ruff", "six"]
 
 
 @pytest.mark.parametrize("name", LOCKS)
@@ -74,23 +90,34 @@ def test_no_index_host_or_path_of_a_machine_is_named(name: str) -> None:
         assert not re.search(r"://|--(extra-)?index|--find-links|^-f |@ |(^|\s)/\w", line), line
 
 
-def test_no_requirement_is_in_two_locks() -> None:
-    names = [name for lock in LOCKS for name in {name for name, _ in split_blocks(lock_text(lock))}]
-    assert len(names) == len(set(names))
+def locked(name: str) -> set[str]:
+    return {name for name, _ in split_blocks(lock_text(name))}
+
+
+def test_a_requirement_of_the_course_is_in_no_other_lock() -> None:
+    assert not [name for lock in LOCKS if lock != "course" for name in locked(lock) & locked("course")]
+    assert not [name for lock in ("dev", *EXTRAS) for name in locked(lock) & locked("ros")]
+
+
+def test_the_extras_are_not_in_what_everybody_installs() -> None:
+    for lock in ("course", "ros", "dev"):
+        assert not locked(lock) & {"dask", "distributed", "psycopg", "psycopg-binary"}
+    assert "distributed" in locked("cluster")
+    assert "psycopg" in locked("postgresql")
 
 
 def test_no_ros_wheel_is_outside_its_lock() -> None:
-    for lock in ("course", "dev"):
+    for lock in ("course", "dev", *EXTRAS):
         assert not [name for name, _ in split_blocks(lock_text(lock)) if name.startswith("ros-")]
 
 
 def test_everything_that_pip_installed_here_is_locked() -> None:
-    locked = {name for lock in LOCKS for name, _ in split_blocks(lock_text(lock))}
+    known = {name for lock in LOCKS for name in locked(lock)}
     # What venv itself brings, and the project.
-    locked |= {"pip", "ros2-course-autograder"}
+    known |= {"pip", "ros2-course-autograder"}
     by_pip = [
         found for found in distributions(path=[sysconfig.get_path("purelib")]) if found.read_text("INSTALLER")
     ]
     here = {re.sub(r"[-_.]+", "-", str(found.metadata["Name"])).lower() for found in by_pip}
     assert "jupyterlab" in here
-    assert here - locked == set()
+    assert here - known == set()

@@ -19,10 +19,12 @@ PLACE = Place(ROOT, Path("/usr/bin/python3.11"))
 JAZZY = Ros("system", {"AMENT_PREFIX_PATH": ("/opt/ros/jazzy",), "LD_LIBRARY_PATH": ("/opt/ros/jazzy/lib",)})
 
 
-def steps(place: Place = PLACE, ros: Ros | None = None, with_tests: bool = False) -> dict[str, Step]:
+def steps(
+    place: Place = PLACE, ros: Ros | None = None, with_tests: bool = False, extras: tuple[str, ...] = ()
+) -> dict[str, Step]:
     """Return the steps of a set-up by their names."""
     setup = Setup(place, ros or Ros("wheels"), {}, io.StringIO())
-    return {step.name: step for step in setup.steps(with_tests)}
+    return {step.name: step for step in setup.steps(with_tests, extras)}
 
 
 def made_from(step: Step) -> str:
@@ -31,12 +33,27 @@ def made_from(step: Step) -> str:
 
 def test_the_order() -> None:
     assert list(steps(with_tests=True)) == [
-        *("environment", "packages", "interfaces", "start", "ros2", "jupyter", "project", "dev")
+        *("environment", "packages", "interfaces", "start", "ros2", "jupyter", "project", "dev"),
+        *("cluster", "postgresql"),
     ]
 
 
 def test_without_tests_their_tools_are_not_installed() -> None:
-    assert "dev" not in steps()
+    assert not {"dev", "cluster", "postgresql"} & set(steps())
+
+
+def test_an_extra_is_installed_where_it_is_asked_for() -> None:
+    assert list(steps(extras=("cluster",)))[-1] == "cluster"
+    assert PLACE.lock("cluster") in steps(extras=("cluster",))["cluster"].inputs
+
+
+def test_an_extra_that_was_asked_for_once_stays(tmp_path: Path) -> None:
+    place = Place(tmp_path, Path("/usr/bin/python3.11"))
+    place.notes.mkdir(parents=True)
+    assert bootstrap._extras(place, ()) == []
+    assert bootstrap._extras(place, ("cluster",)) == ["cluster"]
+    assert bootstrap._extras(place, ()) == ["cluster"]
+    assert bootstrap._extras(place, ("postgresql",)) == ["cluster", "postgresql"]
 
 
 def test_another_python_another_folder_or_another_ros_makes_another_environment() -> None:
