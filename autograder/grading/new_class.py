@@ -55,6 +55,10 @@ c.Autograde.autograde_preprocessors = [
 ]
 c.OverwriteCells.add_missing_cells = True
 
+# What you and the students read: no script, no frame and no address that a submission brought along.
+c.GenerateFeedback.exporter_class = "autograder.grading.pages.FeedbackExporter"
+c.HTMLExporter.filters = {{"markdown2html": "autograder.grading.pages.markdown_to_html"}}
+
 # `nbgrader export` and `autograder grade` each write a table: give nbgrader's a name of its own.
 c.ExportPlugin.to = "nbgrader_export.csv"
 

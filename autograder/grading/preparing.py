@@ -8,6 +8,7 @@ from autograder.boxes.execution import Cell, Kind
 from autograder.boxes.limits import Limits
 from autograder.grading.class_directory import SUFFIX, ClassDirectory, Submission
 from autograder.grading.course_version import course_version
+from autograder.grading.harmless import make_harmless
 from autograder.grading.master import check_of
 from autograder.grading.rebuild import Rebuilt, grade_id, rebuild, rebuild_unreadable
 from autograder.grading.seeds import seed_for
@@ -26,7 +27,10 @@ def rebuilt_notebook(path: Path, master: NotebookNode) -> tuple[Rebuilt, str]:
         cells, left_out = parse(read_bytes(path))
     except UnreadableSubmission as error:
         return rebuild_unreadable(master, str(error)), str(error)
-    return rebuild(master, cells, left_out), ""
+    rebuilt = rebuild(master, cells, left_out)
+    # Here and not on the page: formgrader shows what lies in autograded/, and it cleans nothing.
+    make_harmless(rebuilt.notebook)
+    return rebuilt, ""
 
 
 def task_of(

@@ -1,0 +1,168 @@
+"""A tiny class: one notebook, two exercises, a check that only tells the fake judge a number."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import nbformat
+from nbgrader.api import Gradebook
+from rich.console import Console
+
+from autograder.boxes.execution import CellRun, Ended, Execution
+from autograder.boxes.zero import grader_trouble, zero
+from autograder.grading.batch import grade
+from autograder.grading.engine import Done
+from autograder.grading.new_class import new_class
+
+sys.path.insert(0, str(Path(__file__).parent))  # for fake_judge, which a worker imports by that name
+from fake_judge import verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from autograder.grading.report import GradeReport
+    from autograder.grading.task import Task
+
+MASTER = """\
+---
+jupytext:
+  formats: md:myst
+kernelspec:
+  display_name: Python 3 (ipykernel)
+  name: python3
+---
+
+# Tiny
+
+Two answers, two checks.
+
+```{code-cell} ipython3
+import os
+import pathlib
+
+
+def check(exercise, subject):
+    said = pathlib.Path(os.environ["AUTOGRADER_JUDGE_SOCKET"]).with_suffix(".said")
+    said.write_text(str(subject()))
+    return 10.0
+```
+
+```{code-cell} ipython3
+:tags: [solution]
+def Talker():
+    \"\"\"The talker's points.\"\"\"
+    ### BEGIN SOLUTION
+    # TODO: return ten.
+    return 10
+    ### END SOLUTION
+```
+
+```{code-cell} ipython3
+:tags: [check]
+check("lab_1_2.talker", Talker)
+```
+
+Between the two.
+
+```{code-cell} ipython3
+:tags: [solution]
+def Listener():
+    \"\"\"The listener's points.\"\"\"
+    ### BEGIN SOLUTION
+    # TODO: return ten.
+    return 10
+    ### END SOLUTION
+```
+
+```{code-cell} ipython3
+:tags: [check]
+check("lab_1_2.listener", Listener)
+```
+"""
+
+TALKER, LISTENER = "lab_1_2-talker", "lab_1_2-listener"
+QUIET = Console(quiet=True)
+
+
+@dataclass
+class TinyClass:
+    """A class in a test's own folder."""
+
+    path: Path
+
+    def released(self) -> Any:
+        return nbformat.read(self.path / "release" / "lab_1_2" / "lab_1_2.ipynb", as_version=4)
+
+    def submit(self, student: str, talker: object = 10, listener: object = 10) -> Path:
+        """Hand in a notebook whose answers return these (code, so "1/0" raises)."""
+        notebook = self.released()
+        for cell in notebook.cells:
+            name = cell.metadata.get("nbgrader", {}).get("grade_id")
+            if name == "Talker":
+                cell.source = f"def Talker():\n    return {talker}"
+            elif name == "Listener":
+                cell.source = f"def Listener():\n    return {listener}"
+        return self.hand_in(student, notebook)
+
+    def hand_in(self, student: str, notebook: Any) -> Path:
+        text = notebook if isinstance(notebook, str) else nbformat.writes(notebook)
+        path = self.path / "submitted" / student / "lab_1_2" / "lab_1_2.ipynb"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        return path
+
+    def grade(self, **options: Any) -> GradeReport:
+        return grade(self.path, **{"console": QUIET, "feedback": False, **options})
+
+    def scores(self, student: str) -> dict[str, float | None]:
+        """What the gradebook says."""
+        with Gradebook(f"sqlite:///{self.path / 'gradebook.db'}") as book:
+            notebook = book.find_submission_notebook("lab_1_2", "lab_1_2", student)
+            return {grade.name: grade.auto_score for grade in notebook.grades}
+
+
+def make_tiny_class(folder: Path) -> Path:
+    """A class without submissions in a folder of that one."""
+    (folder / "course" / "solutions" / "chapter").mkdir(parents=True)
+    (folder / "course" / "solutions" / "chapter" / "lab_1_2.md").write_text(MASTER)
+    new_class(folder / "tiny-class", folder / "course")
+    return folder / "tiny-class"
+
+
+class FakeEngine:
+    """Stands for the workers: the answers' text says what comes of them, at once."""
+
+    def __init__(self) -> None:
+        self.ran: list[str] = []
+        self.before: Callable[[Task], None] = lambda _: None
+
+    def execute_all(self, tasks: Sequence[Task], *_: object, **options: Any) -> Iterator[Done]:
+        for task in tasks:
+            options["on_start"](task)
+            self.before(task)
+            self.ran.append(task.student)
+            yield Done(task, self.execute(task))
+
+    def execute_one(self, task: Task, *_: object, **__: object) -> Execution:
+        self.ran.append(task.student)
+        return self.execute(task)
+
+    def execute(self, task: Task) -> Execution:
+        verdicts = {}
+        trouble = ""
+        answers = {cell.name: cell.source.rpartition("return ")[2] for cell in task.cells}
+        for index, cell in enumerate(task.cells):
+            if cell.check is None:
+                continue
+            said = answers["Talker" if cell.name == TALKER else "Listener"]
+            if said == "'die'":
+                trouble = "the judge is gone"
+                verdicts[index] = grader_trouble(cell.check, trouble)
+            elif said.isdigit():
+                verdicts[index] = verdict(cell.check.exercise, float(said), task.seed)
+            else:
+                verdicts[index] = zero(cell.check, "crashed", "It raised.", "Mend it.")
+        return Execution(tuple(CellRun(Ended.DONE) for _ in task.cells), verdicts, trouble)
