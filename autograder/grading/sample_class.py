@@ -74,7 +74,7 @@ def submit_sample(path: Path) -> None:
     for notebook in sample_notebooks():
         folder = path / "submitted" / notebook.student / notebook.assignment
         folder.mkdir(parents=True, exist_ok=True)
-        text = notebook.file or nodes.text(_made(path, notebook))
+        text = notebook.file or nodes.text(made_notebook(path, notebook))
         (folder / f"{notebook.assignment}{SUFFIX}").write_text(text, encoding="utf-8")
 
 
@@ -133,8 +133,13 @@ def _version(root: Path) -> str:
     return digest.hexdigest()
 
 
-def _made(path: Path, wanted: SampleNotebook) -> NotebookNode:
-    """The notebook as the student saved it."""
+def made_notebook(path: Path, wanted: SampleNotebook) -> NotebookNode:
+    """The notebook as the student saved it.
+
+    Args:
+        path: The class, with its sources and its release.
+        wanted: What is handed in.
+    """
     name = f"{wanted.assignment}{SUFFIX}"
     made = nodes.read((path / "release" / wanted.assignment / name).read_text(encoding="utf-8"))
     right: dict[str, str] = {}

@@ -1,0 +1,113 @@
+"""``python -m benchmarks.warm_notebook``: what the cells of a notebook and the judge's work cost by themselves.
+
+This process has everything imported. For each task that comes in on standard input it forks; the child runs the
+cells in an IPython shell of its own, without a kernel, a message or a sandbox, beside a judge that is warm too. What
+the child and the judge's own children spend is the floor that a grader can be compared with.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from autograder.boxes.execution import Kind
+from autograder.grading.task import decode_task
+from benchmarks.machine import CpuGroup
+
+if TYPE_CHECKING:
+    from autograder.grading.task import Task
+
+_MODULES = ("IPython.core.interactiveshell", "ipykernel.ipkernel", "rclpy", "rclpy.node", "autograder.notebook")
+
+
+def main() -> None:
+    """Answer each task with its floor, as a line of JSON."""
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
+    from autograder.judge import settings
+
+    os.environ.update(settings.ros_environment())
+    for name in _MODULES:
+        __import__(name)
+    from autograder.judge import warm
+
+    warm.imports()
+    for line in sys.stdin.buffer:
+        answers.write(msgspec.json.encode(_floor(decode_task(line))) + b"\n")
+        answers.flush()
+
+
+def _floor(task: Task) -> dict[str, Any]:
+    """CPU seconds of a task's cells and of the judge's children; and by cell."""
+    from autograder.judge.domain import lease
+    from autograder.judge.process import JudgeProcess
+
+    group = CpuGroup.make()
+    with tempfile.TemporaryDirectory(prefix="floor-") as name, lease() as domain:
+        folder = Path(name)
+        reading, writing = os.pipe()
+        with JudgeProcess(folder / "judge", seed=task.seed) as judge:
+            # From here on, when it is warm, the judge counts.
+            assert judge._process is not None
+            if group:
+                group.take(judge._process.pid)
+            began = time.monotonic()
+            child = os.fork()
+            if child == 0:
+                _run(task, folder, domain, judge, group, writing)
+            os.close(writing)
+            with os.fdopen(reading, "rb") as result:
+                cells = msgspec.json.decode(result.read() or b"[]")
+            os.waitpid(child, 0)
+            seconds = time.monotonic() - began
+        cpu = group.seconds() if group else None
+        if group:
+            group.remove()
+    return {"notebook": task.notebook, "seconds": seconds, "cpu": cpu, "cells": cells}
+
+
+def _run(task: Task, folder: Path, domain: int, judge: Any, group: CpuGroup | None, writing: int) -> None:
+    """The child's whole life."""
+    try:
+        if group:
+            group.join()
+        work = folder / "work"
+        work.mkdir()
+        os.chdir(work)
+        os.environ.update(
+            {"ROS_DOMAIN_ID": str(domain), "AUTOGRADER_JUDGE_SOCKET": str(folder / "judge"), "HOME": str(folder)}
+        )
+        from IPython.core.interactiveshell import InteractiveShell
+
+        shell = InteractiveShell.instance()
+        spent = []
+        sink = io.StringIO()
+        with contextlib.redirect_stdout(sink):
+            for cell in task.cells:
+                if cell.kind is not Kind.CODE:
+                    continue
+                before, began = group.seconds() if group else 0.0, time.monotonic()
+                if cell.check:
+                    judge.open(cell.check.exercise)
+                shell.run_cell(cell.source, store_history=False)
+                score = None
+                if cell.check:
+                    verdict = judge.close()
+                    score = verdict.score if verdict else None
+                cpu = (group.seconds() if group else 0.0) - before
+                spent.append([cell.source[:40], time.monotonic() - began, cpu, score])
+        os.write(writing, msgspec.json.encode(spent))
+    finally:
+        os._exit(0)
+
+
+if __name__ == "__main__":
+    main()
