@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
+from autograder.boxes.view import HOME, USER
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
@@ -21,6 +23,32 @@ _KEPT_PREFIXES = (
     "FASTDDS_",
     "_ROS_WHEELS_",
 )
+
+
+def base_environment() -> dict[str, str]:
+    """What a warm process starts with: what Python and ROS need of this process's environment, nothing else."""
+    kept = {
+        name: value for name, value in os.environ.items() if name in _KEPT or name.startswith(_KEPT_PREFIXES)
+    }
+    return {**kept, "HOME": "/nonexistent", "PYTHONNOUSERSITE": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+
+
+def box_environment(extra: Mapping[str, str] | None = None) -> dict[str, str]:
+    """The whole environment of a process in a box.
+
+    Args:
+        extra: Variables that hold whatever the host says.
+    """
+    return {
+        **base_environment(),
+        "USER": USER,
+        "HOME": str(HOME),
+        "TMPDIR": "/tmp",
+        "ROS_LOG_DIR": str(HOME / ".ros" / "log"),
+        "IPYTHONDIR": str(HOME / ".ipython"),
+        "JUPYTER_CONFIG_DIR": str(HOME / ".jupyter"),
+        **(extra or {}),
+    }
 
 
 def kernel_environment(scratch: Path, extra: Mapping[str, str]) -> dict[str, str]:

@@ -1,0 +1,110 @@
+"""Messages between the grader's own processes: JSON with file descriptors beside it, over a Unix socket.
+
+No box has an end of such a socket. One message is one packet, so that none is ever read in part.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import select
+import socket
+from typing import TYPE_CHECKING, Any, Self
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from types import TracebackType
+
+LARGEST = 200_000
+"""Bytes of one message; what Linux lets a packet have by default is a little more."""
+_MOST_DESCRIPTORS = 32
+
+
+class ChannelClosed(ConnectionError):
+    """The other end is gone."""
+
+
+class Channel:
+    """One end of a connection."""
+
+    def __init__(self, connection: socket.socket) -> None:
+        self._socket = connection
+
+    @classmethod
+    def to(cls, address: str) -> Self:
+        """Connect to a listener.
+
+        Args:
+            address: The path of its socket.
+
+        Raises:
+            ChannelClosed: Nobody listens there.
+        """
+        connection = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        try:
+            connection.connect(address)
+        except OSError as error:
+            connection.close()
+            raise ChannelClosed(f"nobody listens on {address}: {error}") from error
+        return cls(connection)
+
+    def fileno(self) -> int:
+        """Readable when a message has come or the other end is gone."""
+        return self._socket.fileno()
+
+    def send(self, message: dict[str, Any], descriptors: Sequence[int] = ()) -> None:
+        """Send one message; the descriptors stay open here.
+
+        Raises:
+            ChannelClosed: Nobody is there to read it.
+        """
+        try:
+            socket.send_fds(self._socket, [json.dumps(message).encode()], list(descriptors))
+        except OSError as error:
+            raise ChannelClosed(str(error)) from error
+
+    def receive(self, within: float | None = None) -> tuple[dict[str, Any], list[int]]:
+        """Wait for a message.
+
+        Args:
+            within: Seconds to wait; for ever where it is None.
+
+        Returns:
+            The message and the descriptors that came with it, which now belong to the caller.
+
+        Raises:
+            ChannelClosed: The other end is gone, or says nothing in time.
+        """
+        if within is not None and not select.select([self._socket], [], [], within)[0]:
+            raise ChannelClosed(f"no answer within {within:g} s")
+        try:
+            data, descriptors, _, _ = socket.recv_fds(self._socket, LARGEST, _MOST_DESCRIPTORS)
+        except OSError as error:
+            raise ChannelClosed(str(error)) from error
+        if not data:
+            close_all(descriptors)
+            raise ChannelClosed("the other end is gone")
+        for descriptor in descriptors:
+            os.set_inheritable(descriptor, False)
+        message: dict[str, Any] = json.loads(data)
+        return message, descriptors
+
+    def close(self) -> None:
+        """Hang up; may be called twice."""
+        self._socket.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def close_all(descriptors: Sequence[int]) -> None:
+    """Close descriptors that nobody needs any more."""
+    for descriptor in descriptors:
+        with contextlib.suppress(OSError):
+            os.close(descriptor)

@@ -1,0 +1,139 @@
+"""From a fork of a warm process into a box: its namespaces, then without a right that a student must not have."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import resource
+import select
+import signal
+import sys
+import traceback
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from autograder.boxes import linux
+from autograder.boxes.channel import Channel, ChannelClosed, close_all
+from autograder.boxes.system_calls import filter_for_boxes
+
+Run = Callable[[Mapping[str, Any], Sequence[int]], None]
+"""What a child becomes: called with the request's ``call`` and its descriptors."""
+
+_ALL_NAMESPACES = (
+    linux.CLONE_NEWUSER | linux.CLONE_NEWNS | linux.CLONE_NEWPID | linux.CLONE_NEWNET
+    | linux.CLONE_NEWIPC | linux.CLONE_NEWUTS
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Entrance:
+    """How a child begins.
+
+    Attributes:
+        cwd: Its folder, as it is called in the box.
+        environment: Its whole environment.
+        boxed: Enter the box whose first process's pidfd is the request's first descriptor. Else the child stays
+            where it is, which only a course's own notebooks and ``--unsafe-no-sandbox`` do.
+        cgroups: Files ``cgroup.procs`` to be entered into, outside of the box.
+        rlimits: Limits of each process, by the name that :mod:`resource` gives them.
+        hidden_memory: See :func:`autograder.boxes.system_calls.filter_for_boxes`.
+        call: What ``run`` is told.
+    """
+
+    cwd: str
+    environment: Mapping[str, str]
+    boxed: bool
+    cgroups: Sequence[str] = ()
+    rlimits: Mapping[str, int] = field(default_factory=dict)
+    hidden_memory: bool = True
+    call: Mapping[str, Any] = field(default_factory=dict)
+
+    def as_message(self) -> dict[str, Any]:
+        """As JSON that :meth:`from_message` reads."""
+        return asdict(self)
+
+
+def enter(channel: Channel, run: Run) -> None:
+    """Serve one request in the child of a warm process: fork into the box, watch over what is there.
+
+    The answer is ``{"pid": …}`` as the host counts, and when that process has ended ``{"status": …}``, its wait
+    status. When the other end hangs up before, the process is killed.
+    """
+    linux.die_with_parent(0)
+    message, descriptors = channel.receive()
+    entrance = Entrance(**message)
+    for procs in entrance.cgroups:
+        Path(procs).write_text("0")  # cgroups(7): 0 stands for whoever writes
+    if entrance.boxed:
+        linux.setns(descriptors[0], _ALL_NAMESPACES)
+    pid = os.fork()
+    if pid == 0:
+        channel.close()
+        _begin(entrance, descriptors, run)
+    close_all(descriptors)
+    _watch(channel, pid)
+
+
+def _watch(channel: Channel, pid: int) -> None:
+    end = os.pidfd_open(pid)
+    try:
+        channel.send({"pid": pid})
+        watched: list[Any] = [end, channel]
+        ready, _, _ = select.select(watched, [], [])
+        if end not in ready:
+            # Nothing is ever said to us again: this is the other end's end.
+            os.kill(pid, signal.SIGKILL)
+        _, status = os.waitpid(pid, 0)
+        with contextlib.suppress(ChannelClosed):
+            channel.send({"status": status})
+    except ChannelClosed:
+        os.kill(pid, signal.SIGKILL)
+        os.waitpid(pid, 0)
+
+
+def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
+    """The rest of the life of the process in the box."""
+    code = 1
+    try:
+        os.setsid()
+        apply_rlimits(entrance.rlimits)
+        os.environ.clear()
+        os.environ.update(entrance.environment)
+        os.chdir(entrance.cwd)
+        if entrance.boxed:
+            close_all(descriptors[:1])
+            descriptors = descriptors[1:]
+            give_up_rights(hidden_memory=entrance.hidden_memory)
+        # Given up rights take this away (prctl(2)), so it comes after them. Our parent is in another PID namespace.
+        linux.die_with_parent(0)
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        run(entrance.call, descriptors)
+        code = 0
+    except SystemExit as error:
+        code = error.code if isinstance(error.code, int) else int(error.code is not None)
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        with contextlib.suppress(Exception):
+            sys.stdout.flush()
+            sys.stderr.flush()
+        os._exit(code)
+
+
+def give_up_rights(*, hidden_memory: bool) -> None:
+    """No capability, none to be had by executing anything, and the filter of system calls."""
+    linux.drop_capabilities()
+    linux.filter_system_calls(filter_for_boxes(hidden_memory=hidden_memory))
+    # A process that changed its rights does not own its /proc/self any more, which programs read.
+    linux.prctl(linux.PR_SET_DUMPABLE, 1)
+
+
+def apply_rlimits(limits: Mapping[str, int]) -> None:
+    """Set limits of this process and its children, as far as higher authorities allow them."""
+    for name, value in limits.items():
+        kind = getattr(resource, name)
+        _, hard = resource.getrlimit(kind)
+        wanted = value if hard == resource.RLIM_INFINITY else min(value, hard)
+        resource.setrlimit(kind, (wanted, wanted))

@@ -1,0 +1,159 @@
+"""Starting and asking the warm processes: one for keepers, one for kernels, one for judges."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Self
+
+from autograder.boxes.channel import Channel
+from autograder.boxes.environment import base_environment
+from autograder.boxes.warm import BESIDE, INSIDE
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from types import TracebackType
+
+KEEPER_MODULE = "autograder.boxes.keeper"
+KERNEL_MODULE = "autograder.boxes.kernel_process"
+_GOODBYE_SECONDS = 3.0
+
+
+class WarmProcess:
+    """A warm process that was started here; it ends with this object or with this process.
+
+    Args:
+        mode: ``BESIDE`` or ``INSIDE``, see :mod:`autograder.boxes.warm`.
+        module: What it serves.
+        address: The path of the socket to be made. No box may see it.
+        log: Takes what it says on standard error; dropped where there is none.
+        extra: More variables of its environment, and so of the environment in which modules are imported.
+    """
+
+    def __init__(
+        self,
+        mode: str,
+        module: str,
+        address: Path,
+        log: int | None = None,
+        extra: Mapping[str, str] | None = None,
+    ) -> None:
+        self.address = str(address)
+        with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
+            listener.bind(self.address)
+            # From here on one can connect: whoever comes while the process warms up is served when it is warm.
+            listener.listen(128)
+            self._process = subprocess.Popen(
+                [sys.executable, "-P", "-m", "autograder.boxes.warm", mode, module, str(listener.fileno())],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL if log is None else log,
+                env={**base_environment(), **(extra or {})},
+                cwd="/",
+                pass_fds=(listener.fileno(),),
+                # Ctrl-C goes to the grader, which then ends its boxes in good order.
+                start_new_session=True,
+            )
+
+    @property
+    def alive(self) -> bool:
+        """Whether it still runs."""
+        return self._process.poll() is None
+
+    @property
+    def pid(self) -> int:
+        """Its process id."""
+        return self._process.pid
+
+    def stop(self) -> None:
+        """End it and all that it has forked; may be called twice."""
+        assert self._process.stdin is not None
+        with contextlib.suppress(OSError):
+            self._process.stdin.close()
+        try:
+            self._process.wait(_GOODBYE_SECONDS)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        with contextlib.suppress(OSError):
+            os.unlink(self.address)  # noqa: PTH108
+
+
+@dataclass(frozen=True)
+class Addresses:
+    """Where the warm processes listen; travels to a worker on its command line.
+
+    Attributes:
+        keepers: For :class:`autograder.boxes.sandbox.Enclosure`. Empty where there is no sandbox.
+        kernels: For :class:`autograder.boxes.kernel.Kernel`.
+        judges: For the judge.
+    """
+
+    keepers: str
+    kernels: str
+    judges: str
+
+
+class WarmProcesses:
+    """The warm processes of a batch, started together.
+
+    Args:
+        judge_module: What the judges' process serves; it is named here because boxes know no judge.
+        boxed: Start one for keepers too.
+        log: Takes what they say on standard error.
+        judge_environment: More variables for the judges' process.
+    """
+
+    def __init__(
+        self,
+        judge_module: str,
+        *,
+        boxed: bool,
+        log: int | None = None,
+        judge_environment: Mapping[str, str] | None = None,
+    ) -> None:
+        self._folder = Path(tempfile.mkdtemp(prefix="warm-"))
+        self._kernels = WarmProcess(INSIDE, KERNEL_MODULE, self._folder / "kernels", log)
+        self._judges = WarmProcess(INSIDE, judge_module, self._folder / "judges", log, judge_environment)
+        self._keepers = WarmProcess(BESIDE, KEEPER_MODULE, self._folder / "keepers", log) if boxed else None
+        self.addresses = Addresses(
+            self._keepers.address if self._keepers else "", self._kernels.address, self._judges.address
+        )
+
+    @property
+    def alive(self) -> bool:
+        """Whether all of them still run."""
+        return all(process.alive for process in self._all())
+
+    def stop(self) -> None:
+        """End them with all boxes, kernels and judges that came from them; may be called twice."""
+        for process in self._all():
+            process.stop()
+        with contextlib.suppress(OSError):
+            self._folder.rmdir()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.stop()
+
+    def _all(self) -> list[WarmProcess]:
+        return [*([self._keepers] if self._keepers else []), self._kernels, self._judges]
+
+
+def connect(address: str) -> Channel:
+    """A connection to a child of a warm process, forked for it.
+
+    Raises:
+        ChannelClosed: The warm process is gone.
+    """
+    return Channel.to(address)

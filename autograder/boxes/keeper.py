@@ -1,0 +1,213 @@
+"""The keeper of one submission's boxes: it owns their network namespace and their scratch, and ends them.
+
+Forked from a warm process of its own (:mod:`autograder.boxes.warm`), which has imported almost nothing. It leaves
+for a user, a network and a mount namespace of its own, from where bubblewrap makes the boxes. Each box gets a
+further user namespace, so that nobody in a box has a right over the network. When the connection to the worker is
+lost, however the worker ended, the keeper kills all boxes and goes.
+
+Words of the worker: ``open`` (once), ``start`` (a box or a command), ``kill``. Words of the keeper: ``opened``,
+``started``, ``ended``, ``failed``.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import select
+import shutil
+import signal
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from autograder.boxes import linux
+from autograder.boxes.channel import Channel, ChannelClosed, close_all
+from autograder.boxes.entering import apply_rlimits
+from autograder.boxes.system_calls import filter_for_boxes
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+SCRATCH_FOLDERS = ("home", "tmp", "shm", "work")
+"""What there is in the scratch; a box sees each of them at a place of its own."""
+
+
+def prepare() -> None:
+    """Everything is imported above."""
+
+
+def run(channel: Channel) -> None:
+    """Serve one submission until its worker hangs up."""
+    linux.die_with_parent(0)
+    keeper = _Keeper(channel)
+    try:
+        keeper.serve()
+    except ChannelClosed:
+        pass
+    finally:
+        keeper.end_all()
+
+
+@dataclass
+class _Started:
+    process: subprocess.Popen[bytes]
+    """bubblewrap outside of the box. It ends when the first process of the box has, and with that one all have."""
+    end: int
+    """Its pidfd."""
+    first: int = -1
+    """The pidfd of the first process in the box."""
+
+    def kill(self) -> None:
+        if self.first >= 0:
+            signal.pidfd_send_signal(self.first, signal.SIGKILL)
+        else:
+            self.process.kill()
+
+
+class _Keeper:
+    def __init__(self, channel: Channel) -> None:
+        self._channel = channel
+        self._started: dict[str, _Started] = {}
+
+    def serve(self) -> None:
+        """Do what the worker says, and tell it what has ended."""
+        while True:
+            watched: list[Any] = [self._channel, *(started.end for started in self._started.values())]
+            ready, _, _ = select.select(watched, [], [])
+            for name, started in list(self._started.items()):
+                if started.end in ready:
+                    self._ended(name)
+            if self._channel in ready:
+                message, descriptors = self._channel.receive()
+                try:
+                    self._obey(message, descriptors)
+                except (OSError, ValueError) as error:
+                    self._channel.send({"say": "failed", "why": str(error)})
+                finally:
+                    close_all(descriptors)
+
+    def end_all(self) -> None:
+        """Kill every box and wait until none of its processes lives."""
+        for started in self._started.values():
+            with contextlib.suppress(ProcessLookupError):
+                started.kill()
+        for name in list(self._started):
+            self._reap(name)
+
+    def _obey(self, message: dict[str, Any], descriptors: Sequence[int]) -> None:
+        match message.pop("say"):
+            case "open":
+                self._open(**message)
+            case "start":
+                self._start(descriptors=descriptors, **message)
+            case "kill":
+                if message["name"] in self._started:
+                    self._started[message["name"]].kill()
+
+    def _open(self, scratch: str, size: int, inodes: int, files: str) -> None:
+        user, group = os.geteuid(), os.getegid()
+        linux.unshare(linux.CLONE_NEWUSER | linux.CLONE_NEWNET | linux.CLONE_NEWNS)
+        linux.map_only_user(0, user, group)
+        linux.die_with_parent(0)  # taken away by the change of rights
+        linux.bring_loopback_up()
+        place = Path(scratch)
+        linux.mount_tmpfs(place, size, inodes)
+        for name in SCRATCH_FOLDERS:
+            (place / name).mkdir()
+        if files:
+            shutil.copytree(files, place / "work", dirs_exist_ok=True)
+        self._channel.send({"say": "opened"})
+
+    def _start(
+        self,
+        name: str,
+        arguments: Sequence[str],
+        command: Sequence[str],
+        descriptors: Sequence[int],
+        *,
+        cgroups: Sequence[str] = (),
+        rlimits: Mapping[str, int] | None = None,
+        hidden_memory: bool = True,
+    ) -> None:
+        """Let bubblewrap start a box.
+
+        Without a command the box stays empty until somebody enters it, and lives until it is killed. With one, its
+        standard input, output and error are the descriptors that came with the message.
+        """
+        if name in self._started:
+            raise ValueError(f"there is a box named {name} already")
+        filter_file = _file_with(filter_for_boxes(hidden_memory=hidden_memory))
+        info, writing = os.pipe()
+
+        def before_bwrap() -> None:
+            for procs in cgroups:
+                Path(procs).write_text("0")
+            apply_rlimits(rlimits or {})
+
+        idle = not command
+        words = [
+            "bwrap", "--info-fd", str(writing), *arguments,
+            *(("--seccomp", str(filter_file)) if filter_file >= 0 else ()),
+            "--", *(command or ("/bin/sh", "-c", "echo; exec cat")),
+        ]  # fmt: skip
+        try:
+            process = subprocess.Popen(
+                words,
+                stdin=subprocess.PIPE if idle else descriptors[0],
+                stdout=subprocess.PIPE if idle else descriptors[1],
+                stderr=subprocess.STDOUT if idle else descriptors[2],
+                pass_fds=(writing, filter_file) if filter_file >= 0 else (writing,),
+                preexec_fn=before_bwrap,  # this process has no thread
+                start_new_session=True,
+            )
+        finally:
+            close_all([writing, filter_file])
+        started = self._started[name] = _Started(process, os.pidfd_open(process.pid))
+        with open(info, "rb") as told:  # noqa: PTH123 (a descriptor)
+            text = told.read()
+        first = json.loads(text)["child-pid"] if text else 0
+        if first:
+            with contextlib.suppress(ProcessLookupError):  # a command that has ended at once
+                started.first = os.pidfd_open(first)
+        if not idle:
+            self._tell_started(name, first)
+            return
+        assert process.stdout is not None
+        # The empty line comes once the box is complete; anything else is why there is none.
+        with process.stdout as said:
+            line = said.readline()
+            if line != b"\n":
+                why = (line + said.read()).decode(errors="replace").strip()
+                self._reap(name)
+                raise ValueError(f"bubblewrap made no box: {why[-500:]}")
+        self._tell_started(name, first)
+
+    def _tell_started(self, name: str, first: int) -> None:
+        """Hand over the pidfd of the first process in the box: with it one enters the box."""
+        pidfd = self._started[name].first
+        self._channel.send({"say": "started", "name": name, "pid": first}, [pidfd] if pidfd >= 0 else [])
+
+    def _ended(self, name: str) -> None:
+        self._channel.send({"say": "ended", "name": name, "status": self._reap(name)})
+
+    def _reap(self, name: str) -> int:
+        """Wait for a box's end."""
+        started = self._started.pop(name)
+        status = started.process.wait()
+        close_all([started.end, *([started.first] if started.first >= 0 else [])])
+        if started.process.stdin is not None:
+            with contextlib.suppress(OSError):
+                started.process.stdin.close()
+        return status
+
+
+def _file_with(data: bytes) -> int:
+    """A descriptor of an anonymous file with this content; -1 for none."""
+    if not data:
+        return -1
+    descriptor = os.memfd_create("filter")
+    os.write(descriptor, data)
+    os.lseek(descriptor, 0, os.SEEK_SET)
+    return descriptor
