@@ -9,15 +9,17 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from autograder.workspaces import cache
 from autograder.workspaces.failures import telling_line
-from autograder.workspaces.packages import BadPackage, Package, find_packages, key
+from autograder.workspaces.packages import BadPackage, Package, key, needed, survey
 from autograder.workspaces.prefixes import package_prefixes, without_workspaces
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
 LIMIT = 300.0
@@ -36,6 +38,7 @@ class Build:
         ok: Whether every package was built.
         install: Where the packages are installed; empty where it failed.
         packages: The packages of the workspace, as their files describe them.
+        unusable: What is wrong with those that cannot be used.
         seconds: Wall time that it took.
         reused: Whether the same sources had been built before.
         trouble: ``"no_workspace"``, ``"no_package"``, ``"bad_package"`` or ``"build"``; empty where it is
@@ -49,6 +52,7 @@ class Build:
     ok: bool
     install: Path | None = None
     packages: tuple[Package, ...] = ()
+    unusable: tuple[str, ...] = ()
     seconds: float = 0.0
     reused: bool = False
     trouble: str = ""
@@ -62,8 +66,12 @@ class Build:
         return package_prefixes(self.install) if self.install else []
 
 
-def build(workspace: Path) -> Build:
-    """Build the packages in a workspace's ``src``, each time as if for the first time.
+Targets = Callable[[Build], Iterable[str]]
+"""Says of a workspace that was looked at which of its packages are needed; none of them means all."""
+
+
+def build(workspace: Path, targets: Targets | None = None) -> Build:
+    """Build packages in a workspace's ``src``, each time as if for the first time.
 
     The result is in the cache, not in the workspace: what an earlier build left in ``install`` has no part in
     it.
@@ -71,36 +79,40 @@ def build(workspace: Path) -> Build:
 
     Args:
         workspace: The folder that holds ``src``.
+        targets: Which packages are needed; they are built with what they depend on. None for all.
     """
     began = time.monotonic()
     found = look(workspace)
     if found.trouble:
         return found
-    workspace, packages = found.workspace, found.packages
+    chosen, found = choose(found, targets)
+    if found.trouble:
+        return found
+    workspace = found.workspace
     try:
-        sources = key(workspace / "src")
+        sources = key(workspace / "src", chosen)
     except BadPackage as error:
         return replace(found, trouble="bad_package", line=str(error))
     with cache.entry(sources) as entry:
         install = entry.folder / "install"
         if entry.complete:
-            seconds = time.monotonic() - began
-            return Build(workspace, True, install, packages, seconds, reused=True)
-        log = _colcon(workspace, entry.folder)
-        seconds = time.monotonic() - began
+            return replace(found, ok=True, install=install, seconds=time.monotonic() - began, reused=True)
+        log = _colcon(workspace, chosen, entry.folder)
         if log is None:
             shutil.rmtree(entry.folder / "build", ignore_errors=True)
             entry.finish()
-            return Build(workspace, True, install, packages, seconds)
-    failed = _FAILED.search(log)
-    name = failed["name"] if failed else ""
+            return replace(found, ok=True, install=install, seconds=time.monotonic() - began)
+    return failed(replace(found, seconds=time.monotonic() - began), log)
+
+
+def failed(found: Build, log: str) -> Build:
+    """A workspace that could not be built, with what colcon's output tells of it."""
+    search = _FAILED.search(log)
+    name = search["name"] if search else ""
     own = _log_of(log, name)
     # What setup.py itself says when colcon first asks it goes past the package's part of the log.
     own = log if "CalledProcessError" in telling_line(own) else own
-    return Build(
-        workspace, False, None, packages, seconds,
-        trouble="build", package=name, line=telling_line(own), log=own[-MAX_LOG:],
-    )  # fmt: skip
+    return replace(found, trouble="build", package=name, line=telling_line(own), log=own[-MAX_LOG:])
 
 
 def look(workspace: Path) -> Build:
@@ -113,38 +125,50 @@ def look(workspace: Path) -> Build:
     src = workspace / "src"
     if not src.is_dir():
         return Build(workspace, ok=False, trouble="no_workspace", line=_no_workspace(workspace))
-    try:
-        packages = tuple(find_packages(src))
-    except BadPackage as error:
-        return Build(workspace, ok=False, trouble="bad_package", line=str(error))
-    if not packages:
-        return Build(workspace, ok=False, trouble="no_package", line=f"there is no package.xml below {src}")
-    return Build(workspace, ok=False, packages=packages)
+    packages, unusable = survey(src)
+    found = Build(workspace, ok=False, packages=tuple(packages), unusable=tuple(unusable))
+    if packages:
+        return found
+    if unusable:
+        return replace(found, trouble="bad_package", line=unusable[0])
+    return replace(found, trouble="no_package", line=f"there is no package.xml below {src}")
 
 
-def command(src: Path, build_base: Path, install: Path, log_base: Path) -> list[str]:
-    """Colcon's command line.
+def choose(found: Build, targets: Targets | None) -> tuple[list[Package], Build]:
+    """The packages that are to be built, and the workspace with its trouble where these cannot be.
+
+    A package that is not needed, half done or not usable at all, hurts nobody.
+    """
+    chosen = needed(found.packages, targets(found)) if targets is not None else []
+    if chosen or not found.unusable:
+        return chosen or list(found.packages), found
+    return [], replace(found, trouble="bad_package", line=found.unusable[0])
+
+
+def command(packages: Iterable[Package], folder: Path) -> list[str]:
+    """Colcon's command line for these packages alone; ``build``, ``install`` and ``log`` come into the folder.
 
     Release defines NDEBUG: without it a value of the wrong type in a field of a generated message ends the
     whole
     process with SIGABRT instead of raising an exception.
     """
     return [
-        sys.executable, "-m", "colcon", "--log-base", str(log_base),
-        "build", "--base-paths", str(src), "--build-base", str(build_base), "--install-base", str(install),
+        sys.executable, "-m", "colcon", "--log-base", str(folder / "log"),
+        "build", "--paths", *(str(package.folder) for package in packages),
+        "--build-base", str(folder / "build"), "--install-base", str(folder / "install"),
         "--event-handlers", "console_cohesion+", "console_start_end+", "desktop_notification-", "status-",
         "--cmake-args", f"-DPython3_EXECUTABLE={sys.executable}", "-DCMAKE_BUILD_TYPE=Release",
         "-DBUILD_TESTING=OFF", "--no-warn-unused-cli", "-Wno-dev",
     ]  # fmt: skip
 
 
-def _colcon(workspace: Path, folder: Path) -> str | None:
+def _colcon(workspace: Path, packages: Sequence[Package], folder: Path) -> str | None:
     """Run colcon; its output where it failed, else None."""
     environment = without_workspaces(os.environ, workspace)
     environment.pop("PYTHONDONTWRITEBYTECODE", None)  # setuptools warns of it in every log
     environment["COLCON_DEFAULTS_FILE"] = os.devnull
     process = subprocess.Popen(
-        command(workspace / "src", folder / "build", folder / "install", folder / "log"),
+        command(packages, folder),
         cwd=folder,
         env=environment,
         stdin=subprocess.DEVNULL,

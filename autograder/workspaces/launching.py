@@ -7,76 +7,48 @@ them apart is the command line of the process: that is how every launch hands a 
 from __future__ import annotations
 
 import os
-import re
-import shlex
 import signal
 import subprocess
 import threading
-from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from autograder import course
 from autograder.exercises.launch_report import process_line
-from autograder.workspaces.building import Build, build
+from autograder.workspaces.building import build
+from autograder.workspaces.plans import lacks_programs, launch_targets, reference_workspace, workspace_of
 from autograder.workspaces.prefixes import with_prefixes
-from autograder.workspaces.processes import command_line, descendants, tell
+from autograder.workspaces.processes import arguments_of, descendants, tell
+from autograder.workspaces.reporting import built_line
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
 
 LOOK_EVERY = 0.05
 """Seconds between two looks at the launch's processes."""
-WORKSPACE = "ros2_ws"
-
-Report = Callable[[Build, str], None]
 
 
-def launch(command: Sequence[str], file: Path | None, report: Report) -> int:
+def launch(command: Sequence[str], file: Path | None) -> int:
     """Run a launch command with the student's packages and, after these, the course's own ``my_robot_pkg``.
 
     Args:
         command: Such as ``["ros2", "launch", "remap.launch.py"]``.
-        file: The launch file, where that is all that was given: its workspace is built.
-        report: Called with the student's workspace, where there is one, after it was built.
+        file: The launch file, where that is all that was given: what it needs of its workspace is built.
 
     Returns:
-        The launch's exit code; 1 when the student's workspace could not be built.
+        The launch's exit code; 1 when the student's packages could not be built.
     """
     environment: dict[str, str] = dict(os.environ)
     course_build = build(reference_workspace())
-    workspace = workspace_of(file) if file is not None else None
+    workspace = workspace_of(file, (file.resolve().parent, Path.cwd())) if file is not None else None
     first = False
     if file is not None and workspace is not None:
-        made = build(workspace)
-        report(made, "built")
+        made = build(workspace, launch_targets(file))
+        tell(built_line(made))
         if not made.ok:
             return 1
         environment = with_prefixes(environment, made.prefixes)
-        first = _lacks_programs(file, made, course_build)
+        first = lacks_programs(file, made, course_build)
     return _run(command, with_prefixes(environment, course_build.prefixes, last=not first))
-
-
-def _lacks_programs(file: Path, made: Build, course_build: Build) -> bool:
-    """Whether a launch file names programs of the course's package that the student's has not got.
-
-    Who has written talker and listener in the notebooks alone has no programs to launch.
-    """
-    words = set(re.findall(r"\w+", file.read_text(encoding="utf-8", errors="replace")))
-    return bool(words & _programs(course_build) - _programs(made))
-
-
-def _programs(made: Build) -> set[str]:
-    return {program.name for prefix in made.prefixes for program in (prefix / "lib" / prefix.name).glob("*")}
-
-
-def workspace_of(file: Path) -> Path | None:
-    """The workspace that a launch file lies in, or the one beside it or in the current folder."""
-    around = [folder for folder in file.resolve().parents if (folder / "src").is_dir()]
-    beside = [folder / WORKSPACE for folder in (file.resolve().parent, Path.cwd())]
-    found = [folder for folder in (*around[:1], *beside) if any((folder / "src").glob("**/package.xml"))]
-    return found[0] if found else None
-
-
-def reference_workspace() -> Path:
-    """The workspace with the course's own talker and listener."""
-    return course.root() / "solutions" / WORKSPACE
 
 
 def _run(command: Sequence[str], environment: dict[str, str]) -> int:
@@ -100,10 +72,21 @@ def _listen_to_interrupts() -> None:
 
 def _watch(pid: int, ended: threading.Event) -> None:
     """Report the command line of each process below the launch once."""
-    known: set[tuple[int, str]] = set()
+    watch_processes(pid, ended, lambda argv: tell(process_line(argv)))
+
+
+def watch_processes(pid: int, ended: threading.Event, on_process: Callable[[Sequence[str]], None]) -> None:
+    """Look at the processes below one until it has ended.
+
+    Args:
+        pid: That one.
+        ended: Set when there is nothing to look at any more.
+        on_process: Called with each command line, once for each process that has it.
+    """
+    known: set[tuple[int, tuple[str, ...]]] = set()
     while not ended.wait(LOOK_EVERY):
         for child in descendants(pid):
-            line = command_line(child)
-            if line and (child, line) not in known:
-                known.add((child, line))
-                tell(process_line(shlex.split(line)))
+            argv = tuple(arguments_of(child))
+            if argv and (child, argv) not in known:
+                known.add((child, argv))
+                on_process(argv)

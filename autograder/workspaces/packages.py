@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
 MAX_FILES = 5_000
 MAX_BYTES = 100_000_000
@@ -25,7 +25,8 @@ MAX_BYTES = 100_000_000
 FORMAT = "1"
 """Part of every key: change it when what is kept of a build changes."""
 
-_NOT_SOURCES = {"__pycache__", ".git", ".ipynb_checkpoints", ".pytest_cache", ".mypy_cache", ".ruff_cache"}
+NOT_SOURCES = {"__pycache__", ".git", ".ipynb_checkpoints", ".pytest_cache", ".mypy_cache", ".ruff_cache"}
+"""Folders that tools leave among sources."""
 _HIDING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 _ENVIRONMENT = ("CC", "CXX", "CFLAGS", "CXXFLAGS", "LDFLAGS", "CMAKE_GENERATOR", "RMW_IMPLEMENTATION")
 
@@ -76,18 +77,49 @@ def find_packages(src: Path) -> list[Package]:
     Raises:
         BadPackage: A package.xml cannot be read.
     """
-    return sorted((_package(file) for file in _package_files(src)), key=lambda package: package.name)
+    packages, unusable = survey(src)
+    if unusable:
+        raise BadPackage(unusable[0])
+    return packages
 
 
-def key(src: Path) -> str:
+def survey(src: Path) -> tuple[list[Package], list[str]]:
+    """The packages below ``src`` in the order of their names, and what is wrong with those that cannot be used."""
+    packages, unusable = [], []
+    for file in sorted(_package_files(src)):
+        try:
+            packages.append(_package(file))
+        except BadPackage as error:
+            unusable.append(str(error))
+    return sorted(packages, key=lambda package: package.name), unusable
+
+
+def needed(packages: Iterable[Package], targets: Iterable[str]) -> list[Package]:
+    """The targets and all that they depend on, as far as it is among the packages; in the packages' order."""
+    there = list(packages)
+    wanted, waiting = set[str](), list(targets)
+    while waiting:
+        name = waiting.pop()
+        if name not in wanted:
+            wanted.add(name)
+            waiting += [other for package in there if package.name == name for other in package.dependencies]
+    return [package for package in there if package.name in wanted]
+
+
+def key(src: Path, packages: Iterable[Package] | None = None) -> str:
     """What a build of these sources is known by: their bytes, and everything that builds them.
+
+    Args:
+        src: Where the sources are.
+        packages: Those that are built; None for all there is in ``src``.
 
     Raises:
         BadPackage: There is far too much in ``src``.
     """
     digest = hashlib.sha256("\0".join((FORMAT, *toolchain())).encode())
     total = 0
-    for number, file in enumerate(_files(src)):
+    folders = [src] if packages is None else sorted(package.folder for package in packages)
+    for number, file in enumerate(file for folder in folders for file in _files(folder)):
         content = file.read_bytes()
         total += len(content)
         if number >= MAX_FILES or total > MAX_BYTES:
@@ -136,7 +168,7 @@ def _state(file: str) -> str:
 
 def _files(src: Path) -> Iterator[Path]:
     for root, folders, names in os.walk(src, followlinks=False):
-        folders[:] = sorted(name for name in folders if name not in _NOT_SOURCES)
+        folders[:] = sorted(name for name in folders if name not in NOT_SOURCES)
         for name in sorted(names):
             file = Path(root, name)
             if not name.endswith(".pyc") and file.is_file():

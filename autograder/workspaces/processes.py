@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import os
-import shlex
 import signal
 from pathlib import Path
 
@@ -21,13 +20,13 @@ def descendants(pid: int) -> list[int]:
     return children + [below for child in children for below in descendants(child)]
 
 
-def command_line(pid: int) -> str:
-    """The words that a process was started with, quoted for a shell; empty where it is gone."""
+def arguments_of(pid: int) -> list[str]:
+    """The words that a process was started with; none where it is gone."""
     try:
-        words = Path(f"/proc/{pid}/cmdline").read_bytes().rstrip(b"\0").split(b"\0")
+        words = Path(f"/proc/{pid}/cmdline").read_bytes().rstrip(b"\0")
     except OSError:
-        return ""
-    return shlex.join(word.decode("utf-8", "replace") for word in words)
+        return []
+    return [word.decode("utf-8", "replace") for word in words.split(b"\0")] if words else []
 
 
 def tell(line: str) -> None:

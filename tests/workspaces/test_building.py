@@ -5,15 +5,15 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from autograder.workspaces import Build, build, with_prefixes
 from autograder.workspaces.placing import CannotPlace, place
 
-if TYPE_CHECKING:
-    from pathlib import Path
+sys.path.insert(0, str(Path(__file__).parent))
+from made_workspaces import python_package
 
 
 def run_program(made: Build) -> str:
@@ -122,3 +122,32 @@ def test_packages_of_others_stay(workspace: Path) -> None:
     assert other.is_dir()
     assert (workspace / "install" / "tiny_pkg" / "lib" / "tiny_pkg" / "hello").is_file()
     assert not list((workspace / "install").glob(".new-*"))
+
+
+def only_tiny(found: Build) -> list[str]:
+    return [package.name for package in found.packages if package.name == "tiny_pkg"]
+
+
+def test_what_is_half_done_beside_the_package_hurts_only_who_needs_it(workspace: Path) -> None:
+    other = python_package(workspace / "src", "other_pkg")
+    (other / "setup.py").write_text("setup(")
+    assert build(workspace).package == "other_pkg"
+    made = build(workspace, only_tiny)
+    assert made.ok, made.log
+    assert [prefix.name for prefix in made.prefixes] == ["tiny_pkg"]
+    (other / "package.xml").write_text("<package>")
+    assert build(workspace).trouble == "bad_package"
+    assert build(workspace, only_tiny).reused
+
+
+def test_a_package_is_built_with_what_it_depends_on(workspace: Path) -> None:
+    python_package(workspace / "src", "other_pkg")
+    file = workspace / "src" / "tiny_pkg" / "package.xml"
+    file.write_text(file.read_text().replace("<license>", "<depend>other_pkg</depend>\n  <license>"))
+    made = build(workspace, only_tiny)
+    assert [prefix.name for prefix in made.prefixes] == ["other_pkg", "tiny_pkg"]
+
+
+def test_a_package_that_may_be_the_one_that_is_needed_is_no_neighbour(workspace: Path) -> None:
+    (python_package(workspace / "src", "other_pkg") / "package.xml").write_text("<package>")
+    assert build(workspace, lambda _: []).trouble == "bad_package"
