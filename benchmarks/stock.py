@@ -15,7 +15,6 @@ import sys
 import time
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nbgrader.api import Gradebook
@@ -27,6 +26,7 @@ from benchmarks.machine import Usage, Watch
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
 
     from benchmarks.classes import BenchmarkClass
 
@@ -159,7 +159,7 @@ def _nbgrader(
             stdout=log,
             stderr=log,
             check=False,
-            preexec_fn=watch.prepare,  # noqa: PLW1509  (this process has one thread that only sleeps)
+            preexec_fn=watch.prepare,
         )
     if done.returncode:
         raise RuntimeError(f"nbgrader {command} {assignment} failed; see {folder / 'nbgrader.log'}")

@@ -25,7 +25,13 @@ from benchmarks.machine import CpuGroup
 if TYPE_CHECKING:
     from autograder.grading.task import Task
 
-_MODULES = ("IPython.core.interactiveshell", "ipykernel.ipkernel", "rclpy", "rclpy.node", "autograder.notebook")
+_MODULES = (
+    "IPython.core.interactiveshell",
+    "ipykernel.ipkernel",
+    "rclpy",
+    "rclpy.node",
+    "autograder.notebook",
+)
 
 
 def main() -> None:
@@ -83,11 +89,15 @@ def _run(task: Task, folder: Path, domain: int, judge: Any, group: CpuGroup | No
         work.mkdir()
         os.chdir(work)
         os.environ.update(
-            {"ROS_DOMAIN_ID": str(domain), "AUTOGRADER_JUDGE_SOCKET": str(folder / "judge"), "HOME": str(folder)}
+            {
+                "ROS_DOMAIN_ID": str(domain),
+                "AUTOGRADER_JUDGE_SOCKET": str(folder / "judge"),
+                "HOME": str(folder),
+            }
         )
         from IPython.core.interactiveshell import InteractiveShell
 
-        shell = InteractiveShell.instance()
+        shell: Any = InteractiveShell.instance()
         spent = []
         sink = io.StringIO()
         with contextlib.redirect_stdout(sink):

@@ -8,6 +8,7 @@ kept as that HTML. The pages are cleaned once more where they are made (:mod:`au
 
 from __future__ import annotations
 
+import functools
 import re
 from html import escape, unescape
 from typing import TYPE_CHECKING, Any
@@ -129,6 +130,8 @@ def is_the_masters(cell: Any) -> bool:
     return bool(marks.get("locked")) and not marks.get("solution")
 
 
+# Most text cells of a class are the ones that were handed out: looked at once, not once a student.
+@functools.lru_cache(maxsize=1024)
 def harmless_markdown(source: str) -> str:
     """Markdown that says the same as ``source`` and can do nothing.
 
@@ -143,8 +146,9 @@ def harmless_markdown(source: str) -> str:
         cleaned = clean(rendered)
         if looking.is_plain and cleaned.count("&lt;") == rendered.count("&lt;"):
             return source
-        # One line: a blank one would end the block, and Markdown would be read again behind it.
-        block = "<div>" + "&#10;".join(cleaned.splitlines()) + "</div>"
+        if cleaned.strip() == source:
+            return source  # it has been here before
+        block = f"<div>{_in_one_line(cleaned)}</div>"
         return block if _as_shown(block).strip() == block else as_typed(source)
     except Exception:  # what is nested too deeply, for one; a parser may raise anything on hostile text
         return as_typed(source)
@@ -158,6 +162,13 @@ def as_typed(source: str) -> str:
     return f"{fence}text\n{source}\n{fence}"
 
 
+def _in_one_line(page: str) -> str:
+    """HTML without line breaks: a blank line would end the block, and Markdown would be read again behind it."""
+    pieces = re.split(r"(<pre\b.*?</pre>)", page.strip(), flags=re.DOTALL)
+    return "".join(("&#10;" if i % 2 else " ").join(piece.splitlines()) for i, piece in enumerate(pieces))
+
+
+@functools.lru_cache(maxsize=1024)
 def clean(page: str) -> str:
     """A piece of HTML with nothing in it but text, its structure, links and pictures that it brings along."""
     return Cleaner(

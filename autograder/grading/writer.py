@@ -1,4 +1,4 @@
-"""The one writer into the gradebook: nbgrader's own conversion, with the results already there."""
+"""The one writer into gradebook, ``autograded/`` and ``feedback/``; everything in it fails closed."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 import msgspec
 from nbgrader.converters import Autograde, BaseConverter, GenerateFeedback, NbGraderException
 from nbgrader.coursedir import CourseDirectory
+from nbgrader.preprocessors import AssignLatePenalties
 from traitlets.config import Config
 
-from autograder.grading import gradebook
+from autograder.grading import conversion, feedback, gradebook, nodes
 from autograder.grading.class_directory import SUFFIX, ClassDirectory, Submission
 from autograder.grading.errors import is_disk_full
 from autograder.grading.journal import write_whole
@@ -55,6 +56,7 @@ class Writer:
     def __init__(self, directory: ClassDirectory) -> None:
         self._directory = directory
         self._records = directory.state / "written"
+        self._pages = feedback.FeedbackPages(directory)
 
     def take_back(self, submissions: Sequence[Submission]) -> None:
         """Remove what an earlier run left of these submissions: grades, converted notebooks, feedback."""
@@ -89,42 +91,75 @@ class Writer:
         )
 
     def write(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
-        """Have nbgrader convert the submission and enter its grades.
+        """Convert the submission and enter its grades.
 
         Raises:
-            NotWritten: nbgrader failed, or the gradebook then says something else. The grades are zero then.
+            NotWritten: That failed, or the gradebook then says something else. The grades are zero then.
             OSError: There is no room on the disk.
         """
-        converter = _Autograde(submission, results, self._course())
         try:
             with quiet(self._directory.state):
-                converter.start()
+                if conversion.is_usual(self._directory.config):
+                    self._convert_and_enter(submission, results)
+                else:
+                    _Autograde(submission, results, self._course()).convert()
             self._verify(submission, results)
         except NotWritten:
             self.take_back([submission])
             raise
         except Exception as error:
             self.take_back([submission])
-            raise NotWritten(f"{submission.student}/{submission.assignment}: {error}") from (
-                converter.cause or error
-            )
+            raise NotWritten(f"{submission.student}/{submission.assignment}: {error}") from error
         record = Written(
             keys={task.notebook: task.key() for task, _ in results},
             scores={task.notebook: scores_of(task, execution) for task, execution in results},
         )
         write_whole(self._record_path(submission), msgspec.json.encode(record))
 
+    def _convert_and_enter(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
+        """What nbgrader's conversion does. Notebooks first: without grades they are only files."""
+        folder = self._folder("autograded", submission)
+        _remove(folder)
+        entries = conversion.convert(self._directory, submission, results, folder)
+        url = self._directory.gradebook_url
+        has_due_date = gradebook.enter(
+            url, submission.assignment, submission.student, entries, conversion.handed_in_at(submission)
+        )
+        if has_due_date:
+            for task, _ in results:
+                names = {"notebook": task.notebook, "assignment": task.assignment, "student": task.student}
+                resources = {"nbgrader": {**names, "db_url": url}}
+                AssignLatePenalties(config=self._directory.config).preprocess(
+                    nodes.notebook([], {}), resources
+                )
+
     def write_feedback(self, assignment: str, submissions: Sequence[Submission]) -> None:
         """Make the HTML pages that go back to the students.
 
-        One conversion for all of them, since most of its time goes into reading templates. nbgrader goes on
-        after a submission that it cannot convert: ask :meth:`has_feedback` afterwards.
+        A page that cannot be made does not keep others from being made: ask :meth:`has_feedback` afterwards.
 
         Raises:
             OSError: There is no room on the disk.
         """
+        with quiet(self._directory.state):
+            if feedback.is_usual(self._directory.config):
+                for submission in submissions:
+                    self._write_pages(submission)
+            else:
+                self._generate_feedback(assignment, submissions)
+
+    def _write_pages(self, submission: Submission) -> None:
+        try:
+            self._pages.write(submission, self._directory.notebooks(submission.assignment))
+        except Exception as error:
+            if is_disk_full(error):
+                raise
+            logging.getLogger("traitlets").exception("no page for %s", submission.folder)
+
+    def _generate_feedback(self, assignment: str, submissions: Sequence[Submission]) -> None:
+        """One conversion for all, since most of its time goes into reading templates."""
         converter = _Feedback(assignment, submissions, self._course())
-        with quiet(self._directory.state), contextlib.suppress(NbGraderException):
+        with contextlib.suppress(NbGraderException):
             converter.start()
         if converter.cause is not None and is_disk_full(converter.cause):
             raise converter.cause
@@ -183,6 +218,17 @@ class _Autograde(_Remembering, Autograde):
         self.finished = {task.key(): execution for task, execution in results}
         self._submission = submission
         self._expected = [str(submission.folder / f"{task.notebook}{SUFFIX}") for task, _ in results]
+
+    def convert(self) -> None:
+        """Convert the submission.
+
+        Raises:
+            Exception: What nbgrader, or a step of it, ran into.
+        """
+        try:
+            self.start()
+        except Exception as error:
+            raise (self.cause or error) from error
 
     def init_notebooks(self) -> None:
         """Say what is to be converted."""

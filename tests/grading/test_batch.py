@@ -157,6 +157,7 @@ def test_grades_are_taken_back_before_the_first_notebook_runs(
 def test_nbgrader_failing_in_the_middle_leaves_zero_and_a_word(
     tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    tiny.configure_otherwise()
     tiny.submit("ada")
     tiny.submit("ben")
     tiny.grade()
@@ -183,6 +184,8 @@ def test_nbgrader_failing_in_the_middle_leaves_zero_and_a_word(
 def test_a_gradebook_that_says_something_else_afterwards_is_not_believed(
     tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    tiny.configure_otherwise()
+
     def generous(self: Any, cell: Any, resources: Any) -> None:
         grade = self.gradebook.find_grade(
             cell.metadata.nbgrader.grade_id, "lab_1_2", "lab_1_2", self.student_id
@@ -391,6 +394,8 @@ def test_a_full_disk_is_said_and_costs_nothing(
 def test_a_full_disk_inside_nbgrader_is_said_too(
     tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    tiny.configure_otherwise()
+
     def full(*_: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 

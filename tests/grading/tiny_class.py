@@ -67,6 +67,10 @@ check("lab_1_2.talker", Talker)
 
 Between the two.
 
+:::{hint} How many points?
+Ten.
+:::
+
 ```{code-cell} ipython3
 :tags: [solution]
 def Listener():
@@ -113,6 +117,11 @@ class TinyClass:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
         return path
+
+    def configure_otherwise(self) -> None:
+        """Make nbgrader itself convert submissions and make pages, as for a class that changed its configuration."""
+        with (self.path / "nbgrader_config.py").open("a") as config:
+            config.write("c.SaveAutoGrades.enabled = True\nc.CSSHTMLHeaderPreprocessor.enabled = True\n")
 
     def grade(self, **options: Any) -> GradeReport:
         return grade(self.path, **{"console": QUIET, "feedback": False, **options})
