@@ -53,7 +53,7 @@ def block(text: str, *, max_lines: int, max_columns: int, mark: str = "…") -> 
 
 def width(text: str) -> int:
     """Columns that ``text`` takes in a fixed-width font: East Asian characters take two, accents none."""
-    return sum(_columns(character) for character in text)
+    return len(text) if text.isascii() else sum(_columns(character) for character in text)
 
 
 def wrap(text: str, limit: int, first: str = "", later: str = "") -> list[str]:
@@ -73,6 +73,10 @@ def wrap(text: str, limit: int, first: str = "", later: str = "") -> list[str]:
             line, empty = later, True
         if not empty:
             line += " "
+        if width(line) + width(word) <= limit:
+            line += word
+            empty = False
+            continue
         for character in word:
             if width(line) + _columns(character) > limit:
                 lines.append(line)
