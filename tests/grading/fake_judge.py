@@ -50,4 +50,5 @@ def verdict(exercise: str, score: float, seed: str = "") -> Verdict:
         None if score == 10 else Diagnosis("wrong_text", "It says something else.", "Say the right thing.")
     )
     state = State.PASSED if score == 10 else State.FAILED
-    return Verdict(exercise, exercise, state, score, 10.0, diagnosis=diagnosis, seed=seed)
+    detail = "" if score == 10 else "Traceback (most recent call last):\nWrong: text"
+    return Verdict(exercise, exercise, state, score, 10.0, diagnosis=diagnosis, seed=seed, detail=detail)
