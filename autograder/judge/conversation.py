@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from autograder import exercises
 from autograder.judge import domain, record, reference, trial
 from autograder.judge.link import Link, LinkClosed
+from autograder.judge.path_subject import PathSubject
 from autograder.judge.protocol import Report
 from autograder.judge.remote_subject import RemoteSubject
 from autograder.judge.wire import JudgeFailed
@@ -19,7 +20,9 @@ if TYPE_CHECKING:
     from autograder.exercises.model import Exercise
 
 
-def converse(connection: socket.socket, *, seed: str, expected: str | None, recording: bool) -> Report:
+def converse(
+    connection: socket.socket, *, seed: str, expected: str | None, recording: bool, workspaces: str = ""
+) -> Report:
     """Hear which exercise is asked for, judge it and tell the notebook.
 
     Args:
@@ -27,6 +30,7 @@ def converse(connection: socket.socket, *, seed: str, expected: str | None, reco
         seed: What random inputs are drawn from.
         expected: The only exercise that may be asked for; None for any.
         recording: Record a reference output instead of judging against the stored one.
+        workspaces: The door of the grader's side of checks of workspaces; empty where notebooks run these themselves.
 
     Returns:
         What came of it; nothing where nothing was asked, or something else than what is expected.
@@ -45,7 +49,13 @@ def converse(connection: socket.socket, *, seed: str, expected: str | None, reco
     if expected is not None and asked != expected:
         _tell(link, "refused", why=f"the check cell of {expected} asked for {asked}")
         return Report()
-    report = _report(exercise, RemoteSubject(link, is_class=first.get("kind") == "class"), seed, recording)
+    subject: RemoteSubject | PathSubject
+    if workspaces and exercise.runner:
+        # Whatever the notebook calls its subject: here only sources count.
+        subject = PathSubject(link, exercise.id, workspaces)
+    else:
+        subject = RemoteSubject(link, is_class=first.get("kind") == "class")
+    report = _report(exercise, subject, seed, recording)
     _tell(link, "verdict", verdict=_shown(exercise, report))
     return report
 
@@ -56,7 +66,7 @@ def _tell(link: Link, say: str, **words: Any) -> None:
         link.send(say, **words)
 
 
-def _report(exercise: Exercise, subject: RemoteSubject, seed: str, recording: bool) -> Report:
+def _report(exercise: Exercise, subject: RemoteSubject | PathSubject, seed: str, recording: bool) -> Report:
     try:
         with domain.lease() as domain_id:
             if not recording:
@@ -67,6 +77,8 @@ def _report(exercise: Exercise, subject: RemoteSubject, seed: str, recording: bo
             return Report(verdict, reference.dump(recorded, exercise.recorded))
     except (domain.NoFreeDomainError, reference.NoReference, record.NotRecordable, JudgeFailed) as error:
         return Report(trouble=str(error))
+    except LinkClosed:
+        return Report()  # the notebook went away before it had sent its sources
 
 
 def _shown(exercise: Exercise, report: Report) -> Verdict:

@@ -14,11 +14,14 @@ class Open(msgspec.Struct, tag="open", frozen=True):
         exercise: The exercise's id.
         seed: What its random inputs are drawn from.
         record: Record a reference output instead of judging against one.
+        workspaces: The door of the grader's side of checks of workspaces, as the judge sees it; empty where there is
+            none.
     """
 
     exercise: str
     seed: str
     record: bool = False
+    workspaces: str = ""
 
 
 class Close(msgspec.Struct, tag="close", frozen=True):

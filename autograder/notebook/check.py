@@ -9,7 +9,7 @@ from autograder.cards.bundle import mimebundle
 from autograder.notebook.check_context import CheckContext
 from autograder.notebook.judge_link import JudgeLink, JudgeUnreachable
 from autograder.notebook.overhearing import Overhearing
-from autograder.notebook.path_run import PathRun, is_path
+from autograder.notebook.path_run import PathRun, is_path, send_sources
 from autograder.notebook.ros_session import prepare_environment
 from autograder.notebook.subject_run import SubjectRun
 from autograder.verdict import Verdict, from_builtins, not_checked
@@ -54,6 +54,10 @@ def _converse(link: JudgeLink, exercise: str, subject: Any) -> Verdict:
     """Do what the judge says until it has a verdict."""
     link.say("check", exercise=exercise, kind="class" if inspect.isclass(subject) else "function")
     first = link.hear()
+    if first["say"] == "collect":
+        # A grader builds and runs what a path leads to by itself.
+        send_sources(link.say, subject)
+        return _last_words(exercise, link.hear())
     if first["say"] != "begin":
         return _last_words(exercise, first)
     run: SubjectRun | PathRun | None = None

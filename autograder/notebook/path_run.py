@@ -10,7 +10,9 @@ import threading
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
+from autograder.workspaces.finding import workspace_of
 from autograder.workspaces.processes import descendants
+from autograder.workspaces.sources import BadSources, Source, collect_launch, collect_workspace
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -91,6 +93,29 @@ class PathRun:
 def is_path(subject: object) -> bool:
     """Whether a subject is a path: a text or a ``pathlib.Path``."""
     return isinstance(subject, (str, Path))
+
+
+def send_sources(tell: Tell, subject: object) -> None:
+    """Tell a grader's judge what it asks for: everything that a check of this path may need.
+
+    Args:
+        tell: Tells the judge.
+        subject: What the check cell was given; of what is no path there are no sources.
+    """
+    path, sent, trouble = "nothing", list[Source](), ""
+    try:
+        if not isinstance(subject, (str, Path)):
+            raise BadSources(f"check(...) takes the path of files here, not a {type(subject).__name__}")
+        file = Path(subject)
+        if file.suffix and not file.is_dir():
+            path, sent = collect_launch(file, workspace_of(file, (file.resolve().parent, Path.cwd())))
+        else:
+            path, sent = file.resolve().name or "nothing", collect_workspace(file)
+    except (BadSources, OSError) as error:
+        trouble = str(error)
+    for source in sent:
+        tell("source", **source.as_words())
+    tell("sources", path=path, trouble=trouble)
 
 
 def _environment(domain: int) -> dict[str, str]:

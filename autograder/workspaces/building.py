@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from autograder.workspaces import cache
+from autograder.workspaces import cache, door
 from autograder.workspaces.failures import telling_line
 from autograder.workspaces.packages import BadPackage, Package, key, needed, survey
 from autograder.workspaces.prefixes import package_prefixes, without_workspaces
@@ -97,6 +97,11 @@ def build(workspace: Path, targets: Targets | None = None) -> Build:
         install = entry.folder / "install"
         if entry.complete:
             return replace(found, ok=True, install=install, seconds=time.monotonic() - began, reused=True)
+        graders = door.ask(found, chosen, install)
+        if graders is not None:
+            if graders.ok:
+                entry.finish()
+            return graders
         log = _colcon(workspace, chosen, entry.folder)
         if log is None:
             shutil.rmtree(entry.folder / "build", ignore_errors=True)

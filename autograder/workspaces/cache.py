@@ -30,6 +30,7 @@ LIMIT = 500_000_000
 IN_USE = 3600.0
 """Seconds after its last use in which an entry is not removed: its programs may still run."""
 _MARKER = "complete"
+_NAME = "ros2-course-autograder"
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,15 @@ def root() -> Path:
     temporary folder takes its place, so that the work goes on without a cache.
     """
     named = os.environ.get(VARIABLE)
-    folder = Path(named) if named else platformdirs.user_cache_path("ros2-course-autograder") / "workspaces"
+    return _own(Path(named) if named else platformdirs.user_cache_path(_NAME) / "workspaces")
+
+
+def graders_root() -> Path:
+    """The folder of the builds that grades rest on: made in boxes, and seen by a box only as far as it needs it."""
+    return _own(platformdirs.user_cache_path(_NAME) / "graded-builds")
+
+
+def _own(folder: Path) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         if is_ones_own(folder):
@@ -74,13 +83,17 @@ def is_ones_own(folder: Path) -> bool:
 
 
 @contextlib.contextmanager
-def entry(key: str) -> Iterator[Entry]:
+def entry(key: str, base: Path | None = None) -> Iterator[Entry]:
     """Hold the entry of a key: nobody else builds it at the same time.
 
     An entry that was not finished is empty when it is handed over, and is removed when it is not finished
     then.
+
+    Args:
+        key: Says what is in it.
+        base: The cache; the user's own where None.
     """
-    base = root()
+    base = base or root()
     with (base / f"{key}.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         folder = base / key

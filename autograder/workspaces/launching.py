@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 
 from autograder.exercises.launch_report import process_line
 from autograder.workspaces.building import build
-from autograder.workspaces.plans import lacks_programs, launch_targets, reference_workspace, workspace_of
+from autograder.workspaces.finding import workspace_of
+from autograder.workspaces.plans import lacks_programs, launch_targets, reference_workspace
 from autograder.workspaces.prefixes import with_prefixes
 from autograder.workspaces.processes import arguments_of, descendants, tell
 from autograder.workspaces.reporting import built_line

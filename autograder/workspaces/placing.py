@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from autograder.workspaces.artefacts import rename_paths
 
 if TYPE_CHECKING:
     from autograder.workspaces.building import Build
@@ -42,7 +43,7 @@ def place(made: Build) -> Path:
         with tempfile.TemporaryDirectory(prefix=".new-", dir=target) as fresh:
             copied = Path(fresh) / "install"
             shutil.copytree(made.install, copied, symlinks=True, ignore=shutil.ignore_patterns("__pycache__"))
-            _rename_paths(copied, str(made.install), str(target))
+            rename_paths(copied, str(made.install), str(target))
             for entry in sorted(copied.iterdir()):
                 _replace(target / entry.name, entry)
     except OSError as error:
@@ -54,12 +55,3 @@ def _replace(old: Path, new: Path) -> None:
     if old.is_dir() and not old.is_symlink():
         shutil.rmtree(old)
     new.replace(old)
-
-
-def _rename_paths(folder: Path, old: str, new: str) -> None:
-    """Replace the folder's own path in its text files (setup scripts, and what CMake and setuptools wrote)."""
-    for root, _, names in os.walk(folder):
-        for file in (Path(root, name) for name in names):
-            content = b"" if file.is_symlink() else file.read_bytes()
-            if old.encode() in content and b"\0" not in content:
-                file.write_bytes(content.replace(old.encode(), new.encode()))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import os
 import re
 import shutil
 import sys
@@ -12,6 +14,7 @@ from typing import TYPE_CHECKING
 from autograder import course
 from autograder.exercises.lab_1_1_hello import PACKAGE, PROGRAM
 from autograder.exercises.lab_1_3_interface import INTERFACE_FILE, SERVICE
+from autograder.workspaces.finding import WORKSPACE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -19,8 +22,8 @@ if TYPE_CHECKING:
     from autograder.workspaces.building import Build
     from autograder.workspaces.packages import Package
 
-WORKSPACE = "ros2_ws"
-"""What the course calls a workspace."""
+COURSE_PACKAGE = "my_robot_interfaces"
+"""The interfaces that come with the course, so that later labs do not need those of the student."""
 _INTERFACE = Path(INTERFACE_FILE).stem
 
 
@@ -100,22 +103,28 @@ def lacks_programs(file: Path, made: Build, course_build: Build) -> bool:
     return bool(words & _programs(course_build) - _programs(made))
 
 
-def workspace_of(file: Path, beside: Iterable[Path]) -> Path | None:
-    """The workspace that a launch file lies in, or the one in a folder beside it.
-
-    Args:
-        file: The launch file.
-        beside: Folders that may hold a workspace of the course's name.
-    """
-    around = [folder for folder in file.resolve().parents if (folder / "src").is_dir()]
-    candidates = [*around[:1], *(folder / WORKSPACE for folder in beside)]
-    found = [folder for folder in candidates if any((folder / "src").glob("**/package.xml"))]
-    return found[0] if found else None
-
-
 def reference_workspace() -> Path:
     """The workspace with the course's own talker and listener."""
     return course.root() / "solutions" / WORKSPACE
+
+
+@functools.cache
+def course_interfaces() -> tuple[Path, ...]:
+    """All files and folders of the interfaces that come with the course.
+
+    Whoever is to make interfaces must not find these: copied, they would look like generated ones.
+    """
+    patterns = (
+        f"share/{COURSE_PACKAGE}",
+        f"include/{COURSE_PACKAGE}",
+        f"share/ament_index/resource_index/*/{COURSE_PACKAGE}",
+        f"lib/lib{COURSE_PACKAGE}__*.so",
+        f"lib/python*/*-packages/{COURSE_PACKAGE}*",
+    )
+    prefixes = {sys.prefix, *os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)} - {""}
+    return tuple(
+        sorted(found for prefix in prefixes for pattern in patterns for found in Path(prefix).glob(pattern))
+    )
 
 
 def ros2() -> str:

@@ -58,6 +58,19 @@ def with_prefixes(
     return result
 
 
+def relocated(environment: Mapping[str, str], here: Path, there: Path) -> dict[str, str]:
+    """The environment for somebody who sees one folder at another place."""
+    old, new = f"{here}{os.sep}", f"{there}{os.sep}"
+    return {
+        name: os.pathsep.join(
+            part.replace(old, new, 1) if part.startswith(old) else part for part in value.split(os.pathsep)
+        )
+        if old in value
+        else value
+        for name, value in environment.items()
+    }
+
+
 def without_workspaces(environment: Mapping[str, str], workspace: Path) -> dict[str, str]:
     """The environment without what lies in a workspace: a build must not see the results of the one before."""
     result = dict(environment)

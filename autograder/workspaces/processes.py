@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
 import signal
+import time
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 _PR_SET_PDEATHSIG = 1
 
@@ -37,3 +43,46 @@ def tell(line: str) -> None:
 def end_with_the_parent() -> None:
     """Get SIGTERM when the process that started this one is gone; what this one becomes by exec gets it, too."""
     ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
+
+
+def halt(roots: Iterable[int], within: float = 3.0) -> list[int]:
+    """Stop processes and all below them; none that they start meanwhile escapes.
+
+    Args:
+        roots: The uppermost of them.
+        within: Seconds after which those who start ever new ones are given up.
+
+    Returns:
+        Who was stopped, for :func:`let_go`.
+
+    Raises:
+        TimeoutError: They could not be stopped.
+    """
+    above = set(roots)
+    stopped: set[int] = set()
+    still = 0
+    deadline = time.monotonic() + within
+    # Twice, because one that changes its parent while this looks could be seen below neither of them.
+    while still < 2:
+        running = {*above, *(pid for root in above for pid in descendants(root))} - stopped
+        still = 0 if running else still + 1
+        for pid in running:
+            _send(pid, signal.SIGSTOP)
+        stopped |= running
+        if time.monotonic() > deadline:
+            let_go(stopped)
+            raise TimeoutError(
+                "processes in the notebook's box go on starting others and could not be stopped"
+            )
+    return sorted(stopped)
+
+
+def let_go(pids: Iterable[int]) -> None:
+    """Let processes that were stopped go on."""
+    for pid in pids:
+        _send(pid, signal.SIGCONT)
+
+
+def _send(pid: int, number: int) -> None:
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        os.kill(pid, number)

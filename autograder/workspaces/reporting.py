@@ -33,6 +33,15 @@ def built_line(made: Build, missing: str = "") -> str:
     return _line(made, "built", missing)
 
 
+def no_sources_line(trouble: str) -> str:
+    """What is to be said where there is nothing that could be built.
+
+    Args:
+        trouble: Why, for the student.
+    """
+    return as_line(WorkspaceReport("built", built=False, trouble="no_workspace", line=trouble))
+
+
 def _line(made: Build, phase: str, missing: str) -> str:
     return as_line(
         WorkspaceReport(

@@ -1,0 +1,180 @@
+"""Jobs in boxes: builds without a network, programs in the network of their submission."""
+
+from __future__ import annotations
+
+import os
+import select
+import shlex
+import shutil
+import tempfile
+import time
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from autograder.boxes.environment import box_environment
+from autograder.boxes.sandbox import Bind, Enclosure
+from autograder.boxes.view import HOME, WORK
+from autograder.workspaces.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, Built
+from autograder.workspaces.processes import halt, let_go
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+
+    from autograder.boxes.sandbox import Running
+
+BUILD_SCRATCH_BYTES = 300_000_000
+BUILD_INODES = 20_000
+"""Bytes and files that a build may write in all; an interface package writes 5 million bytes in 600 files."""
+BUILD_LIMITS = {"RLIMIT_CPU": 240, "RLIMIT_FSIZE": 100_000_000, "RLIMIT_NPROC": 512, "RLIMIT_CORE": 0}
+PROGRAM_LIMITS = {"RLIMIT_CPU": 300, "RLIMIT_FSIZE": 50_000_000, "RLIMIT_NPROC": 512, "RLIMIT_CORE": 0}
+LOOK_EVERY = 0.5
+"""Seconds between two questions whether a build is still wanted."""
+
+
+class BoxedJobs:
+    """Implements :class:`autograder.workspaces.jobs.Jobs`.
+
+    Args:
+        keepers: Where the warm process of keepers listens.
+        submission: The boxes of the submission; what is asked of it here comes from another thread.
+        folder: Ours alone, for what is made on the way.
+        student: Says which processes are the uppermost of the student's box, as the host counts.
+    """
+
+    def __init__(
+        self, keepers: str, submission: Enclosure, folder: Path, student: Callable[[], Sequence[int]]
+    ) -> None:
+        self._keepers = keepers
+        self._submission = submission
+        self._folder = folder
+        self._student = student
+
+    @property
+    def environment(self) -> Mapping[str, str]:
+        """What every box has."""
+        return box_environment()
+
+    def place(self, name: str, entry: Path) -> Path:
+        """In the home folder of the box, wherever the entry is."""
+        del entry
+        return HOME / name
+
+    def tree(self, sources: Path) -> Path:
+        """Where the notebook is in the student's box."""
+        del sources
+        return WORK
+
+    def build(
+        self,
+        name: str,
+        entry: Path,
+        command: Sequence[str],
+        cancelled: Callable[[], bool],
+        hidden: Sequence[Path],
+    ) -> Built:
+        """Build in an enclosure of its own; pack what is there with nothing of the student's alive any more."""
+        place = self.place(name, entry)
+        folder = Path(tempfile.mkdtemp(prefix="build-", dir=self._folder))
+        binds = [Bind(entry / "src", place / "src"), *_covers(hidden, folder)]
+        variables = {"COLCON_DEFAULTS_FILE": os.devnull, "CMAKE_BUILD_PARALLEL_LEVEL": "2"}
+        try:
+            with Enclosure(
+                self._keepers, folder, scratch_bytes=BUILD_SCRATCH_BYTES, scratch_inodes=BUILD_INODES
+            ) as enclosure:
+                with enclosure.start(
+                    command, binds=binds, environment=box_environment(variables), cwd=HOME,
+                    output_bytes=MAX_LOG_BYTES, rlimits=BUILD_LIMITS,
+                ) as running:  # fmt: skip
+                    returncode = _wait(running, BUILD_SECONDS, cancelled)
+                    output = running.said
+                if returncode != 0:
+                    return Built(returncode, output)
+                packing = f"exec tar -cf - -C {shlex.quote(str(place / 'install'))} . 2>/dev/null"
+                packed = enclosure.run(
+                    ["/bin/sh", "-c", packing], limit=60.0, cwd=Path("/"), output_bytes=MAX_ARCHIVE_BYTES
+                )
+                whole = packed.returncode == 0 and not packed.cut
+                return Built(returncode, output, packed.output if whole else None)
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
+
+    def start(
+        self,
+        command: Sequence[str],
+        environment: Mapping[str, str],
+        *,
+        sources: Path,
+        entries: Mapping[str, Path],
+        hidden: Sequence[Path],
+    ) -> BoxedProgram:
+        """Start it in a box of the submission, which has its network and nothing else of it."""
+        binds = [Bind(sources, WORK)]
+        binds += [Bind(entry / "install", HOME / name / "install") for name, entry in entries.items()]
+        running = self._submission.start(
+            command,
+            binds=[*binds, *_covers(hidden, self._folder)],
+            environment=environment,
+            cwd=WORK,
+            scratch=False,
+            rlimits=PROGRAM_LIMITS,
+        )
+        return BoxedProgram(running)
+
+    @contextmanager
+    def standstill(self) -> Iterator[None]:
+        """Stop the processes of the student's box, and let them go on afterwards."""
+        stopped = halt(self._student())
+        try:
+            yield
+        finally:
+            let_go(stopped)
+
+
+class BoxedProgram:
+    """Implements :class:`autograder.workspaces.jobs.Program`."""
+
+    def __init__(self, running: Running) -> None:
+        self._running = running
+        self._ended = False
+        self._code: int | None = None
+        self.pid = running.pid
+
+    def read(self, within: float) -> bytes | None:
+        """Its output, stdout and stderr in one."""
+        if self._ended:
+            return b""
+        if not select.select([self._running], [], [], within)[0]:
+            return None
+        data = os.read(self._running.fileno(), 1 << 16)
+        if not data:
+            self._ended = True
+            self._code = self._running.wait(float("inf")).returncode
+        return data
+
+    def exit_code(self) -> int | None:
+        """Of the first process of the box."""
+        return self._code
+
+    def end(self) -> None:
+        """Kill the box."""
+        self._running.end()
+
+
+def _wait(running: Running, limit: float, cancelled: Callable[[], bool]) -> int | None:
+    """The exit code; None where it was ended."""
+    deadline = time.monotonic() + limit
+    while running.read(LOOK_EVERY):
+        if time.monotonic() > deadline or cancelled():
+            return None
+    return running.wait(limit).returncode
+
+
+def _covers(hidden: Sequence[Path], folder: Path) -> list[Bind]:
+    """An empty folder or file over each of these."""
+    if not hidden:
+        return []
+    empty_folder, empty_file = folder / "empty", folder / "empty-file"
+    empty_folder.mkdir(exist_ok=True)
+    empty_file.touch()
+    return [Bind(empty_folder if path.is_dir() else empty_file, path) for path in hidden]

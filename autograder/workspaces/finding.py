@@ -1,0 +1,25 @@
+"""Which workspace a launch file belongs to."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+WORKSPACE = "ros2_ws"
+"""What the course calls a workspace."""
+
+
+def workspace_of(file: Path, beside: Iterable[Path]) -> Path | None:
+    """The workspace that a launch file lies in, or the one in a folder beside it.
+
+    Args:
+        file: The launch file.
+        beside: Folders that may hold a workspace of the course's name.
+    """
+    around = [folder for folder in file.resolve().parents if (folder / "src").is_dir()]
+    candidates = [*around[:1], *(folder / WORKSPACE for folder in beside)]
+    found = [folder for folder in candidates if any((folder / "src").glob("**/package.xml"))]
+    return found[0] if found else None
