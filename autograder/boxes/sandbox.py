@@ -18,6 +18,7 @@ import os
 import select
 import shutil
 import tempfile
+import threading
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -84,7 +85,7 @@ class Finished:
 
 
 class Enclosure:
-    """The network, the scratch and the boxes of one submission. For one thread.
+    """The network, the scratch and the boxes of one submission. Threads take turns.
 
     Args:
         keepers: Where the warm process of keepers listens.
@@ -113,6 +114,7 @@ class Enclosure:
         self._boxes: dict[str, Box] = {}
         self._ended: dict[str, int] = {}
         self._commands = 0
+        self._turn = threading.RLock()
         self._channel = Channel.to(keepers)
         try:
             self._ask(
@@ -204,8 +206,9 @@ class Enclosure:
         """Start a command in a box of its own; leaving the result's context ends it. See :meth:`run`."""
         from autograder.boxes.environment import box_environment
 
-        self._commands += 1
-        name = f"command {self._commands}"
+        with self._turn:
+            self._commands += 1
+            name = f"command {self._commands}"
         words = box_arguments(self._scratch, self._folder / "etc", binds, scratch_visible=scratch)
         for variable, value in (box_environment() if environment is None else environment).items():
             words += ["--setenv", variable, value]
@@ -237,9 +240,10 @@ class Enclosure:
         Returns:
             The exit code of bubblewrap: that of the command, 128 and more for a signal.
         """
-        if name not in self._ended:
-            self._channel.send({"say": "kill", "name": name})
-        return self.wait_end(name, _ANSWER_SECONDS)
+        with self._turn:
+            if name not in self._ended:
+                self._channel.send({"say": "kill", "name": name})
+            return self.wait_end(name, _ANSWER_SECONDS)
 
     def wait_end(self, name: str, within: float) -> int:
         """Wait until a box has ended of its own.
@@ -247,12 +251,13 @@ class Enclosure:
         Raises:
             ChannelClosed: It did not end in time, or the keeper is gone.
         """
-        while name not in self._ended:
-            self._take(*self._channel.receive(within))
-        box = self._boxes.pop(name, None)
-        if box is not None:
-            os.close(box.pidfd)
-        return self._ended[name]
+        with self._turn:
+            while name not in self._ended:
+                self._take(*self._channel.receive(within))
+            box = self._boxes.pop(name, None)
+            if box is not None:
+                os.close(box.pidfd)
+            return self._ended[name]
 
     def close(self) -> None:
         """End all boxes and wait until none of their processes is alive; may be called twice."""
@@ -279,12 +284,13 @@ class Enclosure:
         self, expected: str, descriptors: Sequence[int] = (), **message: Any
     ) -> tuple[dict[str, Any], list[int]]:
         try:
-            self._channel.send(message, descriptors)
-            while True:
-                answer, received = self._channel.receive(_ANSWER_SECONDS)
-                if answer["say"] == expected:
-                    return answer, received
-                self._take(answer, received)
+            with self._turn:
+                self._channel.send(message, descriptors)
+                while True:
+                    answer, received = self._channel.receive(_ANSWER_SECONDS)
+                    if answer["say"] == expected:
+                        return answer, received
+                    self._take(answer, received)
         except ChannelClosed as error:
             raise NoSandbox(f"the keeper of the boxes is gone: {error}") from error
 
