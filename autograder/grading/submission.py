@@ -133,7 +133,7 @@ def _from_version_3(cell: Any) -> Any:
 
 
 def _cell(cell: Any) -> SubmittedCell | None:
-    if not isinstance(cell, Mapping) or cell.get("cell_type") not in set(Kind):
+    if not isinstance(cell, Mapping) or cell.get("cell_type") not in tuple(Kind):
         return None
     source = cell.get("source")
     if isinstance(source, list) and all(isinstance(line, str) for line in source):

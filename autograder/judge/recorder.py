@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
-import copy
 import threading
 import time
 from typing import TYPE_CHECKING, Any
 
-from autograder.exercises.evidence import Event, Part
+from autograder.exercises.evidence import REPORTS, Event, Part
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 MAX_EVENTS = 20_000
 """Events that one part may hold: a flood is cut here instead of filling the memory."""
+MAX_SAID = 1_000_000
+"""Characters of output and log that one part holds. Of a subject that says more, the last is kept."""
+MAX_TEXT = 50_000
+"""Characters of one text, items of one list: no message of the course comes near, and a stack just fits."""
+MAX_TEXTS = 20_000_000
+"""Characters of all texts of a part; of what comes after these only the beginning is kept."""
+BEGINNING = 100
+MAX_NAME = 300
+"""Characters of a name; DDS allows 255."""
+_SPEECH = ("output", "log")
 
 
 class Recorder:
@@ -27,6 +36,9 @@ class Recorder:
     def __init__(self) -> None:
         self._changed = threading.Condition()
         self._events: list[Event] = []
+        self._count = 0
+        self._said = 0
+        self._size = 0
         self._name = ""
         self._inputs: Mapping[str, Any] = {}
         self._start = time.monotonic()
@@ -36,6 +48,7 @@ class Recorder:
         """Start a new part; forget the events of the one before."""
         with self._changed:
             self._events = []
+            self._said = self._size = 0
             self._name = name
             self._inputs = dict(inputs)
             self._start = time.monotonic()
@@ -43,11 +56,25 @@ class Recorder:
 
     def record(self, kind: str, name: str, **data: Any) -> None:
         """Write down one event and wake everyone who waits for it."""
+        kept, size = _kept(data, MAX_TEXT if self._size < MAX_TEXTS else BEGINNING)
         with self._changed:
+            self._count += 1
+            self._size += size
+            if kind in _SPEECH:
+                self._said += size
+                if self._said > MAX_SAID or len(self._events) >= MAX_EVENTS:
+                    self._forget_old_words()
             if len(self._events) < MAX_EVENTS:
                 t = time.monotonic() - self._start
-                self._events.append(Event(t, kind, name, copy.deepcopy(data), self.simulated_now))
+                self._events.append(Event(t, kind, name[:MAX_NAME], kept, self.simulated_now))
             self._changed.notify_all()
+
+    def _forget_old_words(self) -> None:
+        """Drop the older half of what was said, so that who says much keeps nothing else from being seen."""
+        words = [event for event in self._events if _is_speech(event)]
+        old = {id(event) for event in words[: len(words) // 2 + 1]}
+        self._events = [event for event in self._events if id(event) not in old]
+        self._said = sum(len(event.data["text"]) for event in self._events if _is_speech(event))
 
     def part(self) -> Part:
         """What has been seen so far in this part."""
@@ -75,12 +102,35 @@ class Recorder:
         """
         deadline = time.monotonic() + within
         while True:
-            seen = len(self._events)
+            seen = self._count
             if condition():
                 return True
             remaining = deadline - time.monotonic()
             if remaining <= 0:
                 return False
             with self._changed:
-                if len(self._events) == seen:
+                if self._count == seen:
                     self._changed.wait(min(remaining, poll))
+
+
+def _is_speech(event: Event) -> bool:
+    """Whether it is something that a subject said; what a runner reports of a build or a launch is not."""
+    return event.kind in _SPEECH and not str(event.data.get("text", "")).startswith(REPORTS)
+
+
+def _kept(data: Any, limit: int) -> tuple[Any, int]:
+    """A copy of what was seen, and how many characters it has.
+
+    It is cut to what a verdict can be made of, since a subject may send gigabytes.
+    """
+    if isinstance(data, str):
+        # A lone surrogate, as JSON may carry one, is no text: a verdict that quotes it could not be written down.
+        text = data if data.isascii() else data[:limit].encode("utf-8", "replace").decode() + data[limit:]
+        return (text if len(text) <= limit else f"{text[:limit]}…"), min(len(text), limit)
+    if isinstance(data, dict):
+        pairs = {key: _kept(value, limit) for key, value in data.items()}
+        return {key: kept for key, (kept, _) in pairs.items()}, sum(size for _, size in pairs.values())
+    if isinstance(data, (list, tuple)):
+        items = [_kept(item, limit) for item in data[:limit]]
+        return [kept for kept, _ in items], sum(size for _, size in items) + len(items)
+    return data, 0

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 MAX_MOMENTS = 80
 """Moments that a verdict carries; the first ones tell the story."""
 
+MAX_LABEL = 200
+"""Characters of one of them."""
+
 _DIRECTION = {
     "message": "from_subject",
     "sent": "to_subject",
@@ -89,4 +92,5 @@ _LABELS: dict[str, Callable[[Event], str]] = {
 
 def _label(event: Event) -> str:
     label = _LABELS.get(event.kind)
-    return label(event) if label else _fields(event.data)
+    text = label(event) if label else _fields(event.data)
+    return text if len(text) <= MAX_LABEL else f"{text[: MAX_LABEL - 1]}…"

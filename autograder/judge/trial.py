@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 MAX_DETAIL = 6_000
 """Characters of a traceback that a card shows."""
+MAX_WORDS = 500
+"""Characters of one sentence of a verdict; what a subject said is quoted in them."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,7 @@ def look(
 def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
     """The verdict that follows from the evidence alone."""
     criteria = tuple(
-        Criterion(c.name, c.title, c.points, finding.passed, finding.expected, finding.seen)
+        Criterion(c.name, c.title, c.points, finding.passed, _cut(finding.expected), _cut(finding.seen))
         for c in exercise.criteria
         for finding in [c.judge(evidence)]
     )
@@ -96,7 +98,7 @@ def diagnose(exercise: Exercise, evidence: Evidence) -> Diagnosis:
     found = _recognised(exercise, evidence)
     if found is not None:
         mistake, advice = found
-        return Diagnosis(mistake.key, advice.text, advice.next_step)
+        return Diagnosis(mistake.key, _cut(advice.text, 2 * MAX_WORDS), _cut(advice.next_step, 2 * MAX_WORDS))
     return Diagnosis(
         "unknown",
         "This is none of the mistakes that the judge knows by name.",
@@ -115,3 +117,8 @@ def _recognised(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice
 def _is_certain(exercise: Exercise, evidence: Evidence) -> bool:
     found = _recognised(exercise, evidence)
     return found is not None and found[0].certain
+
+
+def _cut(text: str, limit: int = MAX_WORDS) -> str:
+    """A sentence that fits on a card, whatever a subject has said in it."""
+    return text if len(text) <= limit else f"{text[: limit - 1]}…"

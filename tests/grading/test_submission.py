@@ -38,10 +38,18 @@ def test_takes_the_text_and_the_claimed_name_and_nothing_else() -> None:
 
 def test_leaves_out_what_is_no_cell() -> None:
     cells, left_out = parse(
-        notebook(code("1"), 3, None, {"cell_type": "shell", "source": ""}, code({"a": 1}), code([1]))
+        notebook(
+            code("1"),
+            3,
+            None,
+            {"cell_type": "shell", "source": ""},
+            {"cell_type": ["code"]},
+            code({"a": 1}),
+            code([1]),
+        )
     )
     assert [cell.source for cell in cells] == ["1"]
-    assert left_out == 5
+    assert left_out == 6
 
 
 def test_metadata_of_any_form_is_no_name() -> None:

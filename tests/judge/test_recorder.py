@@ -48,3 +48,35 @@ def test_a_flood_is_cut(monkeypatch: object) -> None:
     for number in range(recorder.MAX_EVENTS + 5):
         book.record("message", "/flood", number=number)
     assert len(book.part().events) == recorder.MAX_EVENTS
+
+
+def test_of_long_speech_the_end_is_kept_and_all_else_too() -> None:
+    book = Recorder()
+    book.begin("part", {})
+    book.record("request", "/add_two_ints", fields={"a": 1, "b": 2})
+    book.record("output", "notebook", text="@workspace {}")
+    for number in range(300):
+        book.record("output", "notebook", text=f"{number} " + "x" * 10_000)
+    part = book.part()
+    assert part.first("request") is not None
+    assert [e for e in part.of("output") if e.data["text"].startswith("@workspace")]
+    assert part.of("output")[-1].data["text"].startswith("299 ")
+    assert sum(len(e.data["text"]) for e in part.of("output")) <= recorder.MAX_SAID
+
+
+def test_huge_messages_are_cut() -> None:
+    book = Recorder()
+    book.begin("part", {})
+    for _ in range(recorder.MAX_TEXTS // recorder.MAX_TEXT + 5):
+        book.record("message", "/chatter", fields={"data": "x" * 4_000_000, "list": [1] * 10**5})
+    texts = [e.data["fields"]["data"] for e in book.part().of("message")]
+    assert len(texts[0]) == recorder.MAX_TEXT + 1
+    assert len(texts[-1]) == recorder.BEGINNING + 1
+
+
+def test_what_is_no_text_can_be_written_down_all_the_same() -> None:
+    book = Recorder()
+    book.begin("part", {})
+    book.record("output", "notebook", text="Grüße \ud800")
+    (event,) = book.part().events
+    assert event.data["text"].encode() == "Grüße ?".encode()
