@@ -59,7 +59,9 @@ c.OverwriteCells.add_missing_cells = True
 c.GenerateFeedback.exporter_class = "autograder.grading.pages.FeedbackExporter"
 c.HTMLExporter.filters = {{"markdown2html": "autograder.grading.pages.markdown_to_html"}}
 
-# `nbgrader export` and `autograder grade` each write a table: give nbgrader's a name of its own.
+# `nbgrader export` and `autograder grade` each write a table: give nbgrader's a name of its own. In neither does
+# a spreadsheet find a formula.
+c.ExportApp.plugin_class = "autograder.grading.export.SafeCsvExport"
 c.ExportPlugin.to = "nbgrader_export.csv"
 
 # Wall time in seconds, of one cell and of a whole notebook. Check cells have their exercise's own limit.

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from autograder.grading.journal import write_whole
 from autograder.grading.points import points
+from autograder.grading.spreadsheet import csv_text
 from autograder.verdict import State
 
 if TYPE_CHECKING:
@@ -23,7 +22,6 @@ NOT_SUBMITTED = "not_submitted"
 NOT_GRADED = "not_graded"
 """Handed in, but left out of every run so far."""
 COLUMNS = ("student", "assignment", "exercise", "score", "max", "state", "diagnosis", "reason")
-_DANGEROUS = ("=", "+", "-", "@", "\t", "\r")
 
 
 @dataclass(frozen=True)
@@ -126,19 +124,9 @@ def write_csv(path: Path, rows: Iterable[Row]) -> None:
     Raises:
         OSError: It could not be written; an earlier file is still there then.
     """
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    for row in rows:
-        words = (row.student, row.assignment, row.exercise)
-        numbers = (f"{row.score:g}", f"{row.max_score:g}")
-        writer.writerow(
-            [*map(_defused, words), *numbers, *map(_defused, (row.state, row.diagnosis, row.reason))]
-        )
-    write_whole(path, text.getvalue().encode())
+    write_whole(path, csv_text([COLUMNS, *map(_cells, rows)]).encode())
 
 
-def _defused(text: str) -> str:
-    """A cell that a spreadsheet will not take for a formula (OWASP, "CSV Injection")."""
-    text = text.replace("\0", "")
-    return f"'{text}" if text.lstrip(" \n").startswith(_DANGEROUS) else text
+def _cells(row: Row) -> tuple[str | float, ...]:
+    who = (row.student, row.assignment, row.exercise)
+    return (*who, row.score, row.max_score, row.state, row.diagnosis, row.reason)

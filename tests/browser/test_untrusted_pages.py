@@ -27,7 +27,7 @@ from tiny_class import FakeEngine, TinyClass, make_tiny_class
 from autograder.boxes.execution import CellRun, Ended, Kind
 from autograder.boxes.limits import Limits
 from autograder.boxes.outputs import Budget, OutputCollector
-from autograder.grading import engine
+from autograder.grading import engine, nodes
 from autograder.grading.class_directory import ClassDirectory
 from autograder.grading.harmless import clean, harmless_markdown
 
@@ -187,8 +187,8 @@ def hostile_class(tmp_path_factory: pytest.TempPathFactory) -> TinyClass:
     path = tiny.submit("eve", 4, 10)
     notebook = nbformat.read(path, as_version=4)
     for text in TEXTS:
-        for kind in (nbformat.v4.new_markdown_cell, nbformat.v4.new_raw_cell, nbformat.v4.new_code_cell):
-            cell = kind(text)
+        for kind in Kind:
+            cell = nodes.cell(kind, text)
             cell.metadata = {"tags": [text], "raw_mimetype": "text/html", "magics_language": text}
             notebook.cells.append(cell)
     notebook.metadata = {"title": "<script>fired()</script>", "widgets": {"x": "<script>fired()</script>"}}

@@ -1,0 +1,59 @@
+"""``nbgrader export`` for spreadsheets: the columns of nbgrader's own CSV export, quoted and defused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from nbgrader.api import MissingEntry
+from nbgrader.plugins import ExportPlugin
+
+from autograder.grading.journal import write_whole
+from autograder.grading.spreadsheet import csv_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from nbgrader.api import Gradebook
+
+_ABOUT = ("assignment", "duedate", "timestamp", "student_id", "last_name", "first_name", "email")
+_NUMBERS = ("raw_score", "late_submission_penalty", "score", "max_score")
+
+
+class SafeCsvExport(ExportPlugin):
+    """One line for each student and assignment, as nbgrader's ``CsvExportPlugin`` writes it.
+
+    That one writes a comma or a line break in a name as it is, and a formula, too.
+    """
+
+    def export(self, gradebook: Gradebook) -> None:
+        """Write the file that ``--to`` names, ``grades.csv`` where it names none.
+
+        Args:
+            gradebook: nbgrader's, open.
+        """
+        to = Path(self.to or "grades.csv")
+        self.log.info("Exporting grades to %s", to)
+        write_whole(to, csv_text([(*_ABOUT, *_NUMBERS), *self._rows(gradebook)]).encode())
+
+    def _rows(self, gradebook: Gradebook) -> Iterator[tuple[str | float, ...]]:
+        for assignment in gradebook.assignments:
+            if self.assignment and assignment.name not in map(str, self.assignment):
+                continue
+            for student in gradebook.students:
+                if not self.student or student.id in map(str, self.student):
+                    yield _row(gradebook, assignment, student)
+
+
+def _row(gradebook: Gradebook, assignment: Any, student: Any) -> tuple[str | float, ...]:
+    try:
+        submission: Any = gradebook.find_submission(assignment.name, student.id)
+    except MissingEntry:
+        timestamp, raw, penalty = "", 0.0, 0.0
+    else:
+        timestamp, raw = submission.timestamp, float(submission.score)
+        penalty = float(submission.late_submission_penalty or 0.0)
+    who = (student.id, student.last_name, student.first_name, student.email)
+    about = (assignment.name, assignment.duedate, timestamp, *who)
+    texts = ("" if text is None else str(text) for text in about)
+    return (*texts, raw, penalty, max(0.0, raw - penalty), float(assignment.max_score))
