@@ -22,6 +22,8 @@ SILENCE = 6
 """Periods of silence after which nothing more is waited for."""
 ONE_MOMENT = 0.1
 """Seconds within which messages count as published all at once."""
+CREDIBLE = 0.4
+"""The part of the time over which messages were sent, by their publisher's clock, over which they must arrive."""
 RATE_TOLERANCE = 0.2
 """How far the median interval may be from the reference's, as a part of it."""
 
@@ -55,8 +57,20 @@ def intervals(messages: list[Event]) -> list[float]:
     The first simulated interval is left out: the jump to simulated time distorts it.
     """
     simulated = [event.sim for event in messages if event.sim is not None]
-    times = simulated[1:] or [float(event.data.get("sent", event.t)) for event in messages]
+    times = simulated[1:] or _sent_times(messages)
     return [later - earlier for earlier, later in pairwise(times)]
+
+
+def _sent_times(messages: list[Event]) -> list[float]:
+    """When each message was sent: as the publisher says, unless they came too close together for that to be true.
+
+    A busy judge gets messages late and close together, but hardly all of them; a publisher whose clock was tampered
+    with says what it likes.
+    """
+    arrived = [event.t for event in messages]
+    sent = [float(event.data.get("sent", event.t)) for event in messages]
+    credible = len(messages) < 2 or arrived[-1] - arrived[0] >= CREDIBLE * (sent[-1] - sent[0])
+    return sent if credible else arrived
 
 
 def _reference_period(reference: Reference) -> float:

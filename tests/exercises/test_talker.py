@@ -69,3 +69,14 @@ def test_one_that_stops_too_soon_does_not_count_on() -> None:
 def test_nothing_heard_is_nothing_earned() -> None:
     silent = Evidence([Part("talking")], REFERENCE)
     assert not any(criterion.judge(silent).passed for criterion in talker.EXERCISE.criteria)
+
+
+@pytest.mark.parametrize(("took", "right"), [(3.0, True), (1.8, True), (0.3, False)])
+def test_times_of_sending_are_believed_where_the_messages_took_as_long_to_arrive(
+    took: float, right: bool
+) -> None:
+    messages = [
+        Event(0.3 + i * took / 6, "message", TOPIC, event.data)
+        for i, event in enumerate(_messages(list(range(7)), 0.5, simulated=False))
+    ]
+    assert talker.keeps_the_rate(_evidence(messages, real_time=True)).passed is right
