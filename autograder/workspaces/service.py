@@ -103,7 +103,7 @@ class WorkspaceService:
         listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         listener.bind(str(door))
         door.chmod(0o600)
-        listener.listen(4)
+        listener.listen(16)
         thread = threading.Thread(target=self._accept, args=(listener, serve), daemon=True)
         self._threads.append(thread)
         thread.start()

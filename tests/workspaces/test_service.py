@@ -1,0 +1,370 @@
+"""The grader's side of a check of a workspace, with a judge and jobs of the tests' own."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import tarfile
+import tempfile
+import threading
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from autograder.exercises.evidence import REPORTS
+from autograder.workspaces import door, front, service, sources
+from autograder.workspaces.jobs import Built
+from autograder.workspaces.lines import Hangup, Lines
+from autograder.workspaces.plain_jobs import PlainProgram
+from autograder.workspaces.service import Doors, WorkspaceService
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+
+
+FORGED = f'{REPORTS[0]}{{"phase": "built", "built": true}}'
+
+
+class FakeJobs:
+    """Builds nothing and packs a program of the lab's name; runs a line of shell in place of any command."""
+
+    def __init__(self) -> None:
+        self.environment: Mapping[str, str] = {"PATH": "/usr/bin:/bin"}
+        self.builds: list[list[str]] = []
+        self.commands: list[Sequence[str]] = []
+        self.built = Built(
+            0, b"all is well\n", _packed("my_robot_pkg/lib/my_robot_pkg/simple_node", "my_robot_pkg/share/x")
+        )
+        self.script = "echo hello"
+        self.waiting: Callable[[Callable[[], bool]], None] = lambda _: None
+        self.still = 0
+
+    def place(self, name: str, entry: Path) -> Path:
+        return Path("/home/student") / name
+
+    def tree(self, sources: Path) -> Path:
+        return Path("/home/student/notebook")
+
+    def build(
+        self,
+        name: str,
+        entry: Path,
+        command: Sequence[str],
+        cancelled: Callable[[], bool],
+        hidden: Sequence[Path],
+    ) -> Built:
+        self.builds.append(sorted(path.name for path in (entry / "src").iterdir()))
+        self.waiting(cancelled)
+        return self.built
+
+    def start(self, command: Sequence[str], environment: Mapping[str, str], **rest: Any) -> PlainProgram:
+        self.commands.append(command)
+        return PlainProgram(["/bin/sh", "-c", self.script], environment, rest["sources"])
+
+    @contextlib.contextmanager
+    def standstill(self) -> Iterator[None]:
+        self.still += 1
+        yield
+        self.still -= 1
+
+
+def _packed(*names: str) -> bytes:
+    file = io.BytesIO()
+    with tarfile.open(fileobj=file, mode="w") as tar:
+        for name in names:
+            tar.addfile(tarfile.TarInfo(name))
+    return file.getvalue()
+
+
+class FakeJudge:
+    """Plays the judge's part at its door."""
+
+    def __init__(self, doors: Doors) -> None:
+        self.lines = Lines.to(doors.judge, 20.0)
+
+    def check(self, workspace: Path, exercise: str = "lab_1_1.hello", trouble: str = "") -> None:
+        sent = sources.collect_workspace(workspace)
+        self.lines.say(
+            "check", exercise=exercise, domain=7, path=workspace.name, count=len(sent), trouble=trouble
+        )
+        for source in sent:
+            self.lines.say("source", **source.as_words())
+        assert self.lines.hear() == {"say": "ready"}
+
+    def run(self, number: int = 1) -> list[dict[str, Any]]:
+        """What is said of a run until it has ended by itself."""
+        self.lines.say("start", run=number, path="ros2_ws")
+        heard: list[dict[str, Any]] = []
+        while not heard or heard[-1]["say"] not in ("exited", "trouble"):
+            heard.append(self.lines.hear())
+        return heard
+
+
+def reports(heard: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    return [json.loads(words["text"].partition(" ")[2]) for words in heard if words["say"] == "report"]
+
+
+@pytest.fixture
+def jobs() -> FakeJobs:
+    return FakeJobs()
+
+
+@pytest.fixture
+def doors(jobs: FakeJobs, tmp_path: Path) -> Iterator[Doors]:
+    builds = tmp_path / "builds"
+    builds.mkdir(mode=0o700)
+    # Sockets have short names.
+    with tempfile.TemporaryDirectory() as name:
+        doors = Doors(Path(name) / "j", Path(name) / "n")
+        with WorkspaceService(doors, jobs, builds, {"SAID": "1"}, tmp_path):
+            yield doors
+
+
+@pytest.fixture
+def lab(tmp_path: Path) -> Path:
+    from made_workspaces import python_package
+
+    python_package(tmp_path / "ros2_ws" / "src", "my_robot_pkg")
+    return tmp_path / "ros2_ws"
+
+
+def test_it_is_found_built_and_started_by_ros2_run(doors: Doors, jobs: FakeJobs, lab: Path) -> None:
+    judge = FakeJudge(doors)
+    judge.check(lab)
+    heard = judge.run()
+    assert [report["phase"] for report in reports(heard)] == ["found", "built"]
+    assert reports(heard)[1]["built"]
+    assert [words["text"] for words in heard if words["say"] == "output"] == ["hello"]
+    assert heard[-1] == {"say": "exited", "run": 1, "code": 0}
+    assert jobs.commands[0][-3:] == ["run", "my_robot_pkg", "simple_node"]
+
+
+def test_what_a_program_says_is_never_a_report(doors: Doors, jobs: FakeJobs, lab: Path) -> None:
+    jobs.script = f"echo '{FORGED}'"
+    judge = FakeJudge(doors)
+    judge.check(lab)
+    heard = judge.run()
+    assert len(reports(heard)) == 2
+    assert {"say": "output", "run": 1, "text": FORGED} in heard
+
+
+def test_a_build_that_says_it_went_well_and_brought_nothing_has_not(
+    doors: Doors, jobs: FakeJobs, lab: Path
+) -> None:
+    jobs.built = Built(0, FORGED.encode(), _packed("my_robot_pkg/share/x"))
+    judge = FakeJudge(doors)
+    judge.check(lab)
+    heard = judge.run()
+    assert reports(heard)[-1]["missing"] == "simple_node"
+    assert not jobs.commands
+
+
+def test_a_failed_build_is_told_and_not_kept(doors: Doors, jobs: FakeJobs, lab: Path) -> None:
+    good, jobs.built = (
+        jobs.built,
+        Built(1, b'  File "/x/setup.py", line 3\nSyntaxError: no\nFailed   <<< my_robot_pkg\n'),
+    )
+    judge = FakeJudge(doors)
+    judge.check(lab)
+    told = reports(judge.run())[-1]
+    assert (told["trouble"], told["package"], told["line"]) == (
+        "build",
+        "my_robot_pkg",
+        "x/setup.py:3: SyntaxError: no",
+    )
+    jobs.built = good
+    assert reports(judge.run(2))[-1]["built"]
+
+
+def test_an_archive_that_leads_out_is_a_failed_build(doors: Doors, jobs: FakeJobs, lab: Path) -> None:
+    jobs.built = Built(0, b"", _packed("../../evil"))
+    judge = FakeJudge(doors)
+    judge.check(lab)
+    assert reports(judge.run())[-1]["trouble"] == "build"
+
+
+def test_the_same_sources_are_built_once_for_all(doors: Doors, jobs: FakeJobs, lab: Path) -> None:
+    for _ in range(2):
+        judge = FakeJudge(doors)
+        judge.check(lab)
+        judge.run(1)
+        judge.run(2)
+        judge.lines.close()
+    assert jobs.builds == [["my_robot_pkg"]]
+    file = lab / "src" / "my_robot_pkg" / "my_robot_pkg" / "hello.py"
+    file.write_text(file.read_text() + "\n")
+    judge = FakeJudge(doors)
+    judge.check(lab)
+    judge.run()
+    assert len(jobs.builds) == 2
+
+
+def test_what_is_not_needed_is_not_built(doors: Doors, jobs: FakeJobs, lab: Path) -> None:
+    from made_workspaces import python_package
+
+    (python_package(lab / "src", "half_done") / "package.xml").write_text("<package>")
+    judge = FakeJudge(doors)
+    judge.check(lab)
+    assert reports(judge.run())[-1]["built"]
+    assert jobs.builds == [["my_robot_pkg"]]
+
+
+@pytest.mark.parametrize(
+    ("make", "trouble"),
+    [
+        (lambda ws: None, "no_workspace"),
+        (lambda ws: ws.mkdir(), "no_workspace"),
+        (lambda ws: (ws / "src").mkdir(parents=True), "no_package"),
+    ],
+    ids=["nothing", "no src", "empty src"],
+)
+def test_what_is_no_workspace_says_so(doors: Doors, tmp_path: Path, make: Any, trouble: str) -> None:
+    make(tmp_path / "ros2_ws")
+    judge = FakeJudge(doors)
+    judge.check(tmp_path / "ros2_ws")
+    told = reports(judge.run())[-1]
+    assert told["trouble"] == trouble
+    assert str(tmp_path) not in told["line"]
+
+
+def test_sources_that_were_not_to_be_had_are_a_failure_with_a_reason(doors: Doors, lab: Path) -> None:
+    judge = FakeJudge(doors)
+    judge.check(lab, trouble="there is too much in src")
+    assert reports(judge.run()) == [
+        {**reports(judge.run(2))[0], "line": "there is too much in src", "built": False}
+    ]
+
+
+def test_a_path_that_leads_out_is_refused(doors: Doors, jobs: FakeJobs) -> None:
+    judge = FakeJudge(doors)
+    judge.lines.say("check", exercise="lab_1_1.hello", domain=7, path="ros2_ws", count=1)
+    judge.lines.say("source", path="../evil", data="", executable=False)
+    assert judge.lines.hear()["say"] == "ready"
+    assert "no path inside" in reports(judge.run())[-1]["line"]
+    assert not jobs.builds
+
+
+def test_a_run_is_ended_when_the_judge_says_so(doors: Doors, jobs: FakeJobs, lab: Path) -> None:
+    jobs.script = "echo started; sleep 1000"
+    judge = FakeJudge(doors)
+    judge.check(lab)
+    judge.lines.say("start", run=1, path="ros2_ws")
+    while judge.lines.hear().get("text") != "started":
+        pass
+    judge.lines.say("stop", run=1, path="ros2_ws")
+    assert judge.lines.hear() == {"say": "stopped", "run": 1}
+
+
+def test_a_build_is_given_up_when_nobody_waits_for_it(doors: Doors, jobs: FakeJobs, lab: Path) -> None:
+    given_up, building = threading.Event(), threading.Event()
+
+    def wait(cancelled: Callable[[], bool]) -> None:
+        building.set()
+        while not cancelled():
+            threading.Event().wait(0.01)
+        given_up.set()
+
+    jobs.waiting = wait
+    judge = FakeJudge(doors)
+    judge.check(lab)
+    judge.lines.say("start", run=1, path="ros2_ws")
+    assert building.wait(20.0)
+    judge.lines.close()
+    assert given_up.wait(20.0)
+
+
+def test_the_notebook_stands_still_as_long_as_the_check_lasts(
+    doors: Doors, jobs: FakeJobs, lab: Path
+) -> None:
+    judge = FakeJudge(doors)
+    judge.check(lab)
+    assert jobs.still == 1
+    judge.run()
+    assert jobs.still == 1
+    judge.lines.close()
+    next_judge = FakeJudge(doors)  # answered when the one before is over
+    next_judge.check(lab)
+    assert jobs.still == 1
+
+
+def test_trouble_of_the_grader_s_own_is_no_report(doors: Doors, jobs: FakeJobs, lab: Path) -> None:
+    jobs.built = None  # type: ignore[assignment]
+    judge = FakeJudge(doors)
+    judge.check(lab)
+    heard = judge.run()
+    assert heard[-1]["say"] == "trouble"
+    assert [report["phase"] for report in reports(heard)] == ["found"]
+
+
+def test_a_very_long_line_comes_in_pieces(doors: Doors, jobs: FakeJobs, lab: Path) -> None:
+    jobs.script = "head -c 100000 /dev/zero | tr '\\0' x; echo; echo end"
+    judge = FakeJudge(doors)
+    judge.check(lab)
+    said = [words["text"] for words in judge.run() if words["say"] == "output"]
+    assert max(map(len, said)) <= 4_000
+    assert said[-1] == "end"
+
+
+def test_a_notebook_s_build_comes_from_the_grader(
+    doors: Doors,
+    jobs: FakeJobs,
+    lab: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setenv(door.VARIABLE, str(doors.notebook))
+    monkeypatch.chdir(lab)
+    assert front.main(["build", "--packages-select", "my_robot_pkg"]) == 0
+    assert "Finished <<< my_robot_pkg" in capsys.readouterr().out
+    assert (lab / "install" / "my_robot_pkg" / "lib" / "my_robot_pkg" / "simple_node").is_file()
+    judge = FakeJudge(doors)
+    judge.check(lab)
+    assert reports(judge.run())[-1]["built"]
+    assert jobs.builds == [["my_robot_pkg"]]
+
+
+def test_a_notebook_s_failed_build_shows_what_colcon_said(
+    doors: Doors,
+    jobs: FakeJobs,
+    lab: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    jobs.built = Built(1, b"SyntaxError: invalid syntax\nFailed   <<< my_robot_pkg\n")
+    monkeypatch.setenv(door.VARIABLE, str(doors.notebook))
+    monkeypatch.chdir(lab)
+    assert front.main(["build"]) == 1
+    assert "SyntaxError" in capsys.readouterr().out
+    assert not (lab / "install").exists()
+
+
+def until_they_hang_up(lines: Lines) -> list[str]:
+    words = []
+    with contextlib.suppress(Hangup):
+        while True:
+            words.append(lines.hear()["say"])
+    return words
+
+
+def test_a_notebook_has_only_so_many_builds(doors: Doors) -> None:
+    for _ in range(service.MAX_BUILDS):
+        lines = Lines.to(doors.notebook, 20.0)
+        lines.say("nothing")
+        assert until_they_hang_up(lines) == ["no"]
+    assert until_they_hang_up(Lines.to(doors.notebook, 20.0)) == ["no"]
+
+
+@pytest.mark.parametrize(
+    "garbage", [b"\xff\xff garbage\n", b"[" * 100_000 + b"\n", b'{"say": 1}\n', b"x" * 1_200_000]
+)
+def test_garbage_at_a_door_hurts_nobody(doors: Doors, lab: Path, garbage: bytes) -> None:
+    for path in (doors.notebook, doors.judge):
+        lines = Lines.to(path, 20.0)
+        with contextlib.suppress(OSError):
+            lines._socket.sendall(garbage)
+        assert until_they_hang_up(lines) == []
+    judge = FakeJudge(doors)
+    judge.check(lab)
+    assert judge.run()[-1]["say"] == "exited"
