@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 from typing import TYPE_CHECKING
+
+import msgspec
 
 from autograder.boxes.execution import Cell, Kind
 from autograder.boxes.limits import Limits
@@ -42,12 +45,14 @@ def task_of(
     problem: str,
 ) -> Task:
     """The task that executes a rebuilt notebook under the class's limits."""
+    cells = cells_of(rebuilt)
+    work = hashlib.sha256(msgspec.json.encode(cells)).hexdigest()
     return Task(
         student=student,
         assignment=assignment,
         notebook=notebook,
-        cells=cells_of(rebuilt),
-        seed=seed_for(directory.secret, student, assignment, notebook),
+        cells=cells,
+        seed=seed_for(directory.secret, student, assignment, notebook, work),
         course=course_version(),
         limits=limits_of(directory),
         files=directory.files(assignment),

@@ -38,8 +38,17 @@ def read_secret(path: Path) -> bytes:
     return secret
 
 
-def seed_for(secret: bytes, student: str, assignment: str, notebook: str) -> str:
-    """The seed of one student's notebook; the judge mixes each exercise's id into it."""
+def seed_for(secret: bytes, student: str, assignment: str, notebook: str, work: str) -> str:
+    """The seed of one student's notebook; the judge mixes each exercise's id into it.
+
+    Args:
+        secret: The class secret.
+        student: The student's id.
+        assignment: The assignment's name.
+        notebook: The notebook's name.
+        work: Stands for what was handed in. Who has seen the inputs of one submission in its feedback and writes them
+            into the next one gets others there.
+    """
     # Lengths are in the message, so that ("ab", "c") and ("a", "bc") never share a seed.
-    message = "".join(f"{len(part)}:{part};" for part in (student, assignment, notebook))
+    message = "".join(f"{len(part)}:{part};" for part in (student, assignment, notebook, work))
     return hmac.new(secret, message.encode(), hashlib.sha256).hexdigest()[:32]

@@ -65,6 +65,11 @@ def read_bytes(path: Path) -> bytes:
         status = os.fstat(descriptor)
         if not stat.S_ISREG(status.st_mode):
             raise UnreadableSubmission(f"{path.name} is not a file.")
+        if status.st_nlink > 1:
+            raise UnreadableSubmission(
+                f"{path.name} has a second name somewhere (a hard link), so it may be somebody else's work. "
+                "Hand in a copy of its own."
+            )
         if status.st_size > MAX_BYTES:
             raise UnreadableSubmission(
                 f"{path.name} has {status.st_size / 1e6:.0f} MB; the limit is {MAX_BYTES / 1e6:.0f} MB. "

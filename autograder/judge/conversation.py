@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 from typing import TYPE_CHECKING, Any
 
 from autograder import exercises
@@ -19,6 +20,11 @@ if TYPE_CHECKING:
 
     from autograder.exercises.model import Exercise
 
+FIRST_WORD = 5.0
+"""Seconds in which whoever connects must have said what is asked for."""
+MAX_NAME = 100
+"""Characters of the exercise's name that are looked at."""
+
 
 def converse(
     connection: socket.socket, *, seed: str, expected: str | None, recording: bool, workspaces: str = ""
@@ -27,7 +33,7 @@ def converse(
 
     Args:
         connection: The notebook's end.
-        seed: What random inputs are drawn from.
+        seed: What random inputs of this and other checks are drawn from.
         expected: The only exercise that may be asked for; None for any.
         recording: Record a reference output instead of judging against the stored one.
         workspaces: The door of the grader's side of checks of workspaces; empty where notebooks run these themselves.
@@ -36,11 +42,13 @@ def converse(
         What came of it; nothing where nothing was asked, or something else than what is expected.
     """
     link = Link(connection)
+    connection.settimeout(FIRST_WORD)
     try:
         first = link.receive()
     except LinkClosed:
         return Report()  # somebody came and asked nothing
-    asked = str(first.get("exercise"))
+    connection.settimeout(None)
+    asked = str(first.get("exercise"))[:MAX_NAME].encode("utf-8", "replace").decode()
     try:
         exercise = exercises.get(asked)
     except exercises.UnknownExercise as error:
@@ -55,9 +63,17 @@ def converse(
         subject = PathSubject(link, exercise.id, workspaces)
     else:
         subject = RemoteSubject(link, is_class=first.get("kind") == "class")
-    report = _report(exercise, subject, seed, recording)
+    report = _report(exercise, subject, own_seed(seed, exercise.id), recording)
     _tell(link, "verdict", verdict=_shown(exercise, report))
     return report
+
+
+def own_seed(seed: str, exercise_id: str) -> str:
+    """The seed of one check, from which nobody can tell that of another.
+
+    A verdict carries it, and the notebook hears its verdict before its next check.
+    """
+    return hashlib.sha256(f"{len(seed)}:{seed}{exercise_id}".encode()).hexdigest()[:16]
 
 
 def _tell(link: Link, say: str, **words: Any) -> None:

@@ -118,15 +118,16 @@ def test_a_seed_is_a_secret_and_never_shared(tmp_path: Path) -> None:
     seeds = {
         seed_for(secret, *names)
         for names in [
-            ("ada", "lab", "lab"),
-            ("ben", "lab", "lab"),
-            ("ad", "alab", "lab"),
-            ("ada", "lab", "two"),
+            ("ada", "lab", "lab", "work"),
+            ("ben", "lab", "lab", "work"),
+            ("ad", "alab", "lab", "work"),
+            ("ada", "lab", "two", "work"),
+            ("ada", "lab", "lab", "other work"),
         ]
     }
-    assert len(seeds) == 4
-    assert seed_for(secret, "ada", "lab", "lab") in seeds
-    assert seed_for(b"x" * 32, "ada", "lab", "lab") not in seeds
+    assert len(seeds) == 5
+    assert seed_for(secret, "ada", "lab", "lab", "work") in seeds
+    assert seed_for(b"x" * 32, "ada", "lab", "lab", "work") not in seeds
     with pytest.raises(FileExistsError):
         create_secret(tmp_path / "secret")
     (tmp_path / "secret").write_text("00ff")

@@ -109,6 +109,13 @@ def test_does_not_follow_a_link_to_a_neighbours_work(tmp_path: Path) -> None:
         read_bytes(tmp_path / "mine.ipynb")
 
 
+def test_does_not_take_a_neighbours_work_under_a_second_name(tmp_path: Path) -> None:
+    (tmp_path / "theirs.ipynb").write_text("{}")
+    (tmp_path / "lab.ipynb").hardlink_to(tmp_path / "theirs.ipynb")
+    with pytest.raises(UnreadableSubmission, match="hard link"):
+        read_bytes(tmp_path / "lab.ipynb")
+
+
 def test_a_pipe_does_not_make_the_grader_wait(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "mine.ipynb")
     with pytest.raises(UnreadableSubmission, match="is not a file"):
