@@ -68,29 +68,35 @@ def enter(channel: Channel, run: Run) -> None:
         Path(procs).write_text("0")  # cgroups(7): 0 stands for whoever writes
     if entrance.boxed:
         linux.setns(descriptors[0], _ALL_NAMESPACES)
+    else:
+        # Without a PID namespace to take all along, daemons become our children, and we end them.
+        linux.prctl(linux.PR_SET_CHILD_SUBREAPER, 1)
     pid = os.fork()
     if pid == 0:
         channel.close()
         _begin(entrance, descriptors, run)
     close_all(descriptors)
-    _watch(channel, pid)
-
-
-def _watch(channel: Channel, pid: int) -> None:
-    end = os.pidfd_open(pid)
-    try:
+    with contextlib.suppress(ChannelClosed):
         channel.send({"pid": pid})
-        watched: list[Any] = [end, channel]
-        ready, _, _ = select.select(watched, [], [])
-        if end not in ready:
-            # Nothing is ever said to us again: this is the other end's end.
-            os.kill(pid, signal.SIGKILL)
-        _, status = os.waitpid(pid, 0)
-        with contextlib.suppress(ChannelClosed):
-            channel.send({"status": status})
-    except ChannelClosed:
+    status = _end_of(pid, channel)
+    if not entrance.boxed:
+        from autograder.boxes.processes import end_descendants
+
+        end_descendants()
+    with contextlib.suppress(ChannelClosed):
+        channel.send({"status": status})
+
+
+def _end_of(pid: int, channel: Channel) -> int:
+    """Wait for the process's end, or bring it about when the other end of the channel is gone."""
+    end = os.pidfd_open(pid)
+    watched: list[Any] = [end, channel]
+    ready, _, _ = select.select(watched, [], [])
+    if end not in ready:
+        # Nothing is ever said to us again: this is the other end's end.
         os.kill(pid, signal.SIGKILL)
-        os.waitpid(pid, 0)
+    _, status = os.waitpid(pid, 0)
+    return status
 
 
 def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:

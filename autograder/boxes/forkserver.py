@@ -107,7 +107,7 @@ class WarmProcesses:
         judge_module: What the judges' process serves; it is named here because boxes know no judge.
         boxed: Start one for keepers too.
         log: Takes what they say on standard error.
-        judge_environment: More variables for the judges' process.
+        environment: More variables for the processes of kernels and judges. Libraries read some when they are loaded.
     """
 
     def __init__(
@@ -116,11 +116,11 @@ class WarmProcesses:
         *,
         boxed: bool,
         log: int | None = None,
-        judge_environment: Mapping[str, str] | None = None,
+        environment: Mapping[str, str] | None = None,
     ) -> None:
         self._folder = Path(tempfile.mkdtemp(prefix="warm-"))
-        self._kernels = WarmProcess(INSIDE, KERNEL_MODULE, self._folder / "kernels", log)
-        self._judges = WarmProcess(INSIDE, judge_module, self._folder / "judges", log, judge_environment)
+        self._kernels = WarmProcess(INSIDE, KERNEL_MODULE, self._folder / "kernels", log, environment)
+        self._judges = WarmProcess(INSIDE, judge_module, self._folder / "judges", log, environment)
         self._keepers = WarmProcess(BESIDE, KEEPER_MODULE, self._folder / "keepers", log) if boxed else None
         self.addresses = Addresses(
             self._keepers.address if self._keepers else "", self._kernels.address, self._judges.address

@@ -1,4 +1,4 @@
-"""A Jupyter kernel as a child process, spoken to over Unix sockets with nothing but polling and deadlines.
+"""A Jupyter kernel in a process of its own, spoken to over Unix sockets with nothing but polling and deadlines.
 
 nbclient is made for notebooks one trusts: it keeps all output, believes each message's form and learns of a
 dead kernel from a heartbeat. Here every wait ends at a message, at the process's end or at a deadline,
@@ -9,21 +9,18 @@ specification 5.4).
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import secrets
-import signal
-import subprocess
-import sys
+import socket
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
 
 import zmq
 from jupyter_client.session import Session
 
 from autograder.boxes.execution import Ended
-from autograder.boxes.processes import end_tree
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -36,6 +33,8 @@ Output = Callable[[str, str, Mapping[str, Any]], None]
 _RECONNECT_MS = 15
 _ASK_AGAIN_S = 0.5
 _LAST_OUTPUT_S = 2.0
+SHELL, IOPUB = 1, 2
+"""The channels that are used, as they are numbered in the sockets' names."""
 _TOO_LARGE = "\n[output that was too large was dropped]\n"
 
 
@@ -43,13 +42,64 @@ class KernelFailed(RuntimeError):
     """The kernel did not start or did not answer; the message says why."""
 
 
+class KernelProcess(Protocol):
+    """The process of a kernel, wherever it runs."""
+
+    def fileno(self) -> int:
+        """Readable when the process has ended."""
+        ...
+
+    @property
+    def alive(self) -> bool:
+        """Whether it still runs."""
+        ...
+
+    @property
+    def lost(self) -> bool:
+        """Whether nobody can tell any more what became of it."""
+        ...
+
+    def interrupt(self) -> None:
+        """Send what the stop button of JupyterLab sends."""
+        ...
+
+    def wait(self, within: float) -> bool:
+        """Wait so many seconds for its end; whether it came."""
+        ...
+
+    def end(self) -> None:
+        """Kill it and all that it has started; may be called twice."""
+        ...
+
+
+@dataclass(frozen=True)
+class Channels:
+    """What a kernel is started with.
+
+    Attributes:
+        address: The path in the names of its sockets.
+        key: What its messages are signed with.
+        shell: The listening socket for requests.
+        iopub: The listening socket for outputs.
+        log: Where it writes what is no output of a cell; full after one pipe.
+    """
+
+    address: str
+    key: str
+    shell: int
+    iopub: int
+    log: int
+
+
+Start = Callable[[Channels], KernelProcess]
+
+
 class Kernel:
     """A running kernel.
 
     Args:
-        folder: For the sockets; a short path, since Unix socket names have at most 107 characters.
-        cwd: Where the notebook runs.
-        environment: The whole environment of the kernel.
+        folder: For the sockets; a short path, since Unix socket names have at most 107 characters. No box sees it.
+        start: Starts the process.
         limits: Of these ``start_seconds``, ``interrupt_grace`` and ``message_bytes``.
         on_output: Gets every output; never called after :meth:`close`.
 
@@ -57,48 +107,40 @@ class Kernel:
         KernelFailed: The process could not be started.
     """
 
-    def __init__(
-        self, folder: Path, cwd: Path, environment: Mapping[str, str], limits: Limits, on_output: Output
-    ) -> None:
+    def __init__(self, folder: Path, start: Start, limits: Limits, on_output: Output) -> None:
         self._limits = limits
         self._on_output = on_output
-        self._session = Session(key=secrets.token_hex(32).encode(), check_pid=False)
-        connection = self._write_connection_file(folder)
-        self._log = folder / "kernel.log"
+        key = secrets.token_hex(32)
+        self._session = Session(key=key.encode(), check_pid=False)
+        self._log, log = _log_pipe()
+        shell, iopub = (_listener(folder / f"k-{number}") for number in (SHELL, IOPUB))
         try:
-            with self._log.open("wb") as log:
-                self._process = subprocess.Popen(
-                    _command(connection),
-                    cwd=cwd,
-                    # The kernel ends itself when this process is gone without having ended it.
-                    env={**environment, "JPY_PARENT_PID": str(os.getpid())},
-                    stdin=subprocess.DEVNULL,
-                    stdout=log,
-                    stderr=log,
-                    start_new_session=True,
-                )
+            self._process = start(Channels(str(folder / "k"), key, shell.fileno(), iopub.fileno(), log))
         except OSError as error:
+            os.close(self._log)
             raise KernelFailed(f"the kernel could not be started: {error}") from error
+        finally:
+            for listener in (shell, iopub):
+                listener.close()
+            os.close(log)
         self._context = zmq.Context()
-        self._shell = self._socket(zmq.DEALER, folder / "k-1")
-        self._iopub_path = folder / "k-2"
+        self._shell = self._socket(zmq.DEALER, folder / f"k-{SHELL}")
+        self._iopub_path = folder / f"k-{IOPUB}"
         self._iopub = self._subscribe()
-        self._end_fd = _end_descriptor(self._process.pid)
         self._poller = zmq.Poller()
         self._poller.register(self._shell, zmq.POLLIN)
         self._poller.register(self._iopub, zmq.POLLIN)
-        if self._end_fd is not None:
-            self._poller.register(self._end_fd, zmq.POLLIN)
-
-    @property
-    def pid(self) -> int:
-        """The process id of the kernel."""
-        return self._process.pid
+        self._poller.register(self._process.fileno(), zmq.POLLIN)
 
     @property
     def alive(self) -> bool:
         """Whether the process still runs."""
-        return self._process.poll() is None
+        return self._process.alive
+
+    @property
+    def lost(self) -> bool:
+        """Whether the grader itself lost it: then its end says nothing about the notebook."""
+        return self._process.lost
 
     def await_ready(self) -> None:
         """Wait until the kernel answers and its outputs reach us.
@@ -145,21 +187,18 @@ class Kernel:
 
     def interrupt(self) -> None:
         """What the stop button of JupyterLab does."""
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._process.pid, signal.SIGINT)
+        self._process.interrupt()
 
     def kill(self) -> None:
         """End the process and all that it started."""
-        end_tree(self._process.pid)
-        self._process.wait()
+        self._process.end()
 
     def close(self) -> None:
         """Kill the kernel and close the sockets; may be called twice."""
         if self._context.closed:
             return
         self.kill()
-        if self._end_fd is not None:
-            os.close(self._end_fd)
+        os.close(self._log)
         self._context.destroy(linger=0)
 
     def _await_reply(self, request: str, deadline: float) -> Ended | None:
@@ -212,8 +251,7 @@ class Kernel:
         return False
 
     def _await_end(self) -> None:
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(self._limits.interrupt_grace)
+        self._process.wait(self._limits.interrupt_grace)
         self.kill()
 
     def _messages(self, deadline: float) -> Iterator[tuple[zmq.Socket[bytes], dict[str, Any]]]:
@@ -235,9 +273,7 @@ class Kernel:
                 return
 
     def _wait_ms(self, deadline: float) -> int:
-        left = max(0.0, deadline - time.monotonic())
-        # Without a descriptor that tells of the process's end, look at it now and then.
-        return int(1000 * (left if self._end_fd is not None else min(left, 0.25))) + 1
+        return int(1000 * max(0.0, deadline - time.monotonic())) + 1
 
     def _received(self, channel: zmq.Socket[bytes]) -> Iterator[dict[str, Any]]:
         # Bounded, so that a flood on one socket starves neither the other one nor the deadline.
@@ -260,63 +296,40 @@ class Kernel:
         return str(message["header"]["msg_id"])
 
     def _subscribe(self) -> zmq.Socket[bytes]:
-        socket = self._socket(zmq.SUB, self._iopub_path)
-        socket.setsockopt(zmq.SUBSCRIBE, b"")
-        return socket
+        channel = self._socket(zmq.SUB, self._iopub_path)
+        channel.setsockopt(zmq.SUBSCRIBE, b"")
+        return channel
 
     def _socket(self, kind: int, path: Path) -> zmq.Socket[bytes]:
-        socket: zmq.Socket[bytes] = self._context.socket(kind)
-        socket.setsockopt(zmq.LINGER, 0)
-        socket.setsockopt(zmq.RECONNECT_IVL, _RECONNECT_MS)
-        socket.setsockopt(zmq.MAXMSGSIZE, self._limits.message_bytes)
-        socket.connect(f"ipc://{path}")
-        return socket
-
-    def _write_connection_file(self, folder: Path) -> Path:
-        connection = {
-            "transport": "ipc",
-            "ip": str(folder / "k"),
-            "shell_port": 1,
-            "iopub_port": 2,
-            "stdin_port": 3,
-            "control_port": 4,
-            "hb_port": 5,
-            "key": self._session.key.decode(),
-            "signature_scheme": self._session.signature_scheme,
-            "kernel_name": "python3",
-        }
-        path = folder / "connection.json"
-        path.write_text(json.dumps(connection))
-        return path
+        channel: zmq.Socket[bytes] = self._context.socket(kind)
+        channel.setsockopt(zmq.LINGER, 0)
+        channel.setsockopt(zmq.RECONNECT_IVL, _RECONNECT_MS)
+        channel.setsockopt(zmq.MAXMSGSIZE, self._limits.message_bytes)
+        channel.connect(f"ipc://{path}")
+        return channel
 
     def _last_words(self) -> str:
         with contextlib.suppress(OSError):
-            lines = self._log.read_text(errors="replace").strip().splitlines()
+            lines = os.read(self._log, 1 << 16).decode(errors="replace").strip().splitlines()
             if lines:
                 return lines[-1][:500]
-        return f"exit status {self._process.returncode}"
+        return "without a word"
 
 
-def _command(connection: Path) -> Sequence[str]:
-    return (
-        sys.executable,
-        "-m",
-        "ipykernel_launcher",
-        "-f",
-        str(connection),
-        # No history file: two kernels would wait for each other's lock, and a student's words belong in no
-        # home.
-        "--HistoryManager.hist_file=:memory:",
-        "--HistoryManager.enabled=False",
-    )
+def _listener(path: Path) -> socket.socket:
+    """A Unix socket that listens; ZeroMQ's own would be made in the box."""
+    listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    listener.bind(str(path))
+    listener.listen(8)
+    return listener
 
 
-def _end_descriptor(pid: int) -> int | None:
-    """A descriptor that becomes readable when the process ends, where the system has such a thing."""
-    try:
-        return os.pidfd_open(pid)
-    except (AttributeError, OSError):
-        return None
+def _log_pipe() -> tuple[int, int]:
+    """A pipe that keeps what is written first and refuses the rest, so that nobody has to read it meanwhile."""
+    reading, writing = os.pipe()
+    for end in (reading, writing):
+        os.set_blocking(end, False)
+    return reading, writing
 
 
 def _parent(message: Mapping[str, Any]) -> str:

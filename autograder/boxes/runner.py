@@ -11,7 +11,7 @@ import time
 from typing import TYPE_CHECKING, Any, Protocol
 
 from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution, Kind
-from autograder.boxes.kernel import Kernel, KernelFailed
+from autograder.boxes.kernel import Kernel, KernelFailed, Start
 from autograder.boxes.outputs import Budget, OutputCollector
 from autograder.boxes.zero import grader_trouble, without_verdict
 from autograder.verdict import State, Verdict
@@ -39,9 +39,8 @@ def run_notebook(
     cells: Sequence[Cell],
     *,
     judge: contextlib.AbstractContextManager[Judge],
-    environment: Mapping[str, str],
+    start: Start,
     folder: Path,
-    cwd: Path,
     limits: Limits,
 ) -> Execution:
     """Execute a notebook in a kernel of its own.
@@ -49,9 +48,8 @@ def run_notebook(
     Args:
         cells: The cells of the rebuilt notebook.
         judge: Started while the kernel starts; must be ended by leaving the context.
-        environment: The whole environment of the kernel; it names the judge's socket.
+        start: Starts the kernel's process.
         folder: For the kernel's sockets, a short path.
-        cwd: Where the notebook runs.
         limits: All limits.
 
     Returns:
@@ -62,12 +60,14 @@ def run_notebook(
     run = _Run(cells, limits)
     try:
         with (
-            contextlib.closing(Kernel(folder, cwd, environment, limits, run.on_output)) as kernel,
+            contextlib.closing(Kernel(folder, start, limits, run.on_output)) as kernel,
             judge as ready,
         ):
             kernel.await_ready()
             start_seconds = time.monotonic() - began
             run.all_cells(kernel, ready)
+            if kernel.lost:
+                raise KernelFailed("the process that watches over the kernel is gone")
     except KernelFailed as error:
         return run.failed(str(error), time.monotonic() - began)
     except Exception as error:  # a judge that cannot start or end must not cost the batch

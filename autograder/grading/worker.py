@@ -17,13 +17,19 @@ import threading
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
-from autograder.boxes.environment import kernel_environment
+import msgspec
+
 from autograder.boxes.execution import Execution
+from autograder.boxes.forkserver import Addresses
+from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.boxes.processes import adopt_orphans, end_descendants
 from autograder.boxes.runner import run_notebook
 from autograder.boxes.scratch import scratch_folder
 from autograder.boxes.zero import grader_trouble
 from autograder.grading.task import Task, decode_task, encode
+from autograder.judge import attached
+from autograder.judge.domain import lease
+from autograder.judge.settings import boxed_ros_environment, ros_environment
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -38,31 +44,34 @@ def main(arguments: list[str]) -> None:
     """Work until standard input ends.
 
     Args:
-        arguments: The scratch folder, and what makes a judge (``module:class``).
+        arguments: The scratch folder, what makes a judge (``module:class``), and where the warm processes listen,
+            as JSON.
     """
     scratch, judge = Path(arguments[0]), _imported(arguments[1])
+    addresses = msgspec.json.decode(arguments[2], type=Addresses)
     results = _private_stdout()
     adopt_orphans()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     for line in _lines():
-        execution = execute(decode_task(line), scratch, judge)
+        execution = execute(decode_task(line), scratch, judge, addresses)
         end_descendants()
         results.write(encode(execution) + b"\n")
         results.flush()
 
 
-def execute(task: Task, scratch: Path, judge: Any) -> Execution:
+def execute(task: Task, scratch: Path, judge: Any, addresses: Addresses) -> Execution:
     """Execute one task; whatever fails on our side is in the result.
 
     Args:
         task: The task.
         scratch: Where a folder for it is made.
-        judge: Makes a judge from a socket's path and a seed.
+        judge: Makes a judge from a socket's path, a seed and what starts its process.
+        addresses: Where the warm processes listen; without one for keepers there is no sandbox.
     """
     try:
         with contextlib.ExitStack() as stack:
             folder = stack.enter_context(scratch_folder(scratch))
-            return _execute(task, folder, judge, stack)
+            return _execute(task, folder, judge, addresses, stack)
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
         verdicts = {i: grader_trouble(cell.check, reason) for i, cell in enumerate(task.cells) if cell.check}
@@ -72,20 +81,26 @@ def execute(task: Task, scratch: Path, judge: Any) -> Execution:
         end_descendants()
 
 
-def _execute(task: Task, folder: Path, judge: Any, stack: contextlib.ExitStack) -> Execution:
-    cwd = folder / "work"
-    cwd.mkdir()
-    for name, data in task.files.items():
-        path = cwd / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(data)
-    socket = folder / "judge"
+def _execute(
+    task: Task, folder: Path, judge: Any, addresses: Addresses, stack: contextlib.ExitStack
+) -> Execution:
+    boxed = bool(addresses.keepers)
+    kind: type[BoxedPlace] | type[UnboxedPlace] = BoxedPlace if boxed else UnboxedPlace
+    place = kind(
+        addresses,
+        folder,
+        task.files,
+        _ros_variables(stack, boxed=boxed),
+        SOCKET_VARIABLE,
+        JudgeSetting(attached.environment(boxed=boxed), attached.readable()),
+        task.limits,
+    )
+    stack.enter_context(place)
     return run_notebook(
         task.cells,
-        judge=_telling(judge(socket, seed=task.seed)),
-        environment=kernel_environment(folder, {SOCKET_VARIABLE: str(socket), **_ros_variables(stack)}),
+        judge=_telling(judge(place.judge_socket, seed=task.seed, start=place.start_judge)),
+        start=place.start_kernel,
         folder=folder,
-        cwd=cwd,
         limits=task.limits,
     )
 
@@ -113,11 +128,11 @@ class _TellingJudge:
         return verdict
 
 
-def _ros_variables(stack: contextlib.ExitStack) -> Mapping[str, str]:
+def _ros_variables(stack: contextlib.ExitStack, *, boxed: bool) -> Mapping[str, str]:
     """Loopback only, plain logs on stdout, and a domain of its own for the notebook's demonstrations."""
-    from autograder.judge.domain import lease
-    from autograder.judge.settings import ros_environment
-
+    if boxed:
+        # Nobody else is on the network: any domain is the notebook's own.
+        return {**boxed_ros_environment(), "ROS_DOMAIN_ID": "0"}
     return {**ros_environment(), "ROS_DOMAIN_ID": str(stack.enter_context(lease()))}
 
 

@@ -1,4 +1,7 @@
-"""``python -m autograder.judge --socket PATH [--controlled]``: the judge of one notebook."""
+"""``python -m autograder.judge --socket PATH``: the judge of one notebook.
+
+With ``--attached LISTENER ORDERS`` instead, it answers the checks that its grader orders, on descriptors it inherits.
+"""
 
 from __future__ import annotations
 
@@ -7,20 +10,23 @@ from pathlib import Path
 
 
 def main() -> None:
-    """Prepare ROS, then serve until stdin ends."""
+    """Prepare ROS, then serve until stdin or the orders end."""
     parser = argparse.ArgumentParser(prog="python -m autograder.judge", description=__doc__)
-    parser.add_argument("--socket", type=Path, required=True, help="where notebooks reach the judge")
-    parser.add_argument(
-        "--controlled", action="store_true", help="answer only the checks that are opened on standard input"
+    where = parser.add_mutually_exclusive_group(required=True)
+    where.add_argument("--socket", type=Path, help="where notebooks reach the judge")
+    where.add_argument(
+        "--attached", type=int, nargs=2, metavar=("LISTENER", "ORDERS"), help="descriptors of two sockets"
     )
     arguments = parser.parse_args()
-    from autograder.judge import settings
+    from autograder.judge import attached
 
-    settings.prepare_judge()
-    from autograder.judge import server, warm
+    attached.prepare()
+    if arguments.attached:
+        attached.run({}, arguments.attached)
+        return
+    from autograder.judge import server
 
-    warm.imports()
-    server.run(arguments.socket, controlled=arguments.controlled)
+    server.run(arguments.socket)
 
 
 if __name__ == "__main__":

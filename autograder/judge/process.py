@@ -5,13 +5,16 @@ from __future__ import annotations
 import contextlib
 import os
 import select
+import socket
 import subprocess
 import sys
-from typing import TYPE_CHECKING, Self
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Protocol, Self
 
 import msgspec
 
 from autograder.judge.protocol import Close, Open, Report
+from autograder.judge.sockets import listen
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -29,19 +32,36 @@ class JudgeDied(RuntimeError):
     """The judge process is gone or does not answer: nothing can be said about the subject."""
 
 
+class Started(Protocol):
+    """The process of a judge, wherever it runs."""
+
+    def end(self) -> None:
+        """End it with all that it has forked; may be called twice."""
+        ...
+
+
+Start = Callable[[int, int], Started]
+"""Starts a judge on a listening socket and on a connected one for orders; both descriptors stay the caller's."""
+
+
 class JudgeProcess:
     """A controlled judge. Only what :meth:`close` returns is a grade."""
 
-    def __init__(self, socket_path: Path, *, seed: str) -> None:
+    def __init__(self, socket_path: Path, *, seed: str, start: Start | None = None) -> None:
         """Name the socket that the kernel will reach the judge on.
 
         Args:
             socket_path: Unix socket; at most 107 bytes long (unix(7)).
             seed: What the random inputs are drawn from; each exercise draws its own from it.
+            start: Starts the process; as a plain child where none is given.
         """
         self.socket_path = socket_path
         self._seed = seed
-        self._process: subprocess.Popen[bytes] | None = None
+        self.workspaces = ""
+        """The door of the grader's side of checks of workspaces, as the judge sees it; empty where there is none."""
+        self._start = start or _Child
+        self._process: Started | None = None
+        self._control: socket.socket | None = None
 
     def __enter__(self) -> Self:
         """Start the process and wait until it listens.
@@ -49,15 +69,16 @@ class JudgeProcess:
         Raises:
             JudgeDied: It did not come up.
         """
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "autograder.judge", "--socket", str(self.socket_path), "--controlled"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            start_new_session=True,
-        )
-        if self._read(START_LIMIT) != b"ready\n":
+        self._control, orders = socket.socketpair()
+        try:
+            with orders, listen(self.socket_path) as listener:
+                self._process = self._start(listener.fileno(), orders.fileno())
+            self._answers = self._control.makefile("rb")
+            if self._read(START_LIMIT) != b"ready\n":
+                raise JudgeDied("the judge said something else than that it is ready")
+        except (JudgeDied, OSError) as error:
             self.stop()
-            raise JudgeDied("the judge did not start; `autograder doctor` says what is missing")
+            raise JudgeDied("the judge did not start; `autograder doctor` says what is missing") from error
         return self
 
     def __exit__(
@@ -71,7 +92,7 @@ class JudgeProcess:
         Raises:
             JudgeDied: The judge is gone.
         """
-        self._order(Open(exercise_id, f"{self._seed}:{exercise_id}", record))
+        self._order(Open(exercise_id, f"{self._seed}:{exercise_id}", record, self.workspaces))
 
     def close(self) -> Verdict | None:
         """The verdict of the opened check; None where nobody asked for it or there is none.
@@ -92,33 +113,54 @@ class JudgeProcess:
     def stop(self) -> None:
         """End the judge and whatever it has forked."""
         process, self._process = self._process, None
-        if process is None:
-            return
-        for stream in (process.stdin, process.stdout):
-            if stream is not None:
-                stream.close()
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            process.wait(timeout=2.0)
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(process.pid, 9)
-        process.wait()
+        control, self._control = self._control, None
+        if control is not None:
+            control.close()
+        if process is not None:
+            process.end()
         self.socket_path.unlink(missing_ok=True)
 
     def _order(self, order: Open | Close) -> bytes:
-        if self._process is None or self._process.stdin is None:
+        if self._control is None:
             raise JudgeDied("the judge was never started or is stopped")
         try:
-            self._process.stdin.write(msgspec.json.encode(order) + b"\n")
-            self._process.stdin.flush()
+            self._control.sendall(msgspec.json.encode(order) + b"\n")
         except OSError as error:
             raise JudgeDied("the judge is gone") from error
         return self._read(ANSWER_LIMIT)
 
     def _read(self, limit: float) -> bytes:
-        assert self._process is not None
-        assert self._process.stdout is not None
-        ready, _, _ = select.select([self._process.stdout], [], [], limit)
-        line = self._process.stdout.readline() if ready else b""
+        assert self._control is not None
+        ready, _, _ = select.select([self._control], [], [], limit)
+        try:
+            line = self._answers.readline() if ready else b""
+        except OSError:
+            line = b""
         if not line:
             raise JudgeDied("the judge does not answer" if not ready else "the judge is gone")
         return line
+
+
+class _Child:
+    """A judge as a child of this process."""
+
+    def __init__(self, listener: int, orders: int) -> None:
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "autograder.judge", "--attached", str(listener), str(orders)],
+            stdin=subprocess.DEVNULL,
+            pass_fds=(listener, orders),
+            start_new_session=True,
+        )
+
+    @property
+    def pid(self) -> int:
+        """Its process id."""
+        return self._process.pid
+
+    def end(self) -> None:
+        """Give it a moment to go by itself: its orders have ended."""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(timeout=2.0)
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self._process.pid, 9)
+        self._process.wait()

@@ -11,7 +11,6 @@ import contextlib
 import os
 import secrets
 import selectors
-import socket
 import sys
 from typing import TYPE_CHECKING, BinaryIO
 
@@ -22,8 +21,10 @@ from autograder.judge import conversation
 from autograder.judge.command import SPARE
 from autograder.judge.fork import Child
 from autograder.judge.protocol import Close, Open, Order, Report
+from autograder.judge.sockets import listen
 
 if TYPE_CHECKING:
+    import socket
     from pathlib import Path
 
 REFUSE_LIMIT = 0.5
@@ -35,17 +36,13 @@ CLOSE_LIMIT = 10.0
 class JudgeServer:
     """Listens on a Unix socket. A controlled one answers only the check that its controller has opened, once."""
 
-    def __init__(self, path: Path, *, controlled: bool) -> None:
-        self._path = path
+    def __init__(self, listener: socket.socket, *, controlled: bool) -> None:
+        """Take over a listening Unix socket."""
         self._controlled = controlled
         self._order: Open | None = None
         self._child: Child | None = None
         self._children: dict[int, Child] = {}
-        self._listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        path.unlink(missing_ok=True)
-        self._listener.bind(str(path))
-        path.chmod(0o600)
-        self._listener.listen(8)
+        self._listener = listener
 
     def serve(self, control: BinaryIO, answers: BinaryIO) -> None:
         """Serve until ``control`` ends: a judge does not outlive the one who started it."""
@@ -59,7 +56,6 @@ class JudgeServer:
                     if key.fileobj is self._listener:
                         self._accept()
                     elif not self._obey(control, answers):
-                        self._path.unlink(missing_ok=True)
                         return
                 self._reap()
 
@@ -72,12 +68,15 @@ class JudgeServer:
                 return
             seed = order.seed if order else secrets.token_hex(8)
             expected, recording = (order.exercise, order.record) if order else (None, False)
+            workspaces = order.workspaces if order else ""
             limit = max(
                 exercises.get(name).limit for name in ([expected] if expected else exercises.all_ids())
             )
             child = Child(
                 lambda: msgspec.json.encode(
-                    conversation.converse(connection, seed=seed, expected=expected, recording=recording)
+                    conversation.converse(
+                        connection, seed=seed, expected=expected, recording=recording, workspaces=workspaces
+                    )
                 ),
                 limit + SPARE,
                 close=[self._listener.fileno()],
@@ -126,9 +125,12 @@ def _refuse(connection: socket.socket, why: str) -> None:
         connection.sendall(msgspec.json.encode({"say": "refused", "why": why}) + b"\n")
 
 
-def run(path: Path, *, controlled: bool) -> None:
-    """Serve on this process's stdin and stdout; what anything else prints goes to stderr."""
+def run(path: Path) -> None:
+    """Serve whoever asks, until stdin ends; what anything prints goes to stderr."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     sys.stdout = sys.stderr
-    JudgeServer(path, controlled=controlled).serve(sys.stdin.buffer, answers)
+    try:
+        JudgeServer(listen(path), controlled=False).serve(sys.stdin.buffer, answers)
+    finally:
+        path.unlink(missing_ok=True)

@@ -31,6 +31,16 @@ def ros_environment() -> dict[str, str]:
     }
 
 
+def boxed_ros_environment() -> dict[str, str]:
+    """What holds instead where both sides are in boxes that share a network of their own, and nothing else.
+
+    The discovery range must not be restricted there: rmw_fastrtps then sets up transports itself, shared memory among
+    them, whatever ``FASTDDS_BUILTIN_TRANSPORTS`` says (participant.cpp). The two would discover each other and
+    exchange nothing. Nobody else is on such a network.
+    """
+    return {**ros_environment(), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
+
+
 def prepare_judge() -> None:
     """Set this process up as a judge. Must run before rclpy is imported."""
     os.environ.update(ros_environment())

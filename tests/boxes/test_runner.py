@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import os
+import secrets
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import psutil
 import pytest
 
-from autograder.boxes.environment import kernel_environment
 from autograder.boxes.execution import Cell, Check, Ended, Execution, Kind
+from autograder.boxes.forkserver import Addresses
 from autograder.boxes.limits import Limits
+from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.boxes.runner import run_notebook
 from autograder.boxes.scratch import scratch_folder
 from autograder.verdict import State, Verdict
@@ -39,8 +41,10 @@ class SayingJudge:
 Run = Callable[..., Execution]
 
 
-@pytest.fixture
-def run(tmp_path: Path) -> Run:
+@pytest.fixture(params=["in a box", "beside one"])
+def run(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses, unboxed: Addresses) -> Run:
+    addresses, kind = (boxed, BoxedPlace) if request.param == "in a box" else (unboxed, UnboxedPlace)
+
     def go(
         cells: Sequence[Cell | str], says: Verdict | Exception | None = None, **limits: float
     ) -> Execution:
@@ -48,15 +52,17 @@ def run(tmp_path: Path) -> Run:
         def judge() -> Iterator[SayingJudge]:
             yield SayingJudge(says)
 
-        with scratch_folder(tmp_path) as folder:
-            (folder / "work").mkdir()
+        holds = Limits(**limits)  # type: ignore[arg-type]
+        with (
+            scratch_folder(tmp_path) as folder,
+            kind(addresses, folder, {}, {}, "JUDGE", JudgeSetting(), holds) as place,
+        ):
             return run_notebook(
                 [Cell(cell) if isinstance(cell, str) else cell for cell in cells],
                 judge=judge(),
-                environment=kernel_environment(folder, {}),
+                start=place.start_kernel,
                 folder=folder,
-                cwd=folder / "work",
-                limits=Limits(**limits),  # type: ignore[arg-type]
+                limits=holds,
             )
 
     return go
@@ -169,15 +175,16 @@ def test_input_is_refused_at_once(run: Run) -> None:
 
 
 def test_no_process_of_the_notebook_survives(run: Run) -> None:
+    token = f"600.{secrets.randbelow(10**12)}"
     execution = run(
         [
-            "import os, subprocess\nchild = subprocess.Popen(['sleep', '600'], start_new_session=True)\n"
-            "print(os.getpid(), child.pid)"
+            f"import subprocess\nsubprocess.Popen(['sleep', '{token}'], start_new_session=True)",
+            f"subprocess.run(['setsid', '--fork', 'sleep', '{token}'])",
+            "print(subprocess.run(['pgrep', '-fc', '^sleep'], capture_output=True, text=True).stdout)",
         ]
     )
-    kernel, child = map(int, execution.cells[0].outputs[0]["text"].split())
-    for pid in (kernel, child):
-        assert not psutil.pid_exists(pid) or psutil.Process(pid).status() == psutil.STATUS_ZOMBIE
+    assert int(execution.cells[2].outputs[0]["text"]) >= 2
+    assert [p.pid for p in psutil.process_iter(["cmdline"]) if token in (p.info["cmdline"] or [])] == []
 
 
 def test_a_judge_that_dies_is_the_graders_trouble(run: Run) -> None:
@@ -200,7 +207,7 @@ def test_markdown_is_not_executed(run: Run) -> None:
     assert [cell.ended for cell in execution.cells] == [Ended.DONE, Ended.DONE]
 
 
-def test_the_kernel_knows_nothing_of_the_host(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_kernel_knows_nothing_of_the_hosts_variables(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COURSE_TOKEN", "secret")
     execution = run(["import os; print(os.environ.get('COURSE_TOKEN'), os.environ['HOME'], os.getcwd())"])
     token, home, cwd = execution.cells[0].outputs[0]["text"].split()
@@ -209,8 +216,15 @@ def test_the_kernel_knows_nothing_of_the_host(run: Run, monkeypatch: pytest.Monk
     assert cwd != str(Path.cwd())
 
 
-def test_a_kernel_that_cannot_start_is_the_graders_trouble(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("sys.executable", "/nonexistent/python")
-    execution = run([check()], passed())
+def test_a_kernel_that_cannot_start_is_the_graders_trouble(tmp_path: Path) -> None:
+    nobody = Addresses("", str(tmp_path / "nobody"), "")
+    place = UnboxedPlace(nobody, tmp_path, {}, {}, "JUDGE", JudgeSetting(), Limits())
+    execution = run_notebook(
+        [check()],
+        judge=contextlib.nullcontext(SayingJudge(passed())),
+        start=place.start_kernel,
+        folder=tmp_path,
+        limits=Limits(),
+    )
     assert "could not be started" in execution.trouble
     assert execution.verdicts[0].state is State.NOT_CHECKED

@@ -1,16 +1,18 @@
 """A judge without ROS for tests of everything around it.
 
-The check of the tiny class writes down a number beside the judge's socket; this judge reads it and gives that
-score. It lives in the worker process, so tests name it as ``fake_judge:FakeJudge`` with this folder on
-PYTHONPATH.
+The check of the tiny class tells it a number over the judge's socket, and it gives that score. It lives in the
+worker process, so tests name it as ``fake_judge:FakeJudge`` with this folder on PYTHONPATH.
 """
 
 from __future__ import annotations
 
+import contextlib
 import os
+import threading
 from typing import TYPE_CHECKING, Self
 
 from autograder.judge.protocol import Report
+from autograder.judge.sockets import listen
 from autograder.verdict import Diagnosis, State, Verdict
 
 if TYPE_CHECKING:
@@ -18,30 +20,39 @@ if TYPE_CHECKING:
 
 
 class FakeJudge:
-    def __init__(self, socket_path: Path, *, seed: str) -> None:
-        self._said = socket_path.with_suffix(".said")
+    def __init__(self, socket_path: Path, *, seed: str, **_: object) -> None:
+        self._path = socket_path
         self._seed = seed
         self._exercise = ""
+        self._said: str | None = None
 
     def __enter__(self) -> Self:
+        self._listener = listen(self._path)
+        threading.Thread(target=self._hear, daemon=True).start()
         return self
 
     def __exit__(self, *_: object) -> None:
-        pass
+        self._listener.close()
 
     def open(self, exercise_id: str) -> None:
         self._exercise = exercise_id
-        self._said.unlink(missing_ok=True)
+        self._said = None
 
     def close_report(self) -> Report:
-        if not self._said.exists():
+        if self._said is None:
             return Report()
-        said = self._said.read_text()
-        if said == "die":
+        if self._said == "die":
             raise RuntimeError("the judge is gone")
-        if said == "kill worker":
+        if self._said == "kill worker":
             os._exit(9)
-        return Report(verdict(self._exercise, float(said), self._seed))
+        return Report(verdict(self._exercise, float(self._said), self._seed))
+
+    def _hear(self) -> None:
+        with contextlib.suppress(OSError):
+            while True:
+                connection, _ = self._listener.accept()
+                with connection, connection.makefile("rb") as words:
+                    self._said = words.read().decode() or None
 
 
 def verdict(exercise: str, score: float, seed: str = "") -> Verdict:

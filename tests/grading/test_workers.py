@@ -34,7 +34,7 @@ grade(Path(sys.argv[1]), jobs=2, judge=sys.argv[2], feedback=False, console=Cons
 
 
 def leftovers(tiny: TinyClass) -> list[psutil.Process]:
-    """Workers and kernels of this class: each has the class's scratch folder in its command."""
+    """Workers and boxes of this class: each has the class's scratch folder in its command."""
     scratch = str(ClassDirectory(tiny.path).scratch())
     found = []
     for process in psutil.process_iter(["cmdline", "status"]):
@@ -117,7 +117,7 @@ def test_a_killed_batch_leaves_no_wrong_grade_and_no_process_and_the_next_one_go
     else:
         while not leftovers(tiny):  # the workers have started, so the old grades are taken back
             assert batch.poll() is None
-    orphans = leftovers(tiny)
+    orphans = psutil.Process(batch.pid).children(recursive=True)
     batch.send_signal(signal.SIGKILL)
     batch.wait()
     _, alive = psutil.wait_procs(orphans, timeout=20)
@@ -140,8 +140,9 @@ def test_a_killed_batch_does_not_wait_for_the_notebook_that_is_running(
 ) -> None:
     tiny.submit("ada", "__import__('time').sleep(3600)")
     batch = subprocess.Popen([sys.executable, "-W", "ignore", "-c", GRADE, str(tiny.path), with_fake_judge])
-    while len(orphans := leftovers(tiny)) < 2:  # the worker and its kernel
+    while len(leftovers(tiny)) < 2:  # the worker and its box
         assert batch.poll() is None
+    orphans = psutil.Process(batch.pid).children(recursive=True)
     batch.kill()
     batch.wait()
     _, alive = psutil.wait_procs(orphans, timeout=20)

@@ -1,0 +1,149 @@
+"""What a fork of the warm process becomes: an IPython kernel on sockets that it was given.
+
+The listening sockets come from the grader, so that no folder of the host is open to the box, and nothing in the box
+can put another socket in their place. Only two of Jupyter's five channels are served: requests and outputs. What
+the grader does not use (control, input, heartbeat) is bound to nothing.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import ctypes
+import importlib
+import os
+import random
+import sys
+from typing import TYPE_CHECKING, Any
+
+import zmq
+from ipykernel.kernelapp import IPKernelApp
+from traitlets.config import Config
+
+from autograder.boxes.kernel import IOPUB, SHELL
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+
+_PRELOADED = (
+    "asyncio",
+    "IPython.core.completer",
+    "IPython.core.magics",
+    "IPython.display",
+    "ipykernel.ipkernel",
+    "ipykernel.zmqshell",
+    "matplotlib_inline",
+    "numpy",
+    "rclpy",
+    "rclpy.action",
+    "rclpy.callback_groups",
+    "rclpy.executors",
+    "rclpy.node",
+    "rclpy.parameter",
+    "rclpy.qos",
+    "rclpy.task",
+    "autograder.notebook",
+    "autograder.notebook.check",
+    "autograder.cards.bundle",
+)
+_INTERFACES = (
+    "action_msgs.msg",
+    "action_msgs.srv",
+    "rcl_interfaces.msg",
+    "rcl_interfaces.srv",
+    "rosgraph_msgs.msg",
+    "std_msgs.msg",
+    "my_robot_interfaces.action",
+    "my_robot_interfaces.srv",
+)
+_MIDDLEWARE = "librmw_fastrtps_cpp.so"
+
+
+def prepare() -> None:
+    """Import what nearly every notebook of the course does; what is not there is left to the notebook to miss."""
+    for name in _PRELOADED:
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
+    for name in _INTERFACES:
+        with contextlib.suppress(ImportError):
+            for kind in list(vars(importlib.import_module(name)).values()):
+                load = getattr(type(kind), "__import_type_support__", None)
+                if load is not None:
+                    load()
+    with contextlib.suppress(OSError):
+        # rclpy.init loads it, and finds it here already.
+        ctypes.CDLL(_MIDDLEWARE)
+
+
+def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
+    """Be a kernel until it is shut down.
+
+    Args:
+        call: ``key``, what messages are signed with; ``address``, the path in the names of the sockets.
+        descriptors: Listening sockets of the shell and the iopub channel, and where stray output goes.
+    """
+    shell, iopub, log = descriptors
+    for standard in (1, 2):
+        os.dup2(log, standard)
+    os.close(log)
+    _forget_the_fork()
+    sys.argv = ["ipykernel_launcher"]
+    app = _kernel_app(call["key"].encode(), call["address"], {SHELL: shell, IOPUB: iopub})
+    app.initialize([])
+    app.start()
+    # What an interpreter does at its end and a fork does not: hooks, the last outputs among them.
+    atexit._run_exitfuncs()
+
+
+def _forget_the_fork() -> None:
+    """Let nothing be alike in two kernels because they came from one process. Python reseeds ``random`` itself."""
+    random.seed()
+    numpy = sys.modules.get("numpy")
+    if numpy is not None:
+        numpy.random.seed()
+
+
+class _GivenSockets(IPKernelApp):
+    """A kernel's application that binds nothing of its own."""
+
+    given: Mapping[int, int]
+    address: str
+    key: bytes
+
+    def init_connection_file(self) -> None:
+        """What a connection file would say."""
+        self.transport, self.ip = "ipc", self.address
+        self.shell_port, self.iopub_port, self.stdin_port, self.control_port, self.hb_port = 1, 2, 3, 4, 5
+        self.session.key = self.key
+
+    def write_connection_file(self, **_: Any) -> None:
+        """Nobody reads one."""
+
+    def log_connection_info(self) -> None:
+        """Nobody reads that either; the ports are noted as the base class does it."""
+        self._ports = {"shell": 1, "iopub": 2, "stdin": 3, "hb": 5, "control": 4}
+
+    def init_heartbeat(self) -> None:
+        """The grader hears of a kernel's end from the operating system."""
+        self.heartbeat = None
+
+    def _try_bind_socket(self, s: Any, port: int) -> int:
+        descriptor = self.given.get(port)
+        if descriptor is not None:
+            s.setsockopt(zmq.USE_FD, descriptor)
+            s.bind(f"ipc://{self.address}-{port}")
+            s.setsockopt(zmq.USE_FD, -1)
+        # Inside of the process: the debugger's socket connects to whatever the shell was bound to last.
+        s.bind(f"inproc://channel-{port}")
+        return port
+
+
+def _kernel_app(key: bytes, address: str, given: Mapping[int, int]) -> IPKernelApp:
+    config = Config()
+    # No history file: it would be one more thing to write, and nobody will press the up key.
+    config.HistoryManager.hist_file = ":memory:"
+    config.HistoryManager.enabled = False
+    app = _GivenSockets.instance(config=config)
+    app.key, app.address, app.given = key, address, given
+    return app
