@@ -101,6 +101,27 @@ def execute_one(task: Task, scratch: Path, *, judge: str = JUDGE, sandbox: bool 
         return next(running).execution
 
 
+class KeptLane:
+    """A worker process that is kept from task to task, for whoever is handed tasks one by one.
+
+    Args:
+        scratch: Where submissions run; for this lane alone.
+        judge: What makes a judge, as ``module:class``.
+        sandbox: Execute in boxes.
+    """
+
+    def __init__(self, scratch: Path, *, judge: str = JUDGE, sandbox: bool = True) -> None:
+        self._lane = _Lane(queue.SimpleQueue(), queue.SimpleQueue(), scratch, judge, lambda _: None, sandbox)
+
+    def execute(self, task: Task) -> Execution:
+        """Execute a task. For one thread at a time."""
+        return self._lane._execute(task)
+
+    def stop(self) -> None:
+        """End the worker and what it runs, from any thread; a task that is being executed ends with trouble."""
+        self._lane.stop()
+
+
 class _Lane(threading.Thread):
     """One worker process and the thread that speaks with it."""
 
