@@ -17,7 +17,7 @@ class Event:
     Attributes:
         t: Seconds of wall time since the part began.
         kind: ``message``, ``sent``, ``request``, ``response``, ``goal``, ``feedback``, ``cancel``,
-            ``result_request``, ``result``, ``log``, ``output``, ``subject``, ``mismatch``, ``interface``.
+            ``result_request``, ``result``, ``log``, ``output``, ``subject``, ``mismatch``, ``interface``, ``looked``.
         name: The topic, service or action; the stream of an output line; what happened to the subject.
         data: The rest, as JSON-able values.
         sim: Simulated seconds where the judge stepped the clock, else None.

@@ -41,7 +41,7 @@ END_LIMIT = {Look.FAST: 3.0, Look.REAL_TIME: 8.0}
 """Seconds in which a client must ask for the result, must have reported it, must have ended after a refusal."""
 AFTERMATH = 1.0
 """Seconds in which a client that has reported may end, or say more."""
-SHORT_PATIENCE = 0.4
+SHORT_PATIENCE = 0.15
 """Seconds that a notebook's function is told to wait for the server where there is none."""
 
 

@@ -45,6 +45,9 @@ CANCEL_AFTER = 2
 THREADS = 4
 """Threads that spin a notebook's class: with one, no cancel is read while a goal is executed."""
 
+HURRY = {Look.FAST: 0.1, Look.REAL_TIME: 1.0}
+"""What a sleep of a notebook's server is multiplied with: it may pace its work as it likes, and nobody need wait."""
+
 SERVER_LIMIT = {Look.FAST: 3.0, Look.REAL_TIME: 6.0}
 """Seconds in which a server that is on the graph must be matched with the judge's client."""
 QUIET = {Look.FAST: 3.0, Look.REAL_TIME: 8.0}
@@ -69,7 +72,7 @@ def run(bench: Bench, name: str, goals: Callable[[Bench, ActionCaller], bool]) -
     action, type_name = bench.reference.only("action_server")
     bench.part(name)
     caller = bench.call_action(action, type_name)
-    bench.start(threads=THREADS)
+    bench.start(threads=THREADS, hurry=HURRY[bench.look])
     there = bench.await_endpoint("action_server", action)
     bench.release()
     there = there and caller.await_server(SERVER_LIMIT[bench.look])

@@ -134,7 +134,8 @@ class Bench(Protocol):
         """Start the subject; a class is made but not yet spun, a command or function runs at once.
 
         ``options`` are keyword arguments that only a notebook's function understands (a command ignores
-        them).
+        them); for a class, ``threads`` says how many threads spin it. ``hurry`` is a factor below 1 by which a notebook
+        shortens what its subject sleeps in this run.
         """
         ...
 

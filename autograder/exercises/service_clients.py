@@ -33,7 +33,7 @@ AFTERMATH = 1.0
 """Seconds in which a client that has reported its sum may end, or go on and show what else it does."""
 GIVE_UP_LIMIT = 12.0
 """Seconds in which a client must have ended when there is no service; the task says 10."""
-SHORT_PATIENCE = 0.4
+SHORT_PATIENCE = 0.15
 """Seconds that a notebook's function is told to wait for the service where there is none."""
 
 

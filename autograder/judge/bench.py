@@ -14,7 +14,7 @@ from autograder.judge.actions import ScriptedActionServer
 from autograder.judge.callers import RecordedCaller
 from autograder.judge.clock import SimulatedClock
 from autograder.judge.interfaces import service_fields
-from autograder.judge.planted import PlantedNode
+from autograder.judge.planted import Bed
 from autograder.judge.recorder import Recorder
 from autograder.judge.services import Answer, RecordedServer
 from autograder.judge.topics import Ear, LogReader, Mouth
@@ -59,6 +59,7 @@ class TestBench:
         self._domain_id = domain_id
         self._recorder = Recorder()
         self._wire: Wire | None = None
+        self._bed: Bed | None = None
         self._open = contextlib.ExitStack()
         self._ears: dict[str, Ear] = {}
         self._mouths: dict[str, Mouth] = {}
@@ -77,7 +78,7 @@ class TestBench:
         self._in_part = True
         if self._wire is None or not (self._subject.shares_participant and self._clean):
             self._close_wire()
-            self._wire = Wire(self._domain_id)
+            self._wire, self._bed = Wire(self._domain_id), Bed(self._domain_id)
             # One reader for all parts of a participant: a new one would be told the log of the parts before.
             self._log = LogReader(self._wire, self._recorder)
             self._subject.renew()
@@ -104,9 +105,10 @@ class TestBench:
             self._close_wire()
 
     def _close_wire(self) -> None:
-        if self._wire is not None:
+        if self._wire is not None and self._bed is not None:
+            self._bed.close()
             self._wire.close()
-            self._wire = None
+            self._wire = self._bed = None
 
     @property
     def wire(self) -> Wire:
@@ -212,7 +214,8 @@ class TestBench:
 
     def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
         """Put a node on the graph until the part ends."""
-        self._open.callback(PlantedNode(self.wire, name, publishes=publishes, subscribes=subscribes).close)
+        assert self._bed is not None
+        self._open.callback(self._bed.plant(name, publishes=publishes, subscribes=subscribes).close)
 
     def serve(self, service: str, type_name: str, answer: Answer) -> RecordedServer:
         """Serve until the part ends."""

@@ -44,6 +44,9 @@ class NodeName:
         return f"{self.namespace.rstrip('/')}/{self.name}"
 
 
+NOT_A_SUBJECT = ("_NODE_", "_check_keeper", "_check_bed")
+"""How names begin of nodes that are not named yet (rmw_dds_common), and of those that a notebook's check makes."""
+
 Interface = dict[str, dict[str, str]]
 """Role -> {name: type}; where a name has several types they are joined with a comma."""
 
@@ -52,7 +55,7 @@ def subject_nodes(judge: Node) -> list[NodeName]:
     """Every node on the domain but the judge's, once each name."""
     own = judge.get_name()
     seen = {(name, space) for name, space in judge.get_node_names_and_namespaces() if name != own}
-    return [NodeName(name, space) for name, space in sorted(seen) if not name.startswith("_NODE_")]
+    return [NodeName(name, space) for name, space in sorted(seen) if not name.startswith(NOT_A_SUBJECT)]
 
 
 def survey(judge: Node) -> Interface:
@@ -91,7 +94,9 @@ def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeN
     infos += [info for topic in spoken for info in judge.get_subscriptions_info_by_topic(topic)]
     names = [NodeName(info.node_name, info.node_namespace) for info in infos]
     own = judge.get_name()
-    return [n for n in dict.fromkeys(names) if n.name and n.name != own and not n.name.startswith("_NODE_")]
+    return [
+        n for n in dict.fromkeys(names) if n.name and n.name != own and not n.name.startswith(NOT_A_SUBJECT)
+    ]
 
 
 def shows(judge: Node, marker: str) -> bool:

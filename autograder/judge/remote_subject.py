@@ -63,7 +63,10 @@ class RemoteSubject:
         self._marker, self._ended = None, False
         self._stopped.clear()
         fresh, self._fresh = self._fresh, False
-        self._tell("start", run=self._run, fresh=fresh, arguments=list(arguments), options=options)
+        hurry = options.pop("hurry", 1.0)
+        self._tell(
+            "start", run=self._run, fresh=fresh, arguments=list(arguments), options=options, hurry=hurry
+        )
         if self._is_class and not recorder.wait(
             lambda: self._marker is not None or self.ended, CONSTRUCT_LIMIT
         ):
@@ -130,6 +133,8 @@ class RemoteSubject:
             self._told_stack.set()
         elif say == "output":
             recorder.record("output", "notebook", text=_text(message.get("text")))
+        elif say == "looked":
+            recorder.record("looked", "graph")
         elif say == "constructed":
             self._marker = _text(message.get("marker"))[:200]
             recorder.record("subject", "constructed")

@@ -7,7 +7,9 @@ from typing import Any
 
 from autograder.cards.bundle import mimebundle
 from autograder.notebook.check_context import CheckContext
+from autograder.notebook.hurry import Hurry
 from autograder.notebook.judge_link import JudgeLink, JudgeUnreachable
+from autograder.notebook.looking import Looking
 from autograder.notebook.overhearing import Overhearing
 from autograder.notebook.path_run import PathRun, is_path, send_sources
 from autograder.notebook.ros_session import prepare_environment
@@ -66,7 +68,15 @@ def _converse(link: JudgeLink, exercise: str, subject: Any) -> Verdict:
     def tell_output(line: str) -> None:
         link.say("output", run=number, text=line)
 
-    with CheckContext(int(first["domain"])) as place, Overhearing(tell_output) as hearing:
+    def tell_look() -> None:
+        link.say("looked", run=number)
+
+    with (
+        CheckContext(int(first["domain"])) as place,
+        Overhearing(tell_output) as hearing,
+        Hurry(hearing.overhears) as hurry,
+        Looking(tell_look, hearing.overhears) as looking,
+    ):
         link.say("ready")
         try:
             while True:
@@ -80,6 +90,8 @@ def _converse(link: JudgeLink, exercise: str, subject: Any) -> Verdict:
                         if is_path(subject)
                         else SubjectRun(number, subject, place.context, link.say)
                     )
+                    hurry.factor = float(words.get("hurry", 1.0))
+                    looking.begin_run()
                     run.start(words["arguments"], words["options"])
                 elif say == "release" and run is not None:
                     run.release()

@@ -37,7 +37,7 @@ class Overhearing:
         self._usual_log = RcutilsLogger.log
         self._usual_streams = (sys.stdout, sys.stderr)
         usual_log: Any = self._usual_log
-        overheard = self._overheard
+        overheard = self.overhears
 
         def log(logger: RcutilsLogger, message: Any, severity: Any, **options: Any) -> bool:
             if overheard():
@@ -77,7 +77,8 @@ class Overhearing:
             ]
         return "\n".join(lines)
 
-    def _overheard(self) -> bool:
+    def overhears(self) -> bool:
+        """Whether the thread that asks is one of the subject's: it began with the check."""
         return threading.get_ident() not in self._others
 
     def _silence_compiled_code(self) -> None:
