@@ -53,7 +53,6 @@ def execute_all(
     *,
     on_start: Callable[[Task], None] = lambda _: None,
     judge: str = JUDGE,
-    sandbox: bool = True,
 ) -> Generator[Done, None, None]:
     """Execute tasks in parallel; results come as they are ready.
 
@@ -65,14 +64,14 @@ def execute_all(
         workers: Processes at work at once.
         on_start: Called from a thread when a task is begun.
         judge: What makes a judge, as ``module:class``.
-        sandbox: Execute in boxes; otherwise with all the rights of whoever grades.
     """
     waiting: queue.SimpleQueue[Task] = queue.SimpleQueue()
     for task in tasks:
         waiting.put(task)
     done: queue.SimpleQueue[Done | BaseException] = queue.SimpleQueue()
+    boxed = any(task.boxed for task in tasks)
     lanes = [
-        _Lane(waiting, done, scratch / str(number), judge, on_start, sandbox)
+        _Lane(waiting, done, scratch / str(number), judge, on_start, boxed)
         for number in range(max(1, min(workers, len(tasks))))
     ]
     try:
@@ -94,9 +93,9 @@ def execute_all(
             scratch.parent.rmdir()
 
 
-def execute_one(task: Task, scratch: Path, *, judge: str = JUDGE, sandbox: bool = True) -> Execution:
+def execute_one(task: Task, scratch: Path, *, judge: str = JUDGE) -> Execution:
     """Execute a single task; for the arguments see :func:`execute_all`."""
-    running = execute_all([task], scratch / str(os.getpid()), 1, judge=judge, sandbox=sandbox)
+    running = execute_all([task], scratch / str(os.getpid()), 1, judge=judge)
     with contextlib.closing(running):
         return next(running).execution
 
@@ -132,13 +131,13 @@ class _Lane(threading.Thread):
         scratch: Path,
         judge: str,
         on_start: Callable[[Task], None],
-        sandbox: bool,
+        boxed: bool,
     ) -> None:
         super().__init__(daemon=True)
         self._waiting, self._done = waiting, done
         self._scratch = scratch
         self._command = [sys.executable, "-m", "autograder.grading.worker", str(scratch), judge]
-        self._sandbox = sandbox
+        self._boxed = boxed
         self._on_start = on_start
         # What a worker says on its way down, in a file: a pipe that nobody reads would fill up. Lives with
         # the lane.
@@ -185,7 +184,7 @@ class _Lane(threading.Thread):
             try:
                 execution = self._ask(task)
                 if execution.trouble:
-                    if not warmth.holds(self._sandbox):
+                    if not warmth.holds(self._boxed):
                         raise WorkerLost(execution.trouble)  # with fresh warm processes it may succeed
                     return replace(execution, trouble=f"{execution.trouble}{self._last_words()}")
                 return execution
@@ -221,7 +220,7 @@ class _Lane(threading.Thread):
             if self._stopping:
                 raise WorkerLost("the grading run was stopped")
             if self._worker is None:
-                addresses = msgspec.json.encode(warmth.addresses(self._sandbox)).decode()
+                addresses = msgspec.json.encode(warmth.addresses(self._boxed)).decode()
                 self._worker = subprocess.Popen(
                     [*self._command, addresses],
                     stdin=subprocess.PIPE,

@@ -9,6 +9,7 @@ import msgspec
 
 from autograder.boxes.execution import Cell, Kind
 from autograder.boxes.limits import Limits
+from autograder.grading import sandboxing
 from autograder.grading.class_directory import SUFFIX, ClassDirectory, Submission
 from autograder.grading.course_version import course_version
 from autograder.grading.harmless import make_harmless
@@ -57,6 +58,7 @@ def task_of(
         limits=limits_of(directory),
         files=directory.files(assignment),
         problem=problem,
+        boxed=not sandboxing.switched_off(directory),
     )
 
 

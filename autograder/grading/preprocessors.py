@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nbgrader.preprocessors import NbGraderPreprocessor
-from traitlets import Float
+from traitlets import Bool, Float
 
-from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution
+from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution, Kind
 from autograder.boxes.limits import Limits
 from autograder.cards.bundle import mimebundle
-from autograder.grading import engine, nodes
+from autograder.grading import engine, nodes, sandboxing
 from autograder.grading.class_directory import ClassDirectory
 from autograder.grading.exporter import SubmissionExporter
 from autograder.grading.journal import Journal
@@ -36,6 +36,11 @@ class WireExecute(NbGraderPreprocessor):
     notebook_seconds = Float(Limits.notebook_seconds, help="Wall time of a notebook, in seconds.").tag(
         config=True
     )
+    unsafe_no_sandbox = Bool(
+        False,
+        help="Run submissions with all rights of whoever grades, without a sandbox. Anything can then be changed, "
+        "grades included; reports and feedback say that it was so.",
+    ).tag(config=True)
 
     def preprocess(self, nb: NotebookNode, resources: dict[str, Any]) -> tuple[NotebookNode, dict[str, Any]]:
         """Put outputs and scores into the notebook.
@@ -64,6 +69,7 @@ class WireExecute(NbGraderPreprocessor):
         if known is not None:
             self.log.info("%s is unchanged; taking the result that is in the journal", task.label)
             return known
+        sandboxing.require(directory)
         execution = engine.execute_one(task, directory.scratch())
         journal.put(task, execution)
         return execution
@@ -84,6 +90,8 @@ def with_results(nb: NotebookNode, task: Task, execution: Execution) -> Notebook
         else:
             node.outputs = [nodes.output(**output) for output in run.outputs]
             node.outputs += _remark(cell, run.ended, task.limits) if execution.cells else []
+    if not task.boxed:
+        nb.cells.insert(0, nodes.cell(Kind.MARKDOWN, f"**{sandboxing.NOTE}**"))
     return nb
 
 

@@ -27,6 +27,8 @@ class Task:
         limits: All limits.
         files: Files of the assignment that lie beside the notebook, by relative path.
         problem: Why there is nothing to execute; empty for a notebook that can be.
+        boxed: Execute in boxes, or not at all. Without boxes is for the course's own notebooks, and for an instructor
+            who has typed so; such a result never stands for one from a box.
     """
 
     student: str
@@ -38,6 +40,7 @@ class Task:
     limits: Limits = field(default_factory=Limits)
     files: Mapping[str, bytes] = field(default_factory=dict)
     problem: str = ""
+    boxed: bool = True
 
     @property
     def label(self) -> str:

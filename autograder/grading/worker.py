@@ -24,6 +24,7 @@ from autograder.boxes.forkserver import Addresses
 from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.boxes.processes import adopt_orphans, end_descendants
 from autograder.boxes.runner import run_notebook
+from autograder.boxes.sandbox import NoSandbox
 from autograder.boxes.scratch import scratch_folder
 from autograder.boxes.zero import grader_trouble
 from autograder.grading.task import Task, decode_task, encode
@@ -84,7 +85,9 @@ def execute(task: Task, scratch: Path, judge: Any, addresses: Addresses) -> Exec
 def _execute(
     task: Task, folder: Path, judge: Any, addresses: Addresses, stack: contextlib.ExitStack
 ) -> Execution:
-    boxed = bool(addresses.keepers)
+    if task.boxed and not addresses.keepers:
+        raise NoSandbox("this task is for a box, and there is none here")
+    boxed = task.boxed
     kind: type[BoxedPlace] | type[UnboxedPlace] = BoxedPlace if boxed else UnboxedPlace
     place = kind(
         addresses,
