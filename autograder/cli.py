@@ -190,14 +190,31 @@ def new_class(folder: Path, assignments: tuple[str, ...]) -> None:
 @click.option(
     "--jobs", type=click.IntRange(min=1), help="Submissions at once; as many as cores where not given."
 )
+@click.option(
+    "--unsafe-no-sandbox",
+    is_flag=True,
+    help="Run submissions with all your rights where no sandbox is possible. They could change any grade.",
+)
 def grade(
-    folder: Path, assignments: tuple[str, ...], students: tuple[str, ...], again: bool, jobs: int | None
+    folder: Path,
+    assignments: tuple[str, ...],
+    students: tuple[str, ...],
+    again: bool,
+    jobs: int | None,
+    unsafe_no_sandbox: bool,
 ) -> None:
     """Grade what was submitted in the class directory FOLDER."""
     from autograder import grading
 
     with grading_errors():
-        report = grading.grade(folder, assignments=assignments, students=students, again=again, jobs=jobs)
+        report = grading.grade(
+            folder,
+            assignments=assignments,
+            students=students,
+            again=again,
+            jobs=jobs,
+            unsafe_no_sandbox=unsafe_no_sandbox,
+        )
     sys.exit(report.exit_code)
 
 

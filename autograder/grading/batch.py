@@ -86,6 +86,9 @@ def grade(
     began = time.monotonic()
     directory = ClassDirectory(Path(path))
     console = console or Console(stderr=True)
+    from autograder.grading import sandboxing
+
+    sandboxing.require(directory)
     with directory.lock(), clear_disk_errors(directory.path):
         _check_release(directory)
         batch = _Batch(directory, console, jobs or os.cpu_count() or 1, judge)

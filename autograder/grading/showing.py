@@ -42,6 +42,8 @@ def show(report: GradeReport, console: Console | None = None) -> None:
         _line(console, f"refused      {printable(str(refused.path))}: {refused.reason}", "yellow")
     for problem in report.problems:
         _line(console, f"problem      {printable(problem)}", "red")
+    if report.note:
+        _line(console, f"unsafe       {report.note}", "red")
     counts = (
         f"{report.executed} notebooks run, {report.reused} unchanged, {report.written} submissions entered"
     )
