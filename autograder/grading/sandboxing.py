@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from autograder.grading.class_directory import ClassDirectory
 from autograder.grading.errors import GradingError
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-    from autograder.grading.class_directory import ClassDirectory
 
 NOTE = (
     "Graded without a sandbox: what was handed in ran with all rights of whoever graded it "
@@ -26,15 +25,20 @@ _off: set[Path] = set()
 """The classes for which it was typed. nbgrader makes its own objects of a class on the way to the notebooks."""
 
 
-def switch_off(directory: ClassDirectory) -> None:
-    """What ``--unsafe-no-sandbox`` does, for this process."""
-    _off.add(directory.path.resolve())
+def switch_off(path: Path) -> None:
+    """What ``--unsafe-no-sandbox`` does for the class at ``path``, in this process."""
+    _off.add(path.resolve())
 
 
 def switched_off(directory: ClassDirectory) -> bool:
     """Whether this class is graded without boxes, by its configuration or by :func:`switch_off`."""
     configured = directory.config.WireExecute.get("unsafe_no_sandbox", False)
     return bool(configured) or directory.path.resolve() in _off
+
+
+def note(path: Path) -> str:
+    """What whoever reads the points of a class has to know about how they came about; mostly empty."""
+    return NOTE if switched_off(ClassDirectory(path)) else ""
 
 
 def require(directory: ClassDirectory) -> None:
