@@ -106,11 +106,11 @@ class KeptLane:
     Args:
         scratch: Where submissions run; for this lane alone.
         judge: What makes a judge, as ``module:class``.
-        sandbox: Execute in boxes.
+        boxed: Whether the tasks to come are executed in boxes.
     """
 
-    def __init__(self, scratch: Path, *, judge: str = JUDGE, sandbox: bool = True) -> None:
-        self._lane = _Lane(queue.SimpleQueue(), queue.SimpleQueue(), scratch, judge, lambda _: None, sandbox)
+    def __init__(self, scratch: Path, *, judge: str = JUDGE, boxed: bool = True) -> None:
+        self._lane = _Lane(queue.SimpleQueue(), queue.SimpleQueue(), scratch, judge, lambda _: None, boxed)
 
     def execute(self, task: Task) -> Execution:
         """Execute a task. For one thread at a time."""
