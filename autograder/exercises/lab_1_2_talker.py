@@ -85,7 +85,7 @@ def _template(text: str) -> str:
 
 
 def _counters(heard: list[str]) -> list[int]:
-    return [int(numbers[-1]) for text in heard if (numbers := re.findall(r"-?\d+", text))]
+    return [int(numbers[-1]) for text in heard if (numbers := re.findall(r"-?\d{1,18}", text))]
 
 
 def _expected(evidence: Evidence) -> tuple[str, str, list[str]]:
