@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import functools
 import hashlib
 import os
+import re
+import stat
 import tempfile
 import unicodedata
 from dataclasses import dataclass
@@ -15,12 +16,13 @@ from typing import TYPE_CHECKING
 
 from traitlets.config.loader import PyFileConfigLoader
 
-from autograder.grading.errors import ClassBusy, ClassIncomplete, NotAClass
-from autograder.grading.master import read_master
+from autograder.grading.class_lock import held
+from autograder.grading.errors import ClassIncomplete, NotAClass
 from autograder.grading.seeds import create_secret, read_secret
+from autograder.grading.submission import reason_against_file
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from nbformat import NotebookNode
     from traitlets.config import Config
@@ -29,6 +31,7 @@ CONFIG_NAME = "nbgrader_config.py"
 STATE_NAME = ".autograder"
 SUFFIX = ".ipynb"
 _LONGEST_NAME = 100
+_MAY_NAME_GRADEBOOK = re.compile(rb"db_url|subconfig|exec|update|merge|import_module")
 
 
 @dataclass(frozen=True)
@@ -86,8 +89,10 @@ class ClassDirectory:
     @property
     def gradebook_url(self) -> str:
         """What SQLAlchemy opens the gradebook by."""
-        configured = self.config.CourseDirectory.get("db_url")
-        return str(configured) if configured else f"sqlite:///{self.path / 'gradebook.db'}"
+        usual = f"sqlite:///{self.path / 'gradebook.db'}"
+        if not _MAY_NAME_GRADEBOOK.search((self.path / CONFIG_NAME).read_bytes()):
+            return usual  # the configuration is a program that takes a second
+        return str(self.config.CourseDirectory.get("db_url") or usual)
 
     @functools.cached_property
     def config(self) -> Config:
@@ -146,6 +151,8 @@ class ClassDirectory:
         Raises:
             MasterUnusable: It cannot be graded against.
         """
+        from autograder.grading.master import read_master  # with nbgrader, which takes a second to import
+
         return read_master(self.path / "source" / assignment / f"{notebook}{SUFFIX}", self.config)
 
     def files(self, assignment: str) -> dict[str, bytes]:
@@ -161,15 +168,21 @@ class ClassDirectory:
         }
 
     def submissions(self) -> tuple[list[Submission], list[Refused]]:
-        """Everything that was handed in, and what cannot be graded under the name it has."""
+        """Everything that was handed in, and what cannot be graded under the name it has.
+
+        What lies in the place of a notebook and is no ordinary file is among both: it is graded, with zero points
+        and the reason.
+        """
+        notebooks = {assignment: self.notebooks(assignment) for assignment in self.assignments()}
         taken: list[Submission] = []
         refused: list[Refused] = []
         for student in _folders(self.path / "submitted", refused):
             for folder in _folders(student, refused):
-                if folder.name in self.assignments():
+                if folder.name in notebooks:
                     taken.append(Submission(student.name, folder.name, folder))
+                    refused += _odd_files(folder / f"{name}{SUFFIX}" for name in notebooks[folder.name])
                 else:
-                    known = ", ".join(self.assignments()) or "none"
+                    known = ", ".join(notebooks) or "none"
                     refused.append(
                         Refused(folder, f"there is no assignment of that name (the class has: {known})")
                     )
@@ -182,23 +195,26 @@ class ClassDirectory:
         Raises:
             ClassBusy: Another process holds it.
         """
-        self.state.mkdir(exist_ok=True)
-        with (self.state / "lock").open("a+") as file:
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                file.seek(0)
-                holder = file.read().strip()
-                raise ClassBusy(self.path, f" (process {holder})" if holder else "") from None
-            file.truncate(0)
-            file.write(str(os.getpid()))
-            file.flush()
+        self.state.mkdir(mode=0o700, exist_ok=True)
+        with held(self.state / "lock", self.path):
             yield
 
     def scratch(self) -> Path:
-        """A folder for what runs, outside of the class and with a short name (sockets live in it)."""
+        """A folder for what runs, outside of the class and with a short name (sockets live in it).
+
+        Raises:
+            ClassIncomplete: Somebody else has a folder of that name, who could then look into ours.
+        """
         name = hashlib.sha256(str(self.path).encode()).hexdigest()[:8]
-        return Path(tempfile.gettempdir()) / f"autograder-{os.getuid()}-{name}"
+        folder = Path(tempfile.gettempdir()) / f"autograder-{os.getuid()}-{name}"
+        with contextlib.suppress(FileNotFoundError):
+            status = folder.lstat()
+            if not stat.S_ISDIR(status.st_mode) or status.st_uid != os.getuid():
+                raise ClassIncomplete(
+                    f"{folder} is there already and is not your folder. Have it removed, or set TMPDIR to a "
+                    "folder of your own."
+                )
+        return folder
 
 
 def reason_against_name(name: str) -> str:
@@ -216,10 +232,17 @@ def reason_against_name(name: str) -> str:
     return ""
 
 
+def _odd_files(paths: Iterable[Path]) -> Iterator[Refused]:
+    for path in paths:
+        reason = reason_against_file(path)
+        if reason:
+            yield Refused(path, reason)
+
+
 def _folders(parent: Path, refused: list[Refused]) -> list[Path]:
     """The folders in ``parent`` with usable names; hidden entries and plain files are nobody's work."""
     found = []
-    for entry in sorted(parent.iterdir()) if parent.is_dir() else []:
+    for entry in _entries(parent, refused):
         if entry.name.startswith("."):
             continue
         if entry.is_symlink():
@@ -230,4 +253,16 @@ def _folders(parent: Path, refused: list[Refused]) -> list[Path]:
                 refused.append(Refused(entry, f"{reason}; rename the folder"))
             else:
                 found.append(entry)
+        elif not entry.is_file():
+            refused.append(Refused(entry, "it is neither a folder nor a file; remove it"))
     return found
+
+
+def _entries(parent: Path, refused: list[Refused]) -> list[Path]:
+    try:
+        return sorted(parent.iterdir())
+    except FileNotFoundError:
+        return []
+    except OSError as error:
+        refused.append(Refused(parent, f"it could not be read: {error.strerror}"))
+        return []

@@ -34,11 +34,16 @@ class ClassIncomplete(GradingError):
 
 
 class ClassBusy(GradingError):
-    """Another batch is running on this class."""
+    """Another batch is running on this class.
+
+    Args:
+        path: The class.
+        holder: Who runs it; empty where that is not known.
+    """
 
     def __init__(self, path: Path, holder: str) -> None:
         super().__init__(
-            f"Another grading run is at work in {path}{holder}. "
+            f"Another grading run is at work in {path}{f' ({holder})' if holder else ''}. "
             "Wait until it has ended, or stop it; what it has graded so far is kept."
         )
 

@@ -8,20 +8,23 @@ any other, with the reason in it, and the grades are reset before anything else 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from nbconvert.exporters import NotebookExporter
 
 from autograder.grading import gradebook
 from autograder.grading.class_directory import ClassDirectory
+from autograder.grading.nbgrader_guard import guard
 from autograder.grading.preparing import rebuilt_notebook
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 
 class SubmissionExporter(NotebookExporter):
     """Reads a submission as its rebuilt notebook; reads anything else as nbconvert does."""
+
+    def __init__(self, *args: Any, **kw: Any) -> None:
+        initialise: Any = super().__init__
+        initialise(*args, **kw)
+        guard(self.parent)
 
     def from_filename(
         self, filename: str, resources: dict[str, Any] | None = None, **kw: Any
@@ -39,10 +42,6 @@ class SubmissionExporter(NotebookExporter):
         converter: Any = self.parent
         directory = ClassDirectory(Path(converter.coursedir.root))
         gradebook.reset(directory.gradebook_url, [(names["assignment"], names["student"])])
-        _drop_copies(
-            Path(converter._format_dest(names["assignment"], names["student"])),
-            directory.files(names["assignment"]),
-        )
         master = directory.master(names["assignment"], names["notebook"])
         path = Path(filename)
         _refuse_links(directory.path, path.parent)
@@ -51,20 +50,6 @@ class SubmissionExporter(NotebookExporter):
         resources["metadata"] = {"name": names["notebook"], "path": str(path.parent)}
         convert: Any = self.from_notebook_node
         return convert(rebuilt.notebook, resources=resources, **kw)
-
-
-def _drop_copies(target: Path, given: Mapping[str, bytes]) -> None:
-    """Remove what nbgrader copied from beside the notebook, links and all; none of it goes into feedback."""
-    for path in sorted(target.rglob("*"), reverse=True):
-        if path.is_dir() and not path.is_symlink():
-            if not any(path.iterdir()):
-                path.rmdir()
-        elif (
-            path.suffix != ".ipynb"
-            and str(path.relative_to(target)) not in given
-            and path.name != "timestamp.txt"
-        ):
-            path.unlink()
 
 
 def _refuse_links(root: Path, folder: Path) -> None:

@@ -16,6 +16,7 @@ from nbconvert.exporters import HTMLExporter
 from traitlets.config import Config
 
 from autograder.grading.harmless import clean, is_the_masters, make_harmless
+from autograder.grading.nbgrader_guard import guard
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -52,6 +53,11 @@ class FeedbackExporter(HTMLExporter):
         )
         config.merge(super().default_config)
         return config
+
+    def __init__(self, *args: Any, **kw: Any) -> None:
+        initialise: Any = super().__init__
+        initialise(*args, **kw)
+        guard(self.parent)
 
     def default_filters(self) -> Iterator[tuple[str, Any]]:
         """The filters of nbconvert, with ours in their place."""

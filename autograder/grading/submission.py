@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import errno
+import contextlib
+import gc
 import json
 import os
 import stat
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from autograder.boxes.execution import Kind
 
@@ -18,7 +19,19 @@ if TYPE_CHECKING:
 MAX_BYTES = 50_000_000
 """A notebook with many pictures in its outputs has a few megabytes."""
 MAX_CELLS = 2_000
-MAX_CELL_CHARACTERS = 1_000_000
+MAX_CELL_CHARACTERS = 100_000
+"""Of one cell; what students write has a few thousand."""
+MAX_CHARACTERS = 1_000_000
+"""Of all cells together."""
+_LONGEST_SHOWN = 80
+_KINDS = {
+    stat.S_ISLNK: "a link",
+    stat.S_ISDIR: "a folder",
+    stat.S_ISFIFO: "a pipe",
+    stat.S_ISSOCK: "a socket",
+    stat.S_ISCHR: "a device",
+    stat.S_ISBLK: "a device",
+}
 
 
 class UnreadableSubmission(ValueError):
@@ -40,45 +53,88 @@ class SubmittedCell:
     grade_id: str = ""
 
 
-def read_bytes(path: Path) -> bytes:
-    """The bytes of a submitted notebook.
+class NotAFile(UnreadableSubmission):
+    """In the place of the notebook lies something that nobody hands in, or that may not be read."""
+
+
+def read_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
+    """The bytes of a submitted file.
+
+    Args:
+        path: Where it should lie.
+        most: Bytes that it may have.
 
     Raises:
-        UnreadableSubmission: It is missing, no regular file, or too large. Links are not followed: one could
-            point at a neighbour's work.
+        NotAFile: It is a link, a pipe, a device or the like, or cannot be opened.
+        UnreadableSubmission: It is missing or too large.
     """
-    try:
-        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
-    except FileNotFoundError:
-        others = (
-            sorted(entry.name for entry in path.parent.glob("*.ipynb"))[:3] if path.parent.is_dir() else []
-        )
-        found = f" Found instead: {', '.join(others)}." if others else ""
-        raise UnreadableSubmission(
-            f"There is no notebook named {path.name} in the submission.{found}"
-        ) from None
-    except OSError as error:
-        if error.errno == errno.ELOOP:
-            raise UnreadableSubmission(f"{path.name} is a link; hand in the notebook itself.") from None
-        raise UnreadableSubmission(f"{path.name} could not be opened: {error.strerror}.") from None
-    try:
-        status = os.fstat(descriptor)
-        if not stat.S_ISREG(status.st_mode):
-            raise UnreadableSubmission(f"{path.name} is not a file.")
-        if status.st_nlink > 1:
+    with _opened(path) as file:
+        size = os.fstat(file.fileno()).st_size
+        if size > most:
             raise UnreadableSubmission(
-                f"{path.name} has a second name somewhere (a hard link), so it may be somebody else's work. "
-                "Hand in a copy of its own."
-            )
-        if status.st_size > MAX_BYTES:
-            raise UnreadableSubmission(
-                f"{path.name} has {status.st_size / 1e6:.0f} MB; the limit is {MAX_BYTES / 1e6:.0f} MB. "
+                f"{_shown(path.name)} has {size / 1e6:.0f} MB; the limit is {most / 1e6:.0f} MB. "
                 "Clear its outputs and hand it in again."
             )
-        with os.fdopen(descriptor, "rb", closefd=False) as file:
-            return file.read(MAX_BYTES + 1)
-    finally:
-        os.close(descriptor)
+        data = file.read(most + 1)
+    if len(data) > most:
+        raise UnreadableSubmission(f"{_shown(path.name)} grows while it is read; hand it in again.")
+    return data
+
+
+def reason_against_file(path: Path) -> str:
+    """Why nobody can have handed in what lies at ``path``; empty where it is a file, or nothing at all."""
+    try:
+        with _opened(path):
+            return ""
+    except NotAFile as error:
+        return str(error)
+    except UnreadableSubmission:
+        return ""
+
+
+@contextlib.contextmanager
+def _opened(path: Path) -> Iterator[IO[bytes]]:
+    """An ordinary file, open. It is looked at before (to open a device may do something) and after."""
+    try:
+        _check(path, path.lstat())
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+        with os.fdopen(descriptor, "rb") as file:
+            _check(path, os.fstat(descriptor))
+            yield file
+    except FileNotFoundError:
+        raise UnreadableSubmission(
+            f"There is no notebook named {path.name} in the submission.{_found_instead(path.parent)}"
+        ) from None
+    except OSError as error:
+        raise NotAFile(f"{_shown(path.name)} could not be read: {error.strerror}.") from None
+
+
+def _check(path: Path, status: os.stat_result) -> None:
+    for is_kind, name in _KINDS.items():
+        if is_kind(status.st_mode):
+            raise NotAFile(f"{_shown(path.name)} is {name}; hand in the notebook itself.")
+    if not stat.S_ISREG(status.st_mode):
+        raise NotAFile(f"{_shown(path.name)} is not a file; hand in the notebook itself.")
+    if status.st_nlink > 1:
+        # It could be a neighbour's work, or be changed from elsewhere at any time.
+        raise NotAFile(
+            f"{_shown(path.name)} has a second name on the disk (a hard link); hand in a copy of it."
+        )
+
+
+def _found_instead(folder: Path) -> str:
+    """Other notebooks in a folder: mostly, a browser has numbered the name."""
+    try:
+        others = sorted(entry.name for entry in os.scandir(folder) if entry.name.endswith(".ipynb"))
+    except OSError:
+        return ""
+    return f" Found instead: {', '.join(map(_shown, others[:3]))}." if others else ""
+
+
+def _shown(name: str) -> str:
+    """A file's name as it can stand in any text: a student chose it, or a program that a student wrote."""
+    name = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in name)
+    return name if len(name) <= _LONGEST_SHOWN else f"{name[:_LONGEST_SHOWN]}…"
 
 
 def parse(data: bytes) -> tuple[list[SubmittedCell], int]:
@@ -97,6 +153,11 @@ def parse(data: bytes) -> tuple[list[SubmittedCell], int]:
     if len(cells) > MAX_CELLS:
         raise UnreadableSubmission(f"The notebook has {len(cells)} cells; the limit is {MAX_CELLS}.")
     taken = [cell for cell in map(_cell, cells) if cell is not None]
+    characters = sum(len(cell.source) for cell in taken)
+    if characters > MAX_CHARACTERS:
+        raise UnreadableSubmission(
+            f"The cells of the notebook have {characters} characters; the limit is {MAX_CHARACTERS}."
+        )
     return taken, len(cells) - len(taken)
 
 
@@ -108,15 +169,20 @@ def _decoded(data: bytes) -> Any:
             f"The file is not a notebook: it is not UTF-8 text (byte {error.start}). "
             "Save the notebook in JupyterLab and hand in that file."
         ) from None
+    collects = gc.isenabled()
+    gc.disable()  # nothing that is made here can be freed, but the collector would look for it again and again
     try:
         return json.loads(text)
-    except RecursionError:
+    except (RecursionError, MemoryError):
         raise UnreadableSubmission("The file is not a notebook: its JSON is nested too deeply.") from None
     except ValueError as error:
         raise UnreadableSubmission(
             f"The file is not a notebook: it is not JSON ({error}). "
             "Save the notebook in JupyterLab and hand in that file."
         ) from None
+    finally:
+        if collects:
+            gc.enable()
 
 
 def _raw_cells(notebook: Mapping[str, Any]) -> list[Any]:

@@ -94,7 +94,7 @@ def test_plain_nbgrader_takes_a_known_result_and_leaves_one(tiny: TinyClass, fak
     assert tiny.scores("ada")[TALKER] == 3
 
 
-@pytest.mark.parametrize("where", ["copying", "executing", "saving"])
+@pytest.mark.parametrize("where", ["preparing", "executing", "saving"])
 def test_plain_nbgrader_leaves_no_earlier_score_when_it_fails(
     tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch, where: str
 ) -> None:
@@ -106,8 +106,8 @@ def test_plain_nbgrader_leaves_no_earlier_score_when_it_fails(
     def fail(*_: object, **__: object) -> None:
         raise RuntimeError("no more")
 
-    if where == "copying":
-        (path.parent / "dangling").symlink_to("/nonexistent")
+    if where == "preparing":
+        (path.parent / "timestamp.txt").write_text("yesterday")
     elif where == "executing":
         monkeypatch.setattr(fake_engine, "execute", fail)
     else:

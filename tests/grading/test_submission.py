@@ -118,7 +118,7 @@ def test_does_not_take_a_neighbours_work_under_a_second_name(tmp_path: Path) -> 
 
 def test_a_pipe_does_not_make_the_grader_wait(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "mine.ipynb")
-    with pytest.raises(UnreadableSubmission, match="is not a file"):
+    with pytest.raises(UnreadableSubmission, match="is a pipe"):
         read_bytes(tmp_path / "mine.ipynb")
 
 

@@ -1,0 +1,100 @@
+"""One batch at a time in a class, whichever command or button started it."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import socket
+import threading
+from dataclasses import dataclass
+from datetime import datetime
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder.grading.errors import ClassBusy
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+    from typing import IO
+
+
+@dataclass(frozen=True)
+class Holder:
+    """Who is at work.
+
+    Attributes:
+        pid: The process.
+        host: Where it runs.
+        since: When it began, local time.
+    """
+
+    pid: int
+    host: str
+    since: str
+
+    def __str__(self) -> str:
+        """The holder in a few words."""
+        where = "" if self.host == socket.gethostname() else f" on {self.host}"
+        return f"process {self.pid}{where}, since {self.since}"
+
+
+_own: dict[Path, Holder] = {}
+"""What this process holds: to the system, a lock of one's own is never in the way."""
+_changing = threading.Lock()
+
+
+@contextlib.contextmanager
+def held(path: Path, of: Path) -> Iterator[None]:
+    """Hold the lock of a class.
+
+    It is a POSIX record lock: it goes with the process, however that ends, and no child inherits it. A file that
+    a killed run left behind means nothing.
+
+    Args:
+        path: The lock's file, made where it is not there.
+        of: The class, for messages.
+
+    Raises:
+        ClassBusy: Somebody holds it; the message says who.
+        OSError: The file cannot be written.
+    """
+    path = path.resolve()
+    now = Holder(os.getpid(), socket.gethostname(), f"{datetime.now():%Y-%m-%d %H:%M:%S}")
+    with _changing:
+        if path in _own:
+            raise ClassBusy(of, str(_own[path]))
+        file = path.open("a+b")
+        try:
+            _take(file, now, of)
+        except BaseException:
+            file.close()
+            raise
+        _own[path] = now
+    try:
+        yield
+    finally:
+        with _changing:
+            del _own[path]
+            file.close()
+
+
+def _take(file: IO[bytes], holder: Holder, of: Path) -> None:
+    try:
+        fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise ClassBusy(of, _who(file)) from None
+    file.truncate(0)
+    file.write(msgspec.json.encode(holder))
+    file.flush()
+
+
+def _who(file: IO[bytes]) -> str:
+    """Who wrote the file; nobody, where the one who has just taken it has not come to that."""
+    file.seek(0)
+    try:
+        return str(msgspec.json.decode(file.read(), type=Holder))
+    except msgspec.MsgspecError:
+        return ""

@@ -1,0 +1,76 @@
+"""What nbgrader's own conversions must not do to a class, whether a command or formgrader's button starts them.
+
+They run while ``autograder grade`` does, and they copy whatever lies in a submission: a pipe would hold them up for
+ever, and a file with a hole of a terabyte would fill the disk. nbgrader asks our exporters to read and to render
+(``nbgrader_config.py`` names them), and through these the conversion that made them is replaced by its guarded form.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from nbgrader.converters import Autograde, BaseConverter, GenerateFeedback, NbGraderException
+
+from autograder.grading.class_directory import ClassDirectory
+from autograder.grading.errors import GradingError
+from autograder.grading.timestamps import TIMESTAMP, handed_in_at, read_timestamp
+
+
+class _AloneInTheClass(BaseConverter):
+    """A conversion that keeps other batches out while it runs."""
+
+    def convert_notebooks(self) -> None:
+        """Convert everything.
+
+        Raises:
+            NbGraderException: Somebody else is at work; the log has the same words.
+        """
+        try:
+            with ClassDirectory(Path(self.coursedir.root)).lock():
+                super().convert_notebooks()
+        except GradingError as error:
+            self.log.error("%s", error)
+            raise NbGraderException(str(error)) from error
+
+
+class _CopiesNothing(BaseConverter):
+    """A conversion that takes nothing along but the time at which the work was handed in."""
+
+    def init_destination(self, assignment_id: str, student_id: str) -> bool:
+        """Whether there is something to do, found out without trusting what lies in the submission."""
+        course: Any = self.coursedir
+        course.get_existing_timestamp = lambda folder: handed_in_at(Path(folder))
+        return super().init_destination(assignment_id, student_id)
+
+    def init_assignment(self, assignment_id: str, student_id: str) -> None:
+        """In the place of nbgrader's copying."""
+        stamp = read_timestamp(Path(self._format_source(assignment_id, student_id)))
+        if stamp:
+            folder = Path(self._format_dest(assignment_id, student_id))
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / TIMESTAMP).write_text(stamp)
+
+
+class GuardedAutograde(Autograde, _CopiesNothing):
+    """``nbgrader autograde`` for a caller that holds the class's lock."""
+
+
+class _PlainAutograde(_AloneInTheClass, GuardedAutograde):
+    """``nbgrader autograde`` itself."""
+
+
+class _PlainFeedback(_AloneInTheClass, GenerateFeedback):
+    """``nbgrader generate_feedback`` itself."""
+
+
+def guard(converter: object) -> None:
+    """Give a conversion of nbgrader its guarded form; one of our own has it already.
+
+    Args:
+        converter: It has not yet begun to convert.
+    """
+    guarded = {Autograde: _PlainAutograde, GenerateFeedback: _PlainFeedback}.get(type(converter))
+    if guarded is not None:
+        # nbgrader offers no way to say which class it shall make.
+        converter.__class__ = guarded

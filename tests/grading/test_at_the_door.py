@@ -1,0 +1,339 @@
+"""What students put in the place of a notebook: each gets one line that names it, and the rest is graded."""
+
+from __future__ import annotations
+
+import errno
+import gc
+import json
+import os
+import shutil
+import socket
+import stat
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from conftest import LISTENER, TALKER, FakeEngine, TinyClass
+from rich.console import Console
+from test_doors import nbgrader_autograde
+
+from autograder.grading import submission
+from autograder.grading.class_directory import ClassDirectory
+from autograder.grading.errors import ClassIncomplete
+from autograder.grading.showing import show
+from autograder.grading.submission import UnreadableSubmission, parse, read_bytes
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.grading.report import GradeReport
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+NOTHING = {TALKER: 0, LISTENER: 0}
+
+
+def a_pipe(path: Path, _: TinyClass) -> None:
+    os.mkfifo(path)
+
+
+def a_socket(path: Path, _: TinyClass) -> None:
+    here = Path.cwd()
+    os.chdir(path.parent)  # the name of a socket may have 107 bytes
+    try:
+        socket.socket(socket.AF_UNIX).bind(path.name)
+    finally:
+        os.chdir(here)
+
+
+def a_device(path: Path, _: TinyClass) -> None:
+    try:
+        os.mknod(path, stat.S_IFCHR | 0o666, os.makedev(1, 5))  # /dev/zero: reading it never ends
+    except PermissionError:
+        pytest.skip("only root can make a device")
+
+
+def a_folder(path: Path, _: TinyClass) -> None:
+    path.mkdir()
+    (path / "lab_1_2.ipynb").write_text("{}")
+
+
+def a_link_to_a_neighbour(path: Path, tiny: TinyClass) -> None:
+    path.symlink_to(tiny.path / "submitted" / "ada" / "lab_1_2" / path.name)
+
+
+def a_link_to_itself(path: Path, _: TinyClass) -> None:
+    path.symlink_to(path)
+
+
+def a_link_to_nothing(path: Path, _: TinyClass) -> None:
+    path.symlink_to("/nowhere/at/all")
+
+
+def a_second_name_of_a_neighbours(path: Path, tiny: TinyClass) -> None:
+    copy = tiny.path / "submitted" / "copy.ipynb"
+    shutil.copy(tiny.path / "submitted" / "ada" / "lab_1_2" / path.name, copy)
+    path.hardlink_to(copy)
+
+
+ODD: dict[str, tuple[Callable[[Path, TinyClass], None], str]] = {
+    "pipe": (a_pipe, "is a pipe"),
+    "socket": (a_socket, "is a socket"),
+    "device": (a_device, "is a device"),
+    "folder": (a_folder, "is a folder"),
+    "link": (a_link_to_a_neighbour, "is a link"),
+    "link to itself": (a_link_to_itself, "is a link"),
+    "link to nothing": (a_link_to_nothing, "is a link"),
+    "hard link": (a_second_name_of_a_neighbours, "has a second name on the disk"),
+}
+
+
+def in_place_of_the_notebook(tiny: TinyClass, kind: str, student: str = "eve") -> Path:
+    path = tiny.path / "submitted" / student / "lab_1_2" / "lab_1_2.ipynb"
+    path.parent.mkdir(parents=True)
+    ODD[kind][0](path, tiny)
+    return path
+
+
+def said(report: GradeReport) -> str:
+    console = Console(record=True, width=300, quiet=False, file=open(os.devnull, "w"))  # noqa: SIM115, PTH123
+    show(report, console)
+    return console.export_text()
+
+
+@pytest.mark.parametrize("kind", ODD)
+def test_what_is_no_file_is_named_once_and_earns_nothing(
+    tiny: TinyClass, fake_engine: FakeEngine, kind: str
+) -> None:
+    tiny.submit("ada", 7, 8)
+    path = in_place_of_the_notebook(tiny, kind)
+    report = tiny.grade(feedback=True)
+    assert fake_engine.ran == ["ada"]
+    assert tiny.scores("ada") == {TALKER: 7, LISTENER: 8}
+    assert tiny.scores("eve") == NOTHING
+    assert report.exit_code == 2
+    lines = [line for line in said(report).splitlines() if str(path) in line]
+    assert len(lines) == 1
+    assert ODD[kind][1] in lines[0]
+    page = (tiny.path / "feedback" / "eve" / "lab_1_2" / "lab_1_2.html").read_text()
+    assert ODD[kind][1] in page
+    assert "eve,lab_1_2,lab_1_2.talker,0,10,failed,unreadable" in (tiny.path / "grades.csv").read_text()
+
+
+@pytest.mark.parametrize("kind", ["pipe", "device", "folder", "hard link"])
+def test_plain_nbgrader_is_not_held_up_either(tiny: TinyClass, fake_engine: FakeEngine, kind: str) -> None:
+    tiny.submit("ada", 7, 8)
+    in_place_of_the_notebook(tiny, kind)
+    nbgrader_autograde(tiny)
+    assert tiny.scores("eve") == NOTHING
+    assert tiny.scores("ada") == {TALKER: 7, LISTENER: 8}
+
+
+@pytest.mark.parametrize("door", ["ours", "nbgrader's"])
+@pytest.mark.parametrize("name", ["timestamp.txt", "robot.py", "deep/robot.py"])
+@pytest.mark.parametrize("kind", ["pipe", "device", "folder", "link to itself", "link"])
+def test_what_lies_beside_the_notebook_holds_nothing_up_and_costs_nothing(
+    tiny: TinyClass, fake_engine: FakeEngine, kind: str, name: str, door: str
+) -> None:
+    tiny.submit("ada")
+    path = tiny.submit("eve", 3, 4).parent / name
+    path.parent.mkdir(exist_ok=True)
+    ODD[kind][0](path, tiny)
+    if door == "ours":
+        assert tiny.grade().exit_code == 0
+    else:
+        nbgrader_autograde(tiny)
+    assert tiny.scores("eve") == {TALKER: 3, LISTENER: 4}
+    assert [file.name for file in (tiny.path / "autograded" / "eve").rglob("*.*")] == ["lab_1_2.ipynb"]
+
+
+@pytest.mark.parametrize("door", ["ours", "nbgrader's"])
+def test_a_file_with_a_hole_of_a_terabyte_fills_no_disk(
+    tiny: TinyClass, fake_engine: FakeEngine, door: str
+) -> None:
+    beside = tiny.submit("eve", 3, 4).parent / "huge.bin"
+    instead = tiny.path / "submitted" / "mallory" / "lab_1_2" / "lab_1_2.ipynb"
+    instead.parent.mkdir(parents=True)
+    for path in (beside, instead):
+        with path.open("wb") as file:
+            file.truncate(1 << 40)
+    if door == "ours":
+        report = tiny.grade()
+        assert report.exit_code == 0
+        reason = next(row.reason for row in report.rows if row.student == "mallory")
+        assert "the limit is 50 MB" in reason
+    else:
+        nbgrader_autograde(tiny)
+    assert tiny.scores("eve") == {TALKER: 3, LISTENER: 4}
+    assert tiny.scores("mallory") == NOTHING
+
+
+def test_a_notebook_that_may_not_be_read(
+    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Root may read everything, so the refusal is played."""
+    locked = tiny.submit("eve")
+    tiny.submit("ada")
+    usual = os.open
+
+    def refuse(path: Any, *args: Any, **kw: Any) -> int:
+        if Path(path) == locked:
+            raise PermissionError(errno.EACCES, "Permission denied", str(path))
+        return usual(path, *args, **kw)
+
+    monkeypatch.setattr(os, "open", refuse)
+    report = tiny.grade()
+    assert [(r.path, r.reason) for r in report.refused] == [
+        (locked, "lab_1_2.ipynb could not be read: Permission denied.")
+    ]
+    assert report.exit_code == 2
+    assert tiny.scores("eve") == NOTHING
+    assert tiny.scores("ada")[TALKER] == 10
+
+
+def test_a_students_folder_that_may_not_be_read(
+    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tiny.submit("ada")
+    locked = tiny.submit("eve").parents[1]
+    usual = Path.iterdir
+
+    def refuse(path: Path) -> Any:
+        if path == locked:
+            raise PermissionError(errno.EACCES, "Permission denied", str(path))
+        return usual(path)
+
+    monkeypatch.setattr(Path, "iterdir", refuse)
+    report = tiny.grade()
+    assert [(r.path, r.reason) for r in report.refused] == [
+        (locked, "it could not be read: Permission denied")
+    ]
+    assert report.exit_code == 2
+    assert tiny.scores("ada")[TALKER] == 10
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("a\u202eb", "a\u2066b", "\u200badmin", "\ufeffada", "a\u007f", "a\tb", "a\rb", "\u2215etc"),
+        *("a\\b", "~", "$HOME", "`id`", "%2e%2e", "a:b", "<b>", '"', "a?b", "#a", "&a", "x" * 101, "ö" * 60),
+    ],
+)
+def test_a_name_that_misleads_is_refused_in_one_line(
+    tiny: TinyClass, fake_engine: FakeEngine, name: str
+) -> None:
+    tiny.submit("ada")
+    (tiny.path / "submitted" / name / "lab_1_2").mkdir(parents=True)
+    report = tiny.grade()
+    assert len(report.refused) == 1
+    assert report.exit_code == 2
+    assert tiny.scores("ada")[TALKER] == 10
+    (line,) = [line for line in said(report).splitlines() if line.startswith("refused")]
+    assert line.isprintable()
+
+
+def test_a_name_that_is_no_text_is_refused(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada")
+    Path(os.fsdecode(os.fsencode(tiny.path / "submitted") + b"/\xff\xfe")).mkdir()
+    report = tiny.grade()
+    assert len(report.refused) == 1
+    assert said(report)
+    assert tiny.scores("ada")[TALKER] == 10
+
+
+def test_a_pipe_in_the_place_of_a_student_is_named(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada")
+    os.mkfifo(tiny.path / "submitted" / "eve")
+    report = tiny.grade()
+    assert [refused.reason for refused in report.refused] == ["it is neither a folder nor a file; remove it"]
+    assert tiny.scores("ada")[TALKER] == 10
+
+
+def test_a_files_name_cannot_forge_a_line(tmp_path: Path) -> None:
+    (tmp_path / "x\nrefused: ada \u202e\x1b[2J.ipynb").write_text("")
+    with pytest.raises(UnreadableSubmission) as caught:
+        read_bytes(tmp_path / "lab_1_2.ipynb")
+    assert str(caught.value).isprintable()
+
+
+# -- what is in the file
+# ---------------------------------------------------------------------------------------------
+
+
+def notebook(cells: str) -> bytes:
+    return b'{"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": ' + cells.encode() + b"}"
+
+
+CODE = '{"cell_type": "code", "metadata": {}, "outputs": [], "source": "x = 1"}'
+
+
+@pytest.mark.parametrize(
+    ("data", "cells"),
+    [
+        (notebook(f"[{CODE}]").replace(b'"metadata": {}', b'"metadata": {"a": NaN, "b": Infinity}'), 1),
+        (notebook(f'[{CODE}], "cells": [{CODE}, {CODE}]'), 2),
+        (notebook('[{"cell_type": "raw", "cell_type": "code", "source": "a", "source": "b"}]'), 1),
+        (notebook(f"[{CODE}]").replace(b"x = 1", b"x = \\u0000"), 1),
+        (notebook(f"[{CODE}]").replace(b"x = 1", b"\\ud83d x \\udc00"), 1),
+        (notebook(f"[{CODE}]").replace(b'"metadata": {}', b'"metadata": {"x": 1e999, "y": -1E+400}'), 1),
+        (notebook("[" + ",".join([CODE] * 1999) + "]"), 1999),
+    ],
+    ids=["NaN", "keys twice", "a cell's keys twice", "NUL", "surrogates", "too large a number", "many cells"],
+)
+def test_what_is_odd_but_a_notebook_is_taken(data: bytes, cells: int) -> None:
+    taken, left_out = parse(data)
+    assert (len(taken), left_out) == (cells, 0)
+    assert all(cell.source.encode() for cell in taken)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"\x00" * 100,
+        notebook(f"[{CODE}]").replace(b"x = 1", b"x = \x00"),
+        notebook(f"[{CODE}]").replace(b"x = 1", b"x = \xff"),
+        notebook(f"[{CODE}]")[:-1],
+        notebook("[" * 200_000),
+        notebook('{"a":' * 200_000),
+        notebook(f"[{CODE}]").replace(b'"nbformat": 4', b'"nbformat": ' + b"4" * 10_000),
+        notebook("[" + "0," * 1_000_000 + "0]"),
+        notebook("[" + ",".join([CODE] * 2001) + "]"),
+        notebook(
+            "[" + ",".join(json.dumps({"cell_type": "code", "source": "x" * 99_000}) for _ in range(11)) + "]"
+        ),
+        b"PK\x03\x04" + b"\x00" * 1000,
+        b"\x1f\x8b\x08" + b"\x00" * 1000,
+    ],
+    ids=[
+        *("NULs", "NUL", "not UTF-8", "cut off", "deep lists", "deep objects", "a long number"),
+        *("a million cells", "2001 cells", "a million characters", "zip", "gzip"),
+    ],
+)
+def test_what_is_no_notebook_is_said_in_one_line(data: bytes) -> None:
+    with pytest.raises(UnreadableSubmission) as caught:
+        parse(data)
+    assert str(caught.value).isprintable()
+    assert len(str(caught.value)) < 300
+
+
+def test_a_cell_that_is_too_long_is_left_out_with_a_word() -> None:
+    long = json.dumps({"cell_type": "code", "source": "x" * (submission.MAX_CELL_CHARACTERS + 1)})
+    assert parse(notebook(f"[{CODE}, {long}]"))[1] == 1
+
+
+def test_the_largest_file_that_is_read_is_read_at_once() -> None:
+    """Fifty megabytes of the JSON that costs most: half a minute, were the garbage collector on."""
+    data = notebook("[" + "[]," * ((submission.MAX_BYTES - 100) // 3) + "0]")
+    with pytest.raises(UnreadableSubmission, match="the limit is"):
+        parse(data)
+    assert gc.isenabled()
+
+
+def test_a_scratch_folder_of_somebody_else_is_not_used(
+    tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tempfile.gettempdir", lambda: str(tmp_path))
+    tiny.submit("ada")
+    scratch = ClassDirectory(tiny.path).scratch()
+    scratch.symlink_to(tmp_path / "class")
+    with pytest.raises(ClassIncomplete, match="is not your folder"):
+        tiny.grade()
