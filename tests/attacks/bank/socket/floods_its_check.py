@@ -1,0 +1,34 @@
+# family = "socket"
+# tries = "Within the check's own conversation, words flood the judge: as many lines of output as go through in four seconds, each with other texts."
+# could_earn = "A judge that runs out of memory or time, in the hope that this is a pass."
+# undefended = "What a subject says is cut at a limit; the check ends without points."
+
+# %% solution ListenerNode
+import threading
+import time
+
+import autograder.notebook.judge_link as judge_link
+
+
+class ListenerNode(Node):
+    def __init__(self):
+        super().__init__("listener_node")
+
+
+usual = judge_link.JudgeLink.hear
+
+
+def hear(self):
+    word = usual(self)
+    if word["say"] == "start":
+        def flood(until=time.monotonic() + 4.0):
+            number = 0
+            while time.monotonic() < until:
+                number += 1
+                self.say("output", run=word["run"], text=f"amber birch {number} " * 200)
+
+        threading.Thread(target=flood, daemon=True).start()
+    return word
+
+
+judge_link.JudgeLink.hear = hear

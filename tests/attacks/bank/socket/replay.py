@@ -1,0 +1,43 @@
+# family = "socket"
+# tries = "The words of the talker's honest conversation are recorded and said again in the listener's check, under its name."
+# could_earn = "The listener's points for the talker's words."
+# earned = { "lab_1_2.talker" = 10 }
+# undefended = "The judge asks questions on the wire that no recorded word answers."
+
+# %% extra
+import json
+import os
+import socket
+import threading
+import time
+
+
+def connect():
+    link = socket.socket(socket.AF_UNIX)
+    link.settimeout(5.0)
+    link.connect(os.environ["AUTOGRADER_JUDGE_SOCKET"])
+    return link
+
+
+def say(link, word, **rest):
+    link.sendall(json.dumps({"say": word, **rest}).encode() + b"\n")
+
+import autograder.notebook.judge_link as judge_link
+
+said = []
+usual_say = judge_link.JudgeLink.say
+judge_link.JudgeLink.say = lambda self, word, **rest: (said.append((word, rest)), usual_say(self, word, **rest))[1]
+
+# %% right TalkerNode
+
+# %% solution ListenerNode
+def check(exercise, subject):
+    link = connect()
+    for word, rest in said:
+        say(link, word, **{**rest, **({"exercise": exercise} if "exercise" in rest else {})})
+        time.sleep(0.05)
+    return 10.0
+
+
+class ListenerNode(Node):
+    pass

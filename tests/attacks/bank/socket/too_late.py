@@ -1,0 +1,44 @@
+# family = "socket"
+# tries = "A process that outlives the check cell asks for the talker again and again, with a talker that works, after its check is over."
+# could_earn = "The talker's points after its time, or the judge's attention during the listener's check."
+# undefended = "Refused: a check counts while its cell runs, and once."
+
+# %% extra
+import subprocess
+import sys
+
+LATER = r'''
+import json
+import os
+import socket
+import threading
+import time
+
+
+def connect():
+    link = socket.socket(socket.AF_UNIX)
+    link.settimeout(5.0)
+    link.connect(os.environ["AUTOGRADER_JUDGE_SOCKET"])
+    return link
+
+
+def say(link, word, **rest):
+    link.sendall(json.dumps({"say": word, **rest}).encode() + b"\n")
+
+for _ in range(40):
+    time.sleep(0.05)
+    try:
+        link = connect()
+        say(link, "check", exercise="lab_1_2.talker", kind="class")
+        link.recv(1000)
+        say(link, "ready")
+    except OSError:
+        pass
+'''
+
+# %% solution ListenerNode
+subprocess.Popen([sys.executable, "-S", "-c", LATER, "<<mark>>"], start_new_session=True)
+
+
+class ListenerNode(Node):
+    pass

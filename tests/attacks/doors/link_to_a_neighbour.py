@@ -1,0 +1,14 @@
+# family = "doors"
+# tries = "The notebook is a symbolic link to the neighbour's."
+# could_earn = "The neighbour's points."
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def hand_in(folder: Path, notebook: Any) -> None:
+    (folder / "lab_1_2.ipynb").symlink_to(folder.parents[1] / "honest_ada" / "lab_1_2" / "lab_1_2.ipynb")

@@ -1,0 +1,83 @@
+"""Run the bank of attacks by hand: all of it several times in a row, or single attacks without their defence.
+
+python tests/attacks/run.py --repeat 3
+python tests/attacks/run.py gradebook neighbours --unsafe-no-sandbox
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from attack_bank import Attack, attacks
+from attack_class import AttackClass, Traps
+from attack_demands import general_objections, objections, traces
+
+UNSAFE = "--unsafe-no-sandbox"
+
+
+def main() -> int:
+    """Grade, and print what did not hold."""
+    options = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    options.add_argument("names", nargs="*", help="only attacks whose name or family is one of these")
+    options.add_argument("--repeat", type=int, default=1, help="so many times in a row")
+    options.add_argument(
+        UNSAFE, action="store_true", help="without boxes; leaves out what would harm this machine"
+    )
+    options.add_argument(
+        "--harmless", action="store_true", help="leave out what would harm a machine without boxes"
+    )
+    options.add_argument("--option", action="append", default=[], help="one more option for autograder grade")
+    options.add_argument("--show", action="store_true", help="print what the grader printed")
+    options.add_argument("--keep", type=Path, help="keep the class in this folder")
+    given = options.parse_args()
+    chosen = [
+        attack for attack in attacks() if not given.names or {attack.name, attack.family} & set(given.names)
+    ]
+    extra = list(given.option)
+    if given.unsafe_no_sandbox or given.harmless:
+        chosen = [attack for attack in chosen if not attack.boxed_only]
+    if given.unsafe_no_sandbox:
+        extra.append(UNSAFE)
+    failed = 0
+    for number in range(given.repeat):
+        failed += _run(chosen, extra, given.show, given.keep)
+        print(f"run {number + 1} of {given.repeat} is over", flush=True)
+    return 1 if failed else 0
+
+
+def _run(chosen: list[Attack], extra: list[str], show: bool, keep: Path | None) -> int:
+    with tempfile.TemporaryDirectory(prefix="attacks-") as folder, Traps(Path(folder)) as traps:
+        made = AttackClass(keep or Path(folder), traps)
+        for attack in chosen:
+            made.hand_in(attack)
+        graded = made.grade(*extra)
+        if show or graded.exit_code:
+            print(graded.output[-4000:])
+        failed = 0
+        for attack in chosen:
+            found = objections(attack, graded, traps)
+            failed += bool(found)
+            print(
+                f"{'LOST' if found else 'held'}  {attack.family}/{attack.name}  {graded.points(attack.name)}"
+            )
+            for objection in found[:6]:
+                print(f"        {objection}")
+        found = general_objections(graded, traps)
+        for objection in found[:40]:
+            print(f"        the batch: {objection}")
+        for name in traces():
+            print(f"        removing {name}")
+            Path(name).unlink(missing_ok=True)
+        print(f"{len(chosen) - failed} of {len(chosen)} attacks defeated in {graded.seconds:.1f} s")
+        return failed + len(found)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
