@@ -93,6 +93,8 @@ class TestBench:
         self.parts.append(_made(self._recorder.part()))
         self._subject.stop()
         self._open.close()
+        if self._bed is not None:
+            self._bed.clear()
         self._ears, self._mouths, self._clock, self._clock_refused, self._deaf = {}, {}, None, False, set()
         if self.wire.failure is not None:
             raise JudgeFailed(f"the judge's own node failed: {self.wire.failure!r}")
@@ -213,9 +215,9 @@ class TestBench:
         return mouth
 
     def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
-        """Put a node on the graph until the part ends."""
+        """Put a node on the graph, until the next part has planted others."""
         assert self._bed is not None
-        self._open.callback(self._bed.plant(name, publishes=publishes, subscribes=subscribes).close)
+        self._bed.plant(name, publishes=publishes, subscribes=subscribes)
 
     def serve(self, service: str, type_name: str, answer: Answer) -> RecordedServer:
         """Serve until the part ends."""

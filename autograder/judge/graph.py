@@ -44,8 +44,8 @@ class NodeName:
         return f"{self.namespace.rstrip('/')}/{self.name}"
 
 
-NOT_A_SUBJECT = ("_NODE_", "_check_keeper", "_check_bed")
-"""How names begin of nodes that are not named yet (rmw_dds_common), and of those that a notebook's check makes."""
+NOT_A_SUBJECT = ("_NODE_", "_check_keeper")
+"""How names begin of nodes that are not named yet (rmw_dds_common), and of the one that a notebook's check makes."""
 
 Interface = dict[str, dict[str, str]]
 """Role -> {name: type}; where a name has several types they are joined with a comma."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import TYPE_CHECKING
 
 from rclpy.context import Context
@@ -12,7 +13,7 @@ from autograder.judge.interfaces import interface
 from autograder.ros_participant import receivers_wait
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
 
 class Bed:
@@ -20,65 +21,55 @@ class Bed:
 
     A node needs a participant of its own, as in one participant Fast DDS takes only one type for a topic. The
     participants stay from part to part, as a subject that stays needs a fifth of a second and more to meet a new one.
+    A participant lives as long as it has a node (rmw_fastrtps), so a node leaves only when the next one is there.
     """
 
     def __init__(self, domain_id: int) -> None:
         self._domain_id = domain_id
-        self._free: list[_Plot] = []
+        self._plots: list[_Plot] = []
+        self._planted = 0
 
-    def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> PlantedNode:
-        """Put a node with these endpoints on the graph."""
-        plot = self._free.pop(0) if self._free else _Plot(self._domain_id)
-        return PlantedNode(plot, self._free.append, name, publishes=publishes, subscribes=subscribes)
+    def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
+        """Put a node with these endpoints on the graph, as any node of the course has them; nothing spins it."""
+        if self._planted == len(self._plots):
+            self._plots.append(_Plot(self._domain_id))
+        node = self._plots[self._planted].plant(name)
+        self._planted += 1
+        for topic, type_name in publishes.items():
+            node.create_publisher(interface(type_name), topic, QoSProfile(depth=10))
+        for topic, type_name in subscribes.items():
+            node.create_subscription(interface(type_name), topic, lambda _: None, QoSProfile(depth=10))
+
+    def clear(self) -> None:
+        """Let the nodes be replaced by those that are planted next."""
+        self._planted = 0
 
     def close(self) -> None:
-        """Leave the domain. The nodes must have been taken off the graph."""
-        while self._free:
-            self._free.pop().close()
+        """Take everything off the graph."""
+        while self._plots:
+            self._plots.pop().close()
 
 
 class _Plot:
-    """A participant, kept by a hidden node that does nothing."""
+    """A participant and the node that it has now."""
 
     def __init__(self, domain_id: int) -> None:
-        self.context = Context()
-        self.context.init(args=["--ros-args", "--disable-external-lib-logs"], domain_id=domain_id)
-        with receivers_wait():
-            self._keeper = Node(
-                "_check_bed",
-                context=self.context,
-                use_global_arguments=False,
-                enable_rosout=False,
-                start_parameter_services=False,
-            )
+        self._context = Context()
+        self._context.init(args=["--ros-args", "--disable-external-lib-logs"], domain_id=domain_id)
+        self._node: Node | None = None
+
+    def plant(self, name: str) -> Node:
+        with receivers_wait() if self._node is None else contextlib.nullcontext():
+            node = Node(name, context=self._context, use_global_arguments=False)
+        self._uproot()
+        self._node = node
+        return node
+
+    def _uproot(self) -> None:
+        if self._node is not None:
+            self._node.destroy_node()
 
     def close(self) -> None:
-        self._keeper.destroy_node()
-        self.context.try_shutdown()
-        self.context.destroy()
-
-
-class PlantedNode:
-    """A node with the given endpoints, as any node of the course has them; nothing spins it."""
-
-    def __init__(
-        self,
-        plot: _Plot,
-        give_back: Callable[[_Plot], None],
-        name: str,
-        *,
-        publishes: Mapping[str, str],
-        subscribes: Mapping[str, str],
-    ) -> None:
-        self._plot = plot
-        self._give_back = give_back
-        self._node = Node(name, context=plot.context, use_global_arguments=False)
-        for topic, type_name in publishes.items():
-            self._node.create_publisher(interface(type_name), topic, QoSProfile(depth=10))
-        for topic, type_name in subscribes.items():
-            self._node.create_subscription(interface(type_name), topic, lambda _: None, QoSProfile(depth=10))
-
-    def close(self) -> None:
-        """Take it off the graph."""
-        self._node.destroy_node()
-        self._give_back(self._plot)
+        self._uproot()
+        self._context.try_shutdown()
+        self._context.destroy()
