@@ -60,6 +60,10 @@ class Ended(StrEnum):
     RAISED = "raised"
     TIMED_OUT = "timed_out"
     KERNEL_DIED = "kernel_died"
+    OUT_OF_MEMORY = "out_of_memory"
+    OUT_OF_CPU = "out_of_cpu"
+    TOO_MANY_PROCESSES = "too_many_processes"
+    TOO_MUCH_OUTPUT = "too_much_output"
     NOT_RUN = "not_run"
     """The kernel was gone, or the notebook's time was up, before the cell's turn."""
 

@@ -21,16 +21,20 @@ import zmq
 from jupyter_client.session import Session
 
 from autograder.boxes.execution import Ended
+from autograder.boxes.guards import INTERVAL, NoGuard
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from autograder.boxes.guards import Guard
     from autograder.boxes.limits import Limits
 
 Output = Callable[[str, str, Mapping[str, Any]], None]
 """Called with the id of the request, the message type and the content of each output."""
 
 _RECONNECT_MS = 15
+_WAITING_MESSAGES = 32
+"""Messages that are held here until they are looked at; times ``message_bytes``, that is memory of ours."""
 _ASK_AGAIN_S = 0.5
 _LAST_OUTPUT_S = 2.0
 SHELL, IOPUB = 1, 2
@@ -100,15 +104,20 @@ class Kernel:
     Args:
         folder: For the sockets; a short path, since Unix socket names have at most 107 characters. No box sees it.
         start: Starts the process.
-        limits: Of these ``start_seconds``, ``interrupt_grace`` and ``message_bytes``.
+        limits: Of these ``start_seconds``, ``interrupt_grace``, ``message_bytes`` and ``flood_bytes``.
         on_output: Gets every output; never called after :meth:`close`.
+        guard: Says when the box has exceeded another limit.
 
     Raises:
         KernelFailed: The process could not be started.
     """
 
-    def __init__(self, folder: Path, start: Start, limits: Limits, on_output: Output) -> None:
+    def __init__(
+        self, folder: Path, start: Start, limits: Limits, on_output: Output, guard: Guard | None = None
+    ) -> None:
         self._limits = limits
+        self._guard = guard or NoGuard()
+        self._sent = 0
         self._on_output = on_output
         key = secrets.token_hex(32)
         self._session = Session(key=key.encode(), check_pid=False)
@@ -164,7 +173,8 @@ class Kernel:
             request: Called with the id of this request before any output of it arrives.
         """
         if not self.alive:
-            return Ended.KERNEL_DIED
+            return self._died()
+        self._sent = 0
         content = {
             "code": source,
             "silent": False,
@@ -179,11 +189,13 @@ class Kernel:
         ended = self._await_reply(message["header"]["msg_id"], deadline)
         if ended is not None:
             return ended
+        stopped_for = Ended.TOO_MUCH_OUTPUT if self._floods else Ended.TIMED_OUT
+        self._sent = 0
         self.interrupt()
         grace = self._limits.interrupt_grace
         if self._await_reply(message["header"]["msg_id"], time.monotonic() + grace) is None:
             self.kill()
-        return Ended.TIMED_OUT
+        return stopped_for
 
     def interrupt(self) -> None:
         """What the stop button of JupyterLab does."""
@@ -213,12 +225,12 @@ class Kernel:
             if reply is not None:
                 break
         if reply is None:
-            return None if self.alive else Ended.KERNEL_DIED
+            return None if self.alive else self._died()
         if not idle:
             self._await_idle(request)
         if _asks_to_exit(reply):
             self._await_end()
-            return Ended.KERNEL_DIED
+            return self._died()
         return Ended.DONE if reply.get("status") == "ok" else Ended.RAISED
 
     def _await_idle(self, request: str) -> None:
@@ -229,6 +241,7 @@ class Kernel:
         if self.alive:
             # ZeroMQ ends a connection for good when a message is larger than allowed.
             self._poller.unregister(self._iopub)
+            self._iopub.disable_monitor()
             self._iopub.close()
             self._iopub = self._subscribe()
             self._poller.register(self._iopub, zmq.POLLIN)
@@ -254,10 +267,22 @@ class Kernel:
         self._process.wait(self._limits.interrupt_grace)
         self.kill()
 
+    @property
+    def _floods(self) -> bool:
+        return self._sent > self._limits.flood_bytes
+
+    def _died(self) -> Ended:
+        """Why the kernel is gone."""
+        return self._guard.reason() or Ended.KERNEL_DIED
+
     def _messages(self, deadline: float) -> Iterator[tuple[zmq.Socket[bytes], dict[str, Any]]]:
-        """All messages until the deadline or the kernel's end; outputs are handed on from here."""
+        """All messages until the deadline, a limit or the kernel's end; outputs are handed on from here."""
         while True:
             ready = dict(self._poller.poll(self._wait_ms(deadline)))
+            if self._guard.exceeded():
+                self.kill()
+                return
+            self._count_cuts()
             # Outputs first: they were sent before the reply that ends the cell.
             for channel in (self._iopub, self._shell):
                 if channel in ready:
@@ -266,14 +291,15 @@ class Kernel:
                             self._hand_on(message)
                         yield channel, message
             if self._iopub in ready or self._shell in ready:
-                if time.monotonic() < deadline:
+                if time.monotonic() < deadline and not self._floods:
                     continue
                 return
-            if not self.alive or time.monotonic() >= deadline:
+            if not self.alive or time.monotonic() >= deadline or self._floods:
                 return
 
     def _wait_ms(self, deadline: float) -> int:
-        return int(1000 * max(0.0, deadline - time.monotonic())) + 1
+        left = deadline - time.monotonic()
+        return int(1000 * max(0.0, min(left, INTERVAL))) + 1
 
     def _received(self, channel: zmq.Socket[bytes]) -> Iterator[dict[str, Any]]:
         # Bounded, so that a flood on one socket starves neither the other one nor the deadline.
@@ -282,6 +308,7 @@ class Kernel:
                 parts = channel.recv_multipart(zmq.NOBLOCK)
             except zmq.Again:
                 return
+            self._sent += sum(map(len, parts))
             with contextlib.suppress(Exception):  # a message of no or of a forged form
                 yield self._session.deserialize(self._session.feed_identities(parts)[1])
 
@@ -298,12 +325,21 @@ class Kernel:
     def _subscribe(self) -> zmq.Socket[bytes]:
         channel = self._socket(zmq.SUB, self._iopub_path)
         channel.setsockopt(zmq.SUBSCRIBE, b"")
+        self._cuts = channel.get_monitor_socket(zmq.EVENT_DISCONNECTED)
         return channel
+
+    def _count_cuts(self) -> None:
+        """ZeroMQ cuts a connection on which a message is too large, and makes it anew: it counts as if read."""
+        with contextlib.suppress(zmq.Again):
+            while True:
+                self._cuts.recv_multipart(zmq.NOBLOCK)
+                self._sent += self._limits.message_bytes
 
     def _socket(self, kind: int, path: Path) -> zmq.Socket[bytes]:
         channel: zmq.Socket[bytes] = self._context.socket(kind)
         channel.setsockopt(zmq.LINGER, 0)
         channel.setsockopt(zmq.RECONNECT_IVL, _RECONNECT_MS)
+        channel.setsockopt(zmq.RCVHWM, _WAITING_MESSAGES)
         channel.setsockopt(zmq.MAXMSGSIZE, self._limits.message_bytes)
         channel.connect(f"ipc://{path}")
         return channel

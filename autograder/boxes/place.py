@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Protocol, Self
 from autograder.boxes.entering import Entrance
 from autograder.boxes.environment import box_environment, kernel_environment
 from autograder.boxes.forked import ForkedProcess
+from autograder.boxes.guards import BoxGuard, Guard, NoGuard
 from autograder.boxes.sandbox import Enclosure
 from autograder.boxes.view import HOME, WORK, Bind
 
@@ -24,7 +25,8 @@ if TYPE_CHECKING:
     from autograder.boxes.kernel import Channels
     from autograder.boxes.limits import Limits
 
-_DOOR = Path("/run/judge")
+DOOR = Path("/run/judge")
+"""Where the student's box sees the folder that it shares with its grader."""
 _STUDENT, _JUDGE = "student", "judge"
 
 
@@ -47,6 +49,11 @@ class Place(Protocol):
     @property
     def judge_socket(self) -> Path:
         """Where the judge is to listen."""
+        ...
+
+    @property
+    def guard(self) -> Guard:
+        """Says when a limit is exceeded."""
         ...
 
     def start_kernel(self, channels: Channels) -> PlacedProcess:
@@ -87,29 +94,51 @@ class BoxedPlace:
         self._addresses, self._judge, self._limits = addresses, judge, limits
         self._door = folder / "door"
         self._door.mkdir()
-        self._variables = {**variables, socket_variable: str(_DOOR / _JUDGE)}
-        self.enclosure = Enclosure(addresses.keepers, folder / "box", files=files)
+        self._variables = {**variables, socket_variable: str(DOOR / _JUDGE)}
+        self._student: list[int] = []
+        self.guard = BoxGuard(limits)
+        try:
+            self.enclosure = Enclosure(
+                addresses.keepers, folder / "box", files=files,
+                scratch_bytes=limits.scratch_bytes, scratch_inodes=limits.scratch_files, guard=self.guard,
+            )  # fmt: skip
+        except BaseException:
+            self.guard.close()
+            raise
 
     @property
     def judge_socket(self) -> Path:
         """Where the judge is to listen; the student's box sees the folder of this socket and nothing else of it."""
         return self._door / _JUDGE
 
+    @property
+    def shared(self) -> Path:
+        """The folder that the student's box sees as ``DOOR``, and may only read."""
+        return self._door
+
+    def students_processes(self) -> list[int]:
+        """The uppermost processes of the student's box, as the host counts: all others are below them."""
+        return list(self._student)
+
     def start_kernel(self, channels: Channels) -> PlacedProcess:
         """Let a fork of the warm process enter the student's box."""
-        box = self.enclosure.box(_STUDENT, [Bind(self._door, _DOOR)])
+        box = self.enclosure.box(_STUDENT, [Bind(self._door, DOOR)])
+        self.guard.watch(box.pid)
         entrance = Entrance(
             cwd=str(WORK),
             environment=box_environment(self._variables),
             boxed=True,
+            cgroups=self.guard.cgroups,
+            rlimits=self.guard.rlimits,
+            hidden_memory=self.guard.hidden_memory,
             call={"key": channels.key, "address": channels.address},
         )
-        return PlacedProcess(
-            ForkedProcess(
-                self._addresses.kernels, entrance, [box.pidfd, channels.shell, channels.iopub, channels.log]
-            ),
-            lambda: self.enclosure.end(_STUDENT),
+        process = ForkedProcess(
+            self._addresses.kernels, entrance, [box.pidfd, channels.shell, channels.iopub, channels.log]
         )
+        # Whoever loses its parent in the box gets the box's first process for one.
+        self._student = [box.pid, process.pid]
+        return PlacedProcess(process, lambda: self.enclosure.end(_STUDENT))
 
     def start_judge(self, listener: int, orders: int) -> PlacedProcess:
         """Let a fork of the judges' warm process enter a box of its own."""
@@ -130,7 +159,10 @@ class BoxedPlace:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.enclosure.close()
+        try:
+            self.enclosure.close()
+        finally:
+            self.guard.close()
 
 
 class UnboxedPlace:
@@ -150,6 +182,7 @@ class UnboxedPlace:
         limits: Limits,
     ) -> None:
         self._addresses, self._folder, self._judge, self._limits = addresses, folder, judge, limits
+        self.guard = NoGuard()
         self._cwd = folder / "work"
         for name, data in {**files}.items():
             path = self._cwd / name

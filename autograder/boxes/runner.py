@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
+    from autograder.boxes.guards import Guard
     from autograder.boxes.limits import Limits
 
 
@@ -42,6 +43,7 @@ def run_notebook(
     start: Start,
     folder: Path,
     limits: Limits,
+    guard: Guard | None = None,
 ) -> Execution:
     """Execute a notebook in a kernel of its own.
 
@@ -51,6 +53,7 @@ def run_notebook(
         start: Starts the kernel's process.
         folder: For the kernel's sockets, a short path.
         limits: All limits.
+        guard: Says when a limit of the box is exceeded.
 
     Returns:
         The execution. Nothing that the notebook does makes this function raise; trouble of the grader's own
@@ -60,7 +63,7 @@ def run_notebook(
     run = _Run(cells, limits)
     try:
         with (
-            contextlib.closing(Kernel(folder, start, limits, run.on_output)) as kernel,
+            contextlib.closing(Kernel(folder, start, limits, run.on_output, guard)) as kernel,
             judge as ready,
         ):
             kernel.await_ready()

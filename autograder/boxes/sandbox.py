@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from types import TracebackType
 
+    from autograder.boxes.guards import BoxGuard
+
 __all__ = ["Bind", "Box", "Enclosure", "Finished", "NoSandbox", "why_impossible"]
 
 _ANSWER_SECONDS = 30.0
@@ -93,6 +95,7 @@ class Enclosure:
         files: Files to lie in the notebook's folder, by relative path.
         scratch_bytes: What all files that the boxes write may have together.
         scratch_inodes: How many files, folders and links there may be.
+        guard: Holds the limits of the commands; they share them with whatever else it guards.
 
     Raises:
         NoSandbox: The keeper could not make the namespaces.
@@ -106,11 +109,13 @@ class Enclosure:
         files: Mapping[str, bytes] | None = None,
         scratch_bytes: int = SCRATCH_BYTES,
         scratch_inodes: int = SCRATCH_INODES,
+        guard: BoxGuard | None = None,
     ) -> None:
         self._folder = folder
         self._scratch = folder / "scratch"
         self._scratch.mkdir(parents=True)
         write_etc(folder / "etc")
+        self._guard = guard
         self._boxes: dict[str, Box] = {}
         self._ended: dict[str, int] = {}
         self._commands = 0
@@ -161,9 +166,7 @@ class Enclosure:
         cwd: Path = WORK,
         output_bytes: int = OUTPUT_BYTES,
         scratch: bool = True,
-        cgroups: Sequence[str] = (),
         rlimits: Mapping[str, int] | None = None,
-        hidden_memory: bool = True,
     ) -> Finished:
         """Run a command in a box of its own, in the submission's network namespace, until it ends.
 
@@ -177,16 +180,14 @@ class Enclosure:
             cwd: Where it starts.
             output_bytes: How much of its output is kept.
             scratch: See :meth:`box`. Two commands with the scratch see each other's files.
-            cgroups: See :class:`autograder.boxes.entering.Entrance`.
-            rlimits: The same.
-            hidden_memory: The same.
+            rlimits: Limits of each process, by the name that :mod:`resource` gives them, beside the guard's.
 
         Raises:
             NoSandbox: The box could not be made.
         """
         with self.start(
             command, binds=binds, environment=environment, cwd=cwd, output_bytes=output_bytes, scratch=scratch,
-            cgroups=cgroups, rlimits=rlimits, hidden_memory=hidden_memory,
+            rlimits=rlimits,
         ) as running:  # fmt: skip
             return running.wait(limit)
 
@@ -199,9 +200,7 @@ class Enclosure:
         cwd: Path = WORK,
         output_bytes: int = OUTPUT_BYTES,
         scratch: bool = True,
-        cgroups: Sequence[str] = (),
         rlimits: Mapping[str, int] | None = None,
-        hidden_memory: bool = True,
     ) -> Running:
         """Start a command in a box of its own; leaving the result's context ends it. See :meth:`run`."""
         from autograder.boxes.environment import box_environment
@@ -222,9 +221,9 @@ class Enclosure:
                 name=name,
                 arguments=[*words, "--chdir", str(cwd)],
                 command=list(command),
-                cgroups=list(cgroups),
-                rlimits=dict(rlimits or {}),
-                hidden_memory=hidden_memory,
+                cgroups=self._guard.cgroups if self._guard else [],
+                rlimits={**(self._guard.rlimits if self._guard else {}), **(rlimits or {})},
+                hidden_memory=self._guard.hidden_memory if self._guard else True,
             )
         except BaseException:
             os.close(reading)

@@ -10,6 +10,43 @@ from autograder.verdict import Diagnosis, State, Verdict, not_checked
 _SYNTAX_ERRORS = ("SyntaxError", "IndentationError", "TabError")
 
 
+_LIMITS = {
+    Ended.OUT_OF_MEMORY: (
+        "used more memory than it may have",
+        "Look for a list that grows in every call, or for a loop that makes something new each time.",
+    ),
+    Ended.OUT_OF_CPU: (
+        "used more processor time than it may have",
+        "Look for a loop that never waits: a node that spins needs no loop of its own around it.",
+    ),
+    Ended.TOO_MANY_PROCESSES: (
+        "started more processes and threads than it may have",
+        "Look for a loop, or for a callback, that starts a thread, an executor or a program each time.",
+    ),
+    Ended.TOO_MUCH_OUTPUT: (
+        "printed far more than anyone can read",
+        "Look for a loop that prints without waiting, or print less.",
+    ),
+}
+"""What is said of a limit, and what to do."""
+_SHORTAGES = {
+    "OSError: [Errno 28]": (
+        "disk_full",
+        "filled all the room that it has for files",
+        "Look for a file that grows, or for a loop that makes files.",
+    ),
+    "OSError: [Errno 24]": (
+        "too_many_files",
+        "had more files open at once than one program may have",
+        "Close what you open: `with open(…) as file:` does it by itself.",
+    ),
+    "BlockingIOError: [Errno 11]": ("too_many_processes", *_LIMITS[Ended.TOO_MANY_PROCESSES]),
+    "RuntimeError: can't start new thread": ("too_many_processes", *_LIMITS[Ended.TOO_MANY_PROCESSES]),
+    "MemoryError": ("out_of_memory", *_LIMITS[Ended.OUT_OF_MEMORY]),
+}
+"""Limits that a program hears of as an error: how it begins, the diagnosis, what is said, what to do."""
+
+
 def zero(check: Check, key: str, reason: str, next_step: str, detail: str = "") -> Verdict:
     """A failed check without criteria.
 
@@ -54,6 +91,8 @@ def without_verdict(check: Check, run: CellRun, before: list[tuple[str, CellRun]
     match run.ended:
         case Ended.NOT_RUN | Ended.KERNEL_DIED:
             return _kernel_gone(check, run, before)
+        case Ended.OUT_OF_MEMORY | Ended.OUT_OF_CPU | Ended.TOO_MANY_PROCESSES | Ended.TOO_MUCH_OUTPUT:
+            return _limit_exceeded(check, run.ended, "this check cell")
         case Ended.TIMED_OUT:
             return zero(
                 check,
@@ -76,6 +115,9 @@ def _kernel_gone(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) 
     if run.ended is Ended.KERNEL_DIED:
         place = "while this check cell was running"
     else:
+        limit = next(((title, cell.ended) for title, cell in before if cell.ended in _LIMITS), None)
+        if limit is not None:
+            return _limit_exceeded(check, limit[1], f"the cell that begins with “{limit[0]}”")
         culprit = next((title for title, cell in before if cell.ended is Ended.KERNEL_DIED), "")
         if not culprit:
             return _out_of_time(check, before)
@@ -87,6 +129,11 @@ def _kernel_gone(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) 
         "Look for `exit()`, `quit()` or `os._exit()`, or for something that makes Python crash. "
         "Restart the kernel and run all cells: that is what the grader does.",
     )
+
+
+def _limit_exceeded(check: Check, ended: Ended, place: str) -> Verdict:
+    what, next_step = _LIMITS[ended]
+    return zero(check, str(ended), f"In {place}, the notebook {what}. It was stopped there.", next_step)
 
 
 def _out_of_time(check: Check, before: list[tuple[str, CellRun]]) -> Verdict:
@@ -107,8 +154,15 @@ def _out_of_time(check: Check, before: list[tuple[str, CellRun]]) -> Verdict:
 def _stopped_by_error(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:
     """The cell raised, mostly because what it names was never defined: the cause is in an earlier cell."""
     title, cause = next(
-        ((title, cell) for title, cell in before if cell.ended in (Ended.RAISED, Ended.TIMED_OUT)), ("", None)
+        (
+            (title, cell)
+            for title, cell in before
+            if cell.ended in (Ended.RAISED, Ended.TIMED_OUT, Ended.TOO_MUCH_OUTPUT)
+        ),
+        ("", None),
     )
+    if cause is not None and cause.ended is Ended.TOO_MUCH_OUTPUT:
+        return _limit_exceeded(check, cause.ended, f"the cell that begins with “{title}”")
     if cause is not None and cause.ended is Ended.TIMED_OUT:
         return zero(
             check,
@@ -117,6 +171,11 @@ def _stopped_by_error(check: Check, run: CellRun, before: list[tuple[str, CellRu
             "Look for a loop that never ends. To keep a node running, spin it in the background.",
         )
     first = cause or run
+    shortage = next((words for begins, words in _SHORTAGES.items() if first.error.startswith(begins)), None)
+    if shortage is not None:
+        key, what, next_step = shortage
+        place = f"the cell that begins with “{title}”" if cause else "this check cell"
+        return zero(check, key, f"In {place}, the notebook {what}.", next_step, _end_of_traceback(first))
     reason = f"The check could not begin: {_told(run.error)}."
     if cause:
         reason = (

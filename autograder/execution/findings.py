@@ -23,6 +23,10 @@ _SHELL = re.compile(r"^\s*(%%|!)", re.MULTILINE)
 _HOW_IT_ENDED = {
     Ended.TIMED_OUT: "was stopped at its time limit",
     Ended.KERNEL_DIED: "ended the kernel",
+    Ended.OUT_OF_MEMORY: "used too much memory",
+    Ended.OUT_OF_CPU: "used too much processor time",
+    Ended.TOO_MANY_PROCESSES: "started too many processes",
+    Ended.TOO_MUCH_OUTPUT: "printed too much",
     Ended.NOT_RUN: "did not have its turn",
 }
 

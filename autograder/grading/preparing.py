@@ -85,6 +85,10 @@ def limits_of(directory: ClassDirectory) -> Limits:
     return Limits(
         cell_seconds=float(configured.get("cell_seconds", usual.cell_seconds)),
         notebook_seconds=float(configured.get("notebook_seconds", usual.notebook_seconds)),
+        cpu_seconds=float(configured.get("cpu_seconds", usual.cpu_seconds)),
+        memory_bytes=int(configured.get("memory_bytes", usual.memory_bytes)),
+        processes=int(configured.get("processes", usual.processes)),
+        scratch_bytes=int(configured.get("scratch_bytes", usual.scratch_bytes)),
     )
 
 

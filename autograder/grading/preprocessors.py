@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nbgrader.preprocessors import NbGraderPreprocessor
-from traitlets import Bool, Float
+from traitlets import Bool, Float, Integer
 
 from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution, Kind
 from autograder.boxes.limits import Limits
@@ -34,6 +34,14 @@ class WireExecute(NbGraderPreprocessor):
 
     cell_seconds = Float(Limits.cell_seconds, help="Wall time of one cell, in seconds.").tag(config=True)
     notebook_seconds = Float(Limits.notebook_seconds, help="Wall time of a notebook, in seconds.").tag(
+        config=True
+    )
+    cpu_seconds = Float(Limits.cpu_seconds, help="Processor time of a notebook, in seconds.").tag(config=True)
+    memory_bytes = Integer(Limits.memory_bytes, help="Memory of a notebook with all its processes.").tag(
+        config=True
+    )
+    processes = Integer(Limits.processes, help="Processes and threads of a notebook.").tag(config=True)
+    scratch_bytes = Integer(Limits.scratch_bytes, help="What a notebook's files may have together.").tag(
         config=True
     )
     unsafe_no_sandbox = Bool(
@@ -110,6 +118,10 @@ def _remark(cell: Cell, ended: Ended, limits: Limits) -> list[NotebookNode]:
     words = {
         Ended.TIMED_OUT: f"[stopped: the cell ran for more than {limits.cell_seconds:g} s]",
         Ended.KERNEL_DIED: "[the kernel ended in this cell]",
+        Ended.OUT_OF_MEMORY: f"[stopped: more than {limits.memory_bytes / 1e9:g} GB of memory]",
+        Ended.OUT_OF_CPU: f"[stopped: more than {limits.cpu_seconds:g} s of processor time]",
+        Ended.TOO_MANY_PROCESSES: f"[stopped: more than {limits.processes} processes and threads]",
+        Ended.TOO_MUCH_OUTPUT: f"[stopped: more than {limits.flood_bytes / 1e6:g} MB of output]",
         Ended.NOT_RUN: "[this cell was not run]",
     }
     text = words.get(ended)

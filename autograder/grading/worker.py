@@ -28,6 +28,7 @@ from autograder.boxes.sandbox import NoSandbox
 from autograder.boxes.scratch import scratch_folder
 from autograder.boxes.zero import grader_trouble
 from autograder.grading.task import Task, decode_task, encode
+from autograder.grading.workspaces import arrange, served
 from autograder.judge import attached
 from autograder.judge.domain import lease
 from autograder.judge.settings import boxed_ros_environment, ros_environment
@@ -89,22 +90,27 @@ def _execute(
         raise NoSandbox("this task is for a box, and there is none here")
     boxed = task.boxed
     kind: type[BoxedPlace] | type[UnboxedPlace] = BoxedPlace if boxed else UnboxedPlace
+    arrangement = arrange(task, folder)
     place = kind(
         addresses,
         folder,
         task.files,
-        _ros_variables(stack, boxed=boxed),
+        {**_ros_variables(stack, boxed=boxed), **arrangement.variables()},
         SOCKET_VARIABLE,
-        JudgeSetting(attached.environment(boxed=boxed), attached.readable()),
+        JudgeSetting(attached.environment(boxed=boxed), [*attached.readable(), arrangement.judges_folder]),
         task.limits,
     )
     stack.enter_context(place)
+    stack.enter_context(served(arrangement, place, addresses))
+    process = judge(place.judge_socket, seed=task.seed, start=place.start_judge)
+    process.workspaces = str(arrangement.judges_door)
     return run_notebook(
         task.cells,
-        judge=_telling(judge(place.judge_socket, seed=task.seed, start=place.start_judge)),
+        judge=_telling(process),
         start=place.start_kernel,
         folder=folder,
         limits=task.limits,
+        guard=place.guard,
     )
 
 

@@ -1,0 +1,208 @@
+"""A cgroup for each submission, where the host lets us make one: it counts what nobody can hide.
+
+Version 1 (one hierarchy for each controller) and version 2 (one for all) are both in use. Whether a process may be put
+into a new group is found out by putting one there, because permissions, delegation and read-only mounts all have a say.
+See cgroups(7), and ``cgroup-v1/memory`` and ``cgroup-v2`` in the kernel's documentation.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import itertools
+import os
+import subprocess
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Self
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+_PREFIX = "autograder-"
+_SURELY_LEFT = 60.0
+"""Seconds after which an empty group is nobody's any more."""
+_numbers = itertools.count()
+
+
+@dataclass(frozen=True)
+class Controller:
+    """Where groups of a controller can be made.
+
+    Attributes:
+        base: The folder in which a group is a new folder.
+        version: 1 or 2.
+    """
+
+    base: Path
+    version: int
+
+
+class Group:
+    """The groups of one submission.
+
+    Args:
+        memory_bytes: What all its processes may have together, files in memory included.
+        processes: How many processes and threads there may be.
+        controllers: Where groups can be made; found out where None.
+    """
+
+    def __init__(
+        self, memory_bytes: int, processes: int, controllers: Mapping[str, Controller] | None = None
+    ) -> None:
+        self._controllers = usable() if controllers is None else controllers
+        name = f"{_PREFIX}{os.getpid()}-{next(_numbers)}"
+        self._folders: dict[str, Path] = {}
+        for kind, controller in self._controllers.items():
+            folder = controller.base / name
+            folder.mkdir(exist_ok=True)
+            self._folders[kind] = folder
+            for file, value in _settings(kind, controller.version, memory_bytes, processes):
+                _write(folder / file, value)
+
+    @property
+    def procs(self) -> list[str]:
+        """The files into which a process writes 0 to become a member, with all that it starts later."""
+        return sorted({str(folder / "cgroup.procs") for folder in self._folders.values()})
+
+    @property
+    def ran_out_of_memory(self) -> bool:
+        """Whether the kernel has ended a member because all of them together had too much."""
+        return self._counted("memory", "memory.oom_control", "memory.events", "oom_kill")
+
+    @property
+    def ran_out_of_processes(self) -> bool:
+        """Whether a member was refused a further process or thread."""
+        return self._counted("pids", "pids.events", "pids.events", "max")
+
+    def close(self) -> None:
+        """Take the groups away again, when no process is in them any more; may be called twice."""
+        for folder in set(self._folders.values()):
+            with contextlib.suppress(OSError):
+                folder.rmdir()
+        self._folders.clear()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _counted(self, kind: str, file_1: str, file_2: str, word: str) -> bool:
+        folder = self._folders.get(kind)
+        if folder is None:
+            return False
+        file = file_1 if self._controllers[kind].version == 1 else file_2
+        with contextlib.suppress(OSError):
+            for line in (folder / file).read_text().splitlines():
+                name, _, number = line.partition(" ")
+                if name == word:
+                    return int(number) > 0
+        return False
+
+
+@functools.cache
+def usable() -> Mapping[str, Controller]:
+    """The controllers ``memory`` and ``pids`` as far as groups can be made here, each with its place.
+
+    Takes away what an earlier grader left that was killed.
+    """
+    found = {}
+    for kind in ("memory", "pids"):
+        for controller in _candidates(kind, _text("/proc/self/cgroup"), _text("/proc/self/mountinfo")):
+            _sweep(controller.base)
+            if _can_hold_a_process(kind, controller):
+                found[kind] = controller
+                break
+    return found
+
+
+def _settings(kind: str, version: int, memory_bytes: int, processes: int) -> Iterable[tuple[str, str]]:
+    if kind == "pids":
+        return [("pids.max", str(processes))]
+    if version == 1:
+        # Swap counts too, where it is counted at all; that limit may not be below the other one.
+        return [
+            ("memory.limit_in_bytes", str(memory_bytes)),
+            ("memory.memsw.limit_in_bytes", str(memory_bytes)),
+        ]
+    return [("memory.max", str(memory_bytes)), ("memory.swap.max", "0")]
+
+
+def _write(file: Path, value: str) -> None:
+    # What counts swap is not there everywhere.
+    if file.exists():
+        file.write_text(value)
+
+
+def _candidates(kind: str, own: str, mounts: str) -> list[Controller]:
+    """Where a group could be made, the nearest to our own first.
+
+    Args:
+        kind: The controller.
+        own: ``/proc/self/cgroup``.
+        mounts: ``/proc/self/mountinfo``.
+    """
+    paths: dict[str, str] = {}
+    for line in own.splitlines():
+        _, names, path = line.split(":", 2)
+        for name in names.split(","):
+            paths[name] = path
+    found = []
+    for line in mounts.splitlines():
+        before, _, after = line.partition(" - ")
+        root, place = before.split()[3:5]
+        filesystem, _, options = after.split()[:3]
+        if filesystem == "cgroup" and kind in options.split(",") and kind in paths:
+            found.append(Controller(_inside(place, root, paths[kind]), 1))
+        elif filesystem == "cgroup2" and "" in paths and kind in _text(f"{place}/cgroup.controllers").split():
+            nearest = _inside(place, root, paths[""])
+            # A group of version 2 that has members cannot have groups with limits in it, but for the topmost one.
+            above = [folder for folder in (nearest, *nearest.parents) if folder.is_relative_to(place)]
+            found += [Controller(folder, 2) for folder in above]
+    return found
+
+
+def _inside(place: str, root: str, path: str) -> Path:
+    """The folder of the group ``path`` where its hierarchy is mounted from ``root`` on."""
+    inside = os.path.relpath(path, root)
+    return Path(place) if inside.startswith("..") else Path(place) / inside
+
+
+def _can_hold_a_process(kind: str, controller: Controller) -> bool:
+    """Put a process into a new group with a limit, and take both away."""
+    try:
+        if controller.version == 2:
+            enabled = controller.base / "cgroup.subtree_control"
+            if kind not in enabled.read_text().split():
+                enabled.write_text(f"+{kind}")
+        with Group(1 << 30, 100, {kind: controller}) as group:
+            process = subprocess.Popen(["cat"], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL)
+            try:
+                for procs in group.procs:
+                    Path(procs).write_text(str(process.pid))
+            finally:
+                process.communicate()
+    except (OSError, ValueError):
+        return False
+    return True
+
+
+def _sweep(base: Path) -> None:
+    """Take away empty groups of graders that are gone."""
+    with contextlib.suppress(OSError):
+        for folder in base.glob(f"{_PREFIX}*"):
+            pid = folder.name.removeprefix(_PREFIX).partition("-")[0]
+            # Its age, because a grader in another PID namespace may be making it just now.
+            old = time.time() - folder.stat().st_mtime > _SURELY_LEFT
+            if pid.isdecimal() and old and not Path(f"/proc/{pid}").exists():
+                with contextlib.suppress(OSError):
+                    folder.rmdir()
+
+
+def _text(file: str) -> str:
+    try:
+        return Path(file).read_text()
+    except OSError:
+        return ""

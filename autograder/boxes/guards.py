@@ -1,0 +1,203 @@
+"""What holds the limits of a box: cgroups where the host lets us make them, else a look at the processes now and then.
+
+With cgroups the operating system itself refuses a process or ends one that has too much. Without them a watch counts
+what it sees in the box's ``/proc`` several times a second and ends the box; what is faster than that is kept in bounds
+by limits on each single process. Processor time is always counted by the watch: it does no harm to be late there.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from autograder.boxes.cgroups import Group, usable
+from autograder.boxes.execution import Ended
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from autograder.boxes.limits import Limits
+
+INTERVAL = 0.25
+"""Seconds from one look to the next."""
+_TICKS = os.sysconf("SC_CLK_TCK")
+
+
+class Guard(Protocol):
+    """Says whether a limit was exceeded."""
+
+    def exceeded(self) -> Ended | None:
+        """The limit that is exceeded now; the box must be ended then. Cheap enough to be asked at any time."""
+        ...
+
+    def reason(self) -> Ended | None:
+        """The limit that may have cost a process its life."""
+        ...
+
+
+class BoxGuard:
+    """The guard of one submission's boxes. Close it when they have ended.
+
+    Args:
+        limits: The limits.
+    """
+
+    def __init__(self, limits: Limits) -> None:
+        self._limits = limits
+        self._group = Group(limits.memory_bytes, limits.processes)
+        self._memory, self._processes = ("memory" in usable(), "pids" in usable())
+        self._first = 0
+        self._next_look = 0.0
+        self._seen: Ended | None = None
+
+    @property
+    def cgroups(self) -> list[str]:
+        """What a process writes 0 into before it enters a box."""
+        return self._group.procs
+
+    @property
+    def hidden_memory(self) -> bool:
+        """Whether memory may be allowed that no process is seen to have."""
+        return self._memory
+
+    @property
+    def rlimits(self) -> Mapping[str, int]:
+        """Limits of each single process (setrlimit(2))."""
+        limits = {
+            "RLIMIT_CORE": 1,  # 0 would still start a handler of core dumps (core(5))
+            "RLIMIT_NOFILE": self._limits.open_files,
+            "RLIMIT_FSIZE": self._limits.scratch_bytes,
+            "RLIMIT_CPU": int(self._limits.cpu_seconds) + 1,
+            "RLIMIT_MSGQUEUE": 1_000_000,
+            "RLIMIT_MEMLOCK": 1 << 23,
+        }
+        if not self._memory:
+            # Address space that can be written to, the stacks of threads among it: more than is ever used.
+            limits["RLIMIT_DATA"] = 2 * self._limits.memory_bytes
+        if not self._processes and os.geteuid() != 0:
+            limits["RLIMIT_NPROC"] = self._limits.processes
+        return limits
+
+    def watch(self, first: int) -> None:
+        """Begin to look.
+
+        Args:
+            first: The box's first process, as the host counts.
+        """
+        self._first = first
+
+    def exceeded(self) -> Ended | None:
+        """The limit that is exceeded, as the last look has shown; looks again every ``INTERVAL`` seconds."""
+        now = time.monotonic()
+        if self._seen is None and self._first and now >= self._next_look:
+            self._next_look = now + INTERVAL
+            self._seen = self._look()
+        return self._seen
+
+    def reason(self) -> Ended | None:
+        """The limit that was exceeded, or that the operating system has ended a process for."""
+        if self._seen is None and self._group.ran_out_of_memory:
+            self._seen = Ended.OUT_OF_MEMORY
+        if self._seen is None and self._group.ran_out_of_processes:
+            self._seen = Ended.TOO_MANY_PROCESSES
+        return self._seen
+
+    def close(self) -> None:
+        """Take the cgroups away; may be called twice."""
+        self._first = 0
+        self._group.close()
+
+    def _look(self) -> Ended | None:
+        use = use_of(self._first, None if self._memory else _memory_of)
+        if use.cpu_seconds > self._limits.cpu_seconds:
+            return Ended.OUT_OF_CPU
+        if not self._processes and use.threads > self._limits.processes:
+            return Ended.TOO_MANY_PROCESSES
+        if use.memory > self._limits.memory_bytes:
+            # Forks were counted with all that they share: look exactly before it has consequences.
+            exactly = use_of(self._first, _exact_memory_of)
+            return Ended.OUT_OF_MEMORY if exactly.memory > self._limits.memory_bytes else None
+        return None
+
+
+@dataclass(frozen=True)
+class Use:
+    """What the processes of a box use together.
+
+    Attributes:
+        threads: How many there are, a process having at least one.
+        memory: Bytes that belong to no file; 0 where nobody looked.
+        cpu_seconds: Processor time, that of children included which have ended and were waited for.
+    """
+
+    threads: int
+    memory: int
+    cpu_seconds: float
+
+
+def use_of(first: int, memory_of: Callable[[str], int] | None) -> Use:
+    """Look at all processes of a PID namespace.
+
+    Args:
+        first: Its first process, as the host counts; the namespace's own ``/proc`` is seen through it.
+        memory_of: The memory of the process with this folder, in bytes.
+    """
+    threads = memory = 0
+    seconds = 0.0
+    try:
+        processes = [entry for entry in os.scandir(f"/proc/{first}/root/proc") if entry.name.isdecimal()]
+    except OSError:
+        return Use(0, 0, 0.0)
+    for process in processes:
+        try:
+            # After the name of the program, which may hold anything (proc(5)).
+            fields = Path(process.path, "stat").read_text(errors="replace").rpartition(")")[2].split()
+            threads += int(fields[17])
+            seconds += sum(map(int, fields[11:15])) / _TICKS
+            memory += memory_of(process.path) if memory_of else 0
+        except (OSError, ValueError, IndexError):
+            continue  # it has ended meanwhile
+    return Use(threads, memory, seconds)
+
+
+def _memory_of(process: str) -> int:
+    """Pages that are shared by a fork count in each process."""
+    return _sum_of(Path(process, "status"), ("RssAnon:", "RssShmem:"))
+
+
+def _exact_memory_of(process: str) -> int:
+    """A page that several processes share counts once in all; takes the kernel a moment."""
+    return _sum_of(Path(process, "smaps_rollup"), ("Pss_Anon:", "Pss_Shmem:"))
+
+
+def _sum_of(file: Path, wanted: tuple[str, ...]) -> int:
+    return sum(
+        int(line.split()[1]) * 1024 for line in file.read_text().splitlines() if line.startswith(wanted)
+    )
+
+
+class NoGuard:
+    """No box, no guard but the time: what runs has all rights anyway."""
+
+    def exceeded(self) -> Ended | None:
+        """Nothing is counted."""
+        return None
+
+    def reason(self) -> Ended | None:
+        """Nothing is known."""
+        return None
+
+
+def guards() -> Mapping[str, Any]:
+    """Which guard holds each limit on this host, for ``autograder doctor``: words by limit."""
+    watched = "looked at four times a second"
+    return {
+        "memory": "cgroup" if "memory" in usable() else watched,
+        "processes": "cgroup" if "pids" in usable() else watched,
+        "processor time": f"{watched}, and a limit on each process",
+        "disk": "a file system in memory with a size and a number of files",
+        "open files": "a limit on each process",
+    }

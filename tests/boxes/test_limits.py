@@ -1,0 +1,165 @@
+"""Each limit is met once, has its own word, and costs nobody else anything."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import psutil
+import pytest
+
+from autograder.boxes import guards
+from autograder.boxes.execution import Cell, Check, Ended, Execution
+from autograder.boxes.forkserver import Addresses
+from autograder.boxes.limits import Limits
+from autograder.boxes.place import BoxedPlace, JudgeSetting
+from autograder.boxes.runner import run_notebook
+from autograder.boxes.scratch import scratch_folder
+
+CHECK = Cell("print('alive')", check=Check("lab.one", "One", points=10, worth=10, limit=2), name="lab-one")
+
+Run = Callable[..., Execution]
+
+
+class SilentJudge:
+    def open(self, exercise_id: str) -> None:
+        pass
+
+    def close(self) -> None:
+        return None
+
+
+@pytest.fixture(params=["cgroups", "watched"])
+def run(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses) -> Iterator[Run]:
+    """Runs a cell and then a check under limits; the second time as on a host without cgroups."""
+    with pytest.MonkeyPatch.context() as patch:
+        if request.param == "watched":
+            patch.setattr(guards, "usable", dict)
+            patch.setattr(guards, "Group", lambda memory, processes: guards_group(memory, processes))
+        elif len(guards.usable()) < 2:
+            pytest.skip("this host lets us make no cgroups")
+
+        def go(source: str, **changed: float) -> Execution:
+            limits = Limits(**{"cell_seconds": 30.0, "interrupt_grace": 1.0, **changed})  # type: ignore[arg-type]
+            with (
+                scratch_folder(tmp_path) as folder,
+                BoxedPlace(boxed, folder, {}, {}, "JUDGE", JudgeSetting(), limits) as place,
+            ):
+                return run_notebook(
+                    [Cell(source), CHECK],
+                    judge=contextlib.nullcontext(SilentJudge()),
+                    start=place.start_kernel,
+                    folder=folder,
+                    limits=limits,
+                    guard=place.guard,
+                )
+
+        yield go
+
+
+def guards_group(memory: int, processes: int) -> guards.Group:
+    """A group where none can be made."""
+    from autograder.boxes.cgroups import Group
+
+    return Group(memory, processes, {})
+
+
+def key(execution: Execution) -> str:
+    diagnosis = execution.verdicts[1].diagnosis
+    assert diagnosis is not None
+    return diagnosis.key
+
+
+def test_memory(run: Run) -> None:
+    execution = run("hoard = [bytearray(10_000_000) for _ in range(200)]", memory_bytes=500_000_000)
+    assert execution.cells[0].ended is Ended.OUT_OF_MEMORY
+    assert key(execution) == "out_of_memory"
+    assert "memory" in execution.verdicts[1].diagnosis.text  # type: ignore[union-attr]
+    assert execution.trouble == ""
+
+
+def test_memory_that_many_processes_take_together(run: Run) -> None:
+    fork = (
+        "import os, time\nfor _ in range(5):\n    if os.fork() == 0:\n"
+        "        hoard = bytearray(os.urandom(1000) * 200_000)\n        time.sleep(600)\ntime.sleep(4)"
+    )
+    execution = run(fork, memory_bytes=500_000_000)
+    assert key(execution) in ("out_of_memory", "not_asked")
+    # With cgroups the system ends one of the five, which need not be the kernel.
+    assert execution.cells[0].ended in (Ended.OUT_OF_MEMORY, Ended.DONE)
+
+
+def test_processes(run: Run) -> None:
+    bomb = "import os\nwhile True:\n    try:\n        os.fork()\n    except OSError:\n        pass"
+    execution = run(bomb, processes=60, cell_seconds=3.0)
+    assert execution.cells[0].ended in (Ended.TOO_MANY_PROCESSES, Ended.TIMED_OUT)
+    assert key(execution) in ("too_many_processes", "notebook_timed_out", "not_asked", "cell_timed_out")
+
+
+def test_threads_that_the_system_refuses(run: Run) -> None:
+    threads = "import threading, time\nfor _ in range(300):\n    threading.Thread(target=time.sleep, args=(600,)).start()"
+    execution = run(threads + '\ntime.sleep(3)\nraise RuntimeError("can\'t start new thread")', processes=60)
+    assert execution.cells[0].ended in (Ended.TOO_MANY_PROCESSES, Ended.RAISED)
+
+
+def test_processor_time(run: Run) -> None:
+    execution = run("while True:\n    pass", cpu_seconds=1.0)
+    assert execution.cells[0].ended is Ended.OUT_OF_CPU
+    assert key(execution) == "out_of_cpu"
+
+
+def test_disk(run: Run) -> None:
+    execution = run("open('big', 'wb').write(bytes(60_000_000))\ncheck = 1", scratch_bytes=50_000_000)
+    assert execution.cells[0].ended is Ended.RAISED
+    assert execution.cells[0].error.startswith(("OSError: [Errno 28]", "OSError: [Errno 27]"))
+    assert execution.cells[1].ended is Ended.DONE
+
+
+def test_number_of_files(run: Run) -> None:
+    many = "for n in range(1000):\n    open(f'file{n}', 'w').close()"
+    execution = run(many, scratch_files=300)
+    assert execution.cells[0].error.startswith("OSError: [Errno 28]")
+
+
+def test_open_files(run: Run) -> None:
+    execution = run("held = [open('/dev/null') for _ in range(2000)]", open_files=200)
+    assert execution.cells[0].error.startswith("OSError: [Errno 24]")
+
+
+def test_output(run: Run) -> None:
+    execution = run("while True:\n    print('x' * 10_000)", flood_bytes=2_000_000)
+    assert execution.cells[0].ended is Ended.TOO_MUCH_OUTPUT
+    assert len(str(execution.cells[0].outputs)) < 300_000
+    # So busy a loop mostly does not obey an interrupt in time, and its kernel is ended.
+    assert key(execution) == ("not_asked" if execution.cells[1].ended is Ended.DONE else "too_much_output")
+
+
+def test_a_line_of_100_megabytes(run: Run) -> None:
+    execution = run("print('x' * 100_000_000)")
+    assert execution.cells[0].ended in (Ended.DONE, Ended.TOO_MUCH_OUTPUT)
+    assert len(str(execution.cells[0].outputs)) < 300_000
+    assert "alive" in str(execution.cells[1].outputs)
+
+
+def test_an_error_of_a_limit_has_its_own_word() -> None:
+    from autograder.boxes.execution import CellRun
+    from autograder.boxes.zero import without_verdict
+
+    assert CHECK.check is not None
+    full = CellRun(Ended.RAISED, error="OSError: [Errno 28] No space left on device: 'log'")
+    verdict = without_verdict(CHECK.check, CellRun(Ended.RAISED), [("log(x)", full)], 10)
+    assert verdict.diagnosis is not None
+    assert verdict.diagnosis.key == "disk_full"
+    assert "room" in verdict.diagnosis.text
+
+
+def test_nothing_is_left(run: Run) -> None:
+    before = {process.pid for process in psutil.process_iter()}
+    run("import subprocess\nsubprocess.Popen(['sleep', '4321'], start_new_session=True)")
+    left = [
+        p
+        for p in psutil.process_iter(["cmdline"])
+        if p.pid not in before and p.info["cmdline"] == ["sleep", "4321"]
+    ]
+    assert left == []
