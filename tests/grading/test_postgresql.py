@@ -1,0 +1,163 @@
+"""The gradebook in PostgreSQL has what it has in SQLite. With a real server, where the machine has one."""
+
+from __future__ import annotations
+
+import getpass
+import os
+import pwd
+import shutil
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from conftest import LISTENER, TALKER, FakeEngine, TinyClass, make_tiny_class
+from nbgrader.api import Gradebook
+
+from autograder.grading import gradebook
+from autograder.grading.class_directory import ClassDirectory
+from autograder.grading.new_class import release
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+
+
+def _programs() -> Path:
+    """Where PostgreSQL's own programs are; Debian keeps them off the path."""
+    found = shutil.which("initdb")
+    folders = [Path(found).parent] if found else []
+    folders += sorted(Path("/usr/lib/postgresql").glob("*/bin"))
+    if not folders:
+        pytest.skip("there is no PostgreSQL server on this machine (Debian: apt-get install postgresql)")
+    return folders[-1]
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[str]:
+    """The folder of the socket of a server of our own, run by an ordinary user."""
+    pytest.importorskip("psycopg", reason="./course setup --with postgresql installs psycopg")
+    programs = _programs()
+    user = "postgres" if os.geteuid() == 0 else getpass.getuser()
+    try:
+        owner = pwd.getpwnam(user)
+    except KeyError:
+        pytest.skip("PostgreSQL does not run as root, and there is no user named postgres")
+    with tempfile.TemporaryDirectory(prefix="pg-") as name:
+        folder, data = Path(name), Path(name) / "data"
+        os.chown(folder, owner.pw_uid, owner.pw_gid)
+
+        def run(program: str, *arguments: str) -> None:
+            command: list[str | Path] = [programs / program, "-D", data, *arguments]
+            as_user: dict[str, Any] = {"user": user} if os.geteuid() == 0 else {}
+            with (folder.parent / f"{folder.name}.log").open("ab") as log:
+                subprocess.run(command, check=True, stdout=log, stderr=log, cwd=folder, **as_user)
+
+        log = folder.parent / f"{folder.name}.log"
+        try:
+            run("initdb", "--auth=trust", "--username=postgres", "--no-sync")
+            options = f"-k {folder} -c listen_addresses= -c fsync=off"
+            run("pg_ctl", "-w", "-l", str(folder / "log"), "-o", options, "start")
+            yield str(folder)
+            run("pg_ctl", "-m", "immediate", "stop")
+        except subprocess.CalledProcessError as error:
+            raise AssertionError(f"{error}\n{log.read_text()}") from error
+        finally:
+            log.unlink()
+
+
+def execute(server: str, *statements: str, database: str = "postgres") -> None:
+    import psycopg
+
+    with psycopg.connect(host=server, user="postgres", dbname=database, autocommit=True) as connection:
+        for statement in statements:
+            connection.execute(statement.encode())
+
+
+@dataclass(frozen=True)
+class Moved:
+    """The tiny class with its gradebook in PostgreSQL."""
+
+    tiny: TinyClass
+    url: str
+
+
+@pytest.fixture(scope="module")
+def _released(server: str, tmp_path_factory: pytest.TempPathFactory) -> Moved:
+    """What docs/scale.md says: two lines in the configuration, then the assignments are entered."""
+    path = make_tiny_class(tmp_path_factory.mktemp("moved"))
+    url = f"postgresql+psycopg://postgres@/ros2?host={server}"
+    with (path / "nbgrader_config.py").open("a") as config:
+        config.write(f'c.CourseDirectory.db_url = "{url}"\nc.CourseDirectory.course_id = "ros2"\n')
+    (path / "gradebook.db").unlink()
+    execute(server, "CREATE DATABASE ros2")
+    release(ClassDirectory(path))
+    execute(server, "ALTER DATABASE ros2 RENAME TO released")
+    return Moved(TinyClass(path), url)
+
+
+@pytest.fixture
+def moved(_released: Moved, server: str, tmp_path: Path) -> Moved:
+    """A fresh one."""
+    execute(server, "DROP DATABASE IF EXISTS ros2", "CREATE DATABASE ros2 TEMPLATE released")
+    shutil.copytree(_released.tiny.path, tmp_path / "moved")
+    return Moved(TinyClass(tmp_path / "moved"), _released.url)
+
+
+def scores(url: str) -> dict[str, dict[str, float | None]]:
+    with Gradebook(url) as book:
+        return {
+            submission.student.id: {grade.name: grade.auto_score for grade in submission.notebooks[0].grades}
+            for submission in book.find_assignment("lab_1_2").submissions
+        }
+
+
+def hand_in(tiny: TinyClass) -> None:
+    for student, talker, listener in (("ada", 10, 6), ("ben", "1/0", 10), ("cleo", "'die'", 9)):
+        tiny.submit(student, talker, listener)
+    tiny.hand_in("dora", "this is no notebook")
+
+
+def test_it_has_the_same_grades(tiny: TinyClass, moved: Moved, fake_engine: FakeEngine) -> None:
+    reports = []
+    for there in (tiny, moved.tiny):
+        hand_in(there)
+        reports.append(there.grade(feedback=True))
+    found = scores(moved.url)
+    assert found["ada"] == {TALKER: 10, LISTENER: 6}
+    assert found == scores(f"sqlite:///{tiny.path / 'gradebook.db'}")
+    assert reports[0].rows == reports[1].rows
+    assert gradebook.scores(moved.url, "lab_1_2")["ada"] == {"lab_1_2": found["ada"]}
+    assert not (moved.tiny.path / "gradebook.db").exists()
+
+
+def test_a_second_run_executes_nothing_and_a_changed_notebook_is_graded_anew(
+    moved: Moved, fake_engine: FakeEngine
+) -> None:
+    hand_in(moved.tiny)
+    moved.tiny.grade()
+    fake_engine.ran.clear()
+    moved.tiny.grade()
+    assert fake_engine.ran == ["cleo"]  # could not be checked, so it is tried again
+    moved.tiny.submit("ada", 3, 3)
+    moved.tiny.grade()
+    assert scores(moved.url)["ada"] == {TALKER: 3, LISTENER: 3}
+
+
+def test_a_grade_that_cannot_be_entered_is_no_grade(
+    moved: Moved, server: str, fake_engine: FakeEngine
+) -> None:
+    """The database refuses one student's row; the others are graded, and the old score is not left standing."""
+    hand_in(moved.tiny)
+    moved.tiny.grade()
+    execute(server, "ALTER TABLE grade ADD CONSTRAINT no_threes CHECK (auto_score <> 3)", database="ros2")
+    moved.tiny.submit("ada", 3, 3)
+    moved.tiny.submit("ben", 4, 4)
+    report = moved.tiny.grade()
+    assert any("ada" in problem for problem in report.problems)
+    found = scores(moved.url)
+    assert set(found["ada"].values()) == {0}
+    assert found["ben"] == {TALKER: 4, LISTENER: 4}
