@@ -219,6 +219,28 @@ def grade(
 
 
 @cli.command()
+@click.argument("scheduler", required=False, metavar="[tcp://HOST:PORT]")
+@click.option(
+    "--jobs", type=click.IntRange(min=1), help="Submissions at once; as many as cores where not given."
+)
+@click.option("--name", help="What messages call this worker; host and process where not given.")
+@click.option(
+    "--unsafe-no-sandbox",
+    is_flag=True,
+    help="Also where no sandbox is possible. Submissions then run with all your rights.",
+)
+def worker(scheduler: str | None, jobs: int | None, name: str | None, unsafe_no_sandbox: bool) -> None:
+    """Work for `autograder grade --scheduler`, until Ctrl-C or until the scheduler ends."""
+    from autograder.grading.cluster import connection
+
+    with grading_errors():
+        connection.check_dask()
+        from autograder.grading.cluster.start_worker import start_worker
+
+        start_worker(scheduler, jobs=jobs, name=name, sandbox=not unsafe_no_sandbox, tell=click.echo)
+
+
+@cli.command()
 @click.argument("folder", type=click.Path(path_type=Path), default=Path("demo-class"))
 def demo(folder: Path) -> None:
     """Make a sample class, grade it and show the result."""

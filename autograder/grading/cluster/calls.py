@@ -1,0 +1,30 @@
+"""What a Dask worker is asked to call, by name: bytes in, bytes out.
+
+Without an import of its own, since the courier has to name these functions too, and is to hold little else.
+"""
+
+from __future__ import annotations
+
+
+def offer_as_json(slots: int) -> bytes:
+    """What the worker offers, as JSON of an :class:`autograder.grading.cluster.messages.Offer`.
+
+    Args:
+        slots: Notebooks at once: the threads that Dask gives it.
+    """
+    import msgspec
+
+    from autograder.grading.cluster.offer import offer
+
+    return msgspec.json.encode(offer(slots))
+
+
+def execute_order(order: bytes) -> bytes:
+    """Do an order; the execution as JSON.
+
+    Args:
+        order: An :class:`autograder.grading.cluster.messages.Order` as JSON.
+    """
+    from autograder.grading.cluster.worker import execute
+
+    return execute(order)

@@ -1,0 +1,75 @@
+"""The way into a cluster: connect, look who can be given work, and leave nothing behind."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import re
+from typing import TYPE_CHECKING
+
+from autograder.grading.cluster.link import Link
+from autograder.grading.cluster.pool import Pool
+from autograder.grading.errors import GradingError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+
+_ADDRESS = re.compile(r"(tcp|tls)://[^\s/]+:\d{1,5}")
+
+
+class NoDask(GradingError):
+    """The package ``distributed`` is not installed."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            "Grading on a cluster needs Dask, which is not installed here. Type: ./course setup --with cluster"
+        )
+
+
+def check_dask() -> None:
+    """Make sure that Dask is there.
+
+    Raises:
+        NoDask: It is not.
+    """
+    if importlib.util.find_spec("distributed") is None:
+        raise NoDask
+
+
+def check_address(address: str) -> None:
+    """Make sure that this can be the address of a scheduler.
+
+    Raises:
+        GradingError: It is none.
+    """
+    if not _ADDRESS.fullmatch(address):
+        raise GradingError(
+            f"{address!r:.200} is no address of a Dask scheduler. One looks like tcp://host:8786, "
+            "or tls://host:8786 where Dask is set up for TLS."
+        )
+
+
+@contextlib.contextmanager
+def connected(
+    address: str, *, judge: str, boxed: bool, tell: Callable[[str], None] = lambda _: None
+) -> Iterator[Pool]:
+    """The acceptable workers of a cluster. Leaving it takes back whatever is queued, within seconds.
+
+    Args:
+        address: The scheduler's, such as ``tcp://host:8786`` or ``tls://host:8786``.
+        judge: What makes a judge, as ``module:class``.
+        boxed: Whether tasks are executed in boxes; a worker that cannot is refused then.
+        tell: Called with a sentence for the instructor.
+
+    Raises:
+        NoDask: Dask is not installed.
+        SchedulerGone: There is no scheduler at that address.
+        NoWorkers: It has no worker that can be given work.
+    """
+    check_dask()
+    check_address(address)
+    with Link(address) as link:
+        pool = Pool(link, address, judge=judge, boxed=boxed, tell=tell)
+        pool.await_workers()
+        yield pool

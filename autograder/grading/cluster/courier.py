@@ -1,0 +1,218 @@
+"""The process that speaks with a Dask cluster for the grader: lines of JSON in, lines of JSON out.
+
+It is a process of its own for four reasons. Dask's client unpickles what workers say, and here nothing that comes
+out of a pickle runs (see inert_pickle.py). A limit on its memory ends an answer that is too large to be one. The
+grader stays without Dask's threads and event loop. And when it is killed, the scheduler takes back what was queued.
+
+It knows nothing of a class: it hands orders to the workers it is told, and tells what comes back and who comes
+and goes.
+"""
+
+from __future__ import annotations
+
+from autograder.grading.cluster import inert_pickle
+
+inert_pickle.install()
+
+import asyncio  # noqa: E402  (whoever imports pickle from here on gets the harmless one)
+import contextlib  # noqa: E402
+import logging  # noqa: E402
+import os  # noqa: E402
+import resource  # noqa: E402
+import sys  # noqa: E402
+import uuid  # noqa: E402
+from typing import Any  # noqa: E402
+
+import msgspec  # noqa: E402
+from distributed import Client, wait  # noqa: E402
+
+from autograder.grading.cluster import calls  # noqa: E402
+from autograder.grading.cluster.messages import (  # noqa: E402
+    LARGEST_ANSWER,
+    Answered,
+    Asked,
+    Broken,
+    Command,
+    Failed,
+    Give,
+    Joined,
+    Left,
+    News,
+    Unfit,
+    encode,
+)
+
+_MEMORY = 3 << 30
+"""Bytes of address space. 0.2 GB of them are Python and Dask."""
+_CONNECT_SECONDS = 10
+_OFFER_SECONDS = 60.0
+"""A worker that never made a box looks whether it can, which takes a second where the machine is busy."""
+_LINK_SECONDS = 5.0
+"""Between two looks at whether the scheduler is there, when nothing else was heard of it."""
+_LONGEST_LINE = 1 << 30
+
+
+def main(address: str) -> None:
+    """Serve until standard input ends or the scheduler is gone.
+
+    Args:
+        address: The scheduler's, such as ``tcp://host:8786``.
+    """
+    resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
+    logging.disable(logging.CRITICAL)
+    asyncio.run(_serve(address))
+
+
+async def _serve(address: str) -> None:
+    try:
+        client = await Client(
+            address,
+            asynchronous=True,
+            deserializers=["msgpack"],  # asks workers for plain bytes in the first place
+            timeout=_CONNECT_SECONDS,
+            name="autograder",
+        )
+    except (OSError, ValueError, TypeError, TimeoutError) as error:
+        _tell(Broken(_first_line(error)))
+        return
+    courier = _Courier(client)
+    serving = [asyncio.create_task(part) for part in (courier.take_commands(), courier.watch_workers())]
+    await asyncio.wait(serving, return_when=asyncio.FIRST_COMPLETED)
+    for part in serving:
+        part.cancel()
+    with contextlib.suppress(Exception):
+        client.unsubscribe_topic("all")
+        await client.close(timeout=1)
+
+
+class _Courier:
+    def __init__(self, client: Any) -> None:
+        self._client = client
+        self._batch = uuid.uuid4().hex[:12]
+        self._workers: set[str] = set()
+        self._futures: dict[int, Any] = {}
+        self._given: dict[int, str] = {}
+        self._running: set[asyncio.Task[None]] = set()
+        self._changed = asyncio.Event()
+
+    async def take_commands(self) -> None:
+        """Do what the grader says, until it says nothing more."""
+        reader = asyncio.StreamReader(limit=_LONGEST_LINE)
+        await asyncio.get_running_loop().connect_read_pipe(
+            lambda: asyncio.StreamReaderProtocol(reader), sys.stdin.buffer
+        )
+        while line := await reader.readline():
+            command = msgspec.json.decode(line, type=Command)
+            if isinstance(command, Give):
+                self._start(self._give(command))
+            else:
+                self._drop(command.number)
+
+    async def watch_workers(self) -> None:
+        """Tell who comes and goes. The scheduler's events only say when to look."""
+        self._client.subscribe_topic("all", self._on_event)
+        try:
+            await asyncio.gather(*(self._introduce(*who) for who in await self._look()))
+            _tell(Asked())
+            while True:
+                with contextlib.suppress(TimeoutError):
+                    await asyncio.wait_for(self._changed.wait(), _LINK_SECONDS)
+                self._changed.clear()
+                for who in await self._look():
+                    self._start(self._introduce(*who))
+        except Exception as error:
+            _tell(Broken(f"the scheduler is gone: {_first_line(error)}"))
+
+    async def _look(self) -> list[tuple[str, str, int]]:
+        """Tell who left; address, name and threads of those who are new."""
+        known = (await self._client.scheduler.identity())["workers"]
+        for address in self._workers - known.keys():
+            for number, worker_address in list(self._given.items()):
+                if worker_address == address:
+                    self._drop(number)
+            _tell(Left(address))
+        new = [
+            (str(address), str(facts["name"]), int(facts["nthreads"]))
+            for address, facts in known.items()
+            if address not in self._workers
+        ]
+        self._workers = set(known)
+        return new
+
+    def _on_event(self, event: Any) -> None:
+        if isinstance(event[1], dict) and event[1].get("action") in {"add-worker", "remove-worker"}:
+            self._changed.set()
+
+    async def _introduce(self, address: str, name: str, threads: int) -> None:
+        try:
+            # Outside of the worker's threads: also one that is busy can answer.
+            asking = self._client.run(calls.offer_as_json, threads, workers=[address])
+            said = (await asyncio.wait_for(asking, _OFFER_SECONDS))[address]
+        except TimeoutError:
+            _tell(Unfit(address, name, f"it has not answered within {_OFFER_SECONDS:g} s"))
+        except Exception as error:
+            _tell(Unfit(address, name, _first_line(error)))
+        else:
+            _tell(
+                Joined(address, name, said) if isinstance(said, bytes) else Unfit(address, name, "no offer")
+            )
+
+    async def _give(self, give: Give) -> None:
+        if give.worker not in self._workers:
+            _tell(Failed(give.number, "the worker is gone"))
+            return
+        key = f"autograder-{self._batch}-{give.number}"
+        future = self._client.submit(
+            calls.execute_order,
+            give.order,
+            key=key,
+            workers=[give.worker],
+            allow_other_workers=False,
+            pure=False,
+            retries=0,
+        )
+        self._futures[give.number], self._given[give.number] = future, give.worker
+        try:
+            news: News = await self._answer(give.number, key, future)
+        except Exception as error:
+            news = Failed(give.number, _first_line(error))
+        if self._futures.get(give.number) is future:
+            _tell(news)
+            self._drop(give.number)
+
+    async def _answer(self, number: int, key: str, future: Any) -> News:
+        await wait([future])
+        # As the scheduler has it from the worker: nothing is fetched that says itself that it is too large.
+        size = (await self._client.nbytes(keys=[key], summary=False)).get(key, 0)
+        if size > 2 * LARGEST_ANSWER:
+            return Failed(number, f"its answer has {size} bytes")
+        data = await future
+        return (
+            Answered(number, data) if isinstance(data, bytes) else Failed(number, "its answer is not bytes")
+        )
+
+    def _drop(self, number: int) -> None:
+        self._given.pop(number, None)
+        future = self._futures.pop(number, None)
+        if future is not None:
+            future.release()
+
+    def _start(self, doing: Any) -> None:
+        task = asyncio.create_task(doing)
+        self._running.add(task)
+        task.add_done_callback(self._running.discard)
+
+
+def _first_line(error: BaseException) -> str:
+    text = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+    return text.splitlines()[0][:300]
+
+
+def _tell(news: News) -> None:
+    line = memoryview(encode(news) + b"\n")
+    while line:
+        line = line[os.write(1, line) :]
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

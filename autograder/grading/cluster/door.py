@@ -1,0 +1,93 @@
+"""The door for what workers say: nothing of it is believed before it has been looked at here.
+
+A worker executes other people's programs, so it may be the next thing that one of them has taken over. What passes
+this door has the form of an execution of the very task that was asked for, points within what its checks can give,
+and outputs that hold nothing a browser would run.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder.boxes.outputs import Budget, OutputCollector
+from autograder.grading.cluster.messages import LARGEST_ANSWER, Offer
+from autograder.grading.task import decode_execution
+from autograder.verdict import State
+
+if TYPE_CHECKING:
+    from autograder.boxes.execution import CellRun, Check, Execution
+    from autograder.boxes.limits import Limits
+    from autograder.grading.task import Task
+    from autograder.verdict import Verdict
+
+LARGEST_OFFER = 4_000
+_MOST_SLOTS = 1_000
+_CLOSING_LINE = 200
+"""Bytes: what a box itself adds to an output that it had to cut."""
+
+
+class Forged(ValueError):
+    """What a worker said cannot be; the message says why."""
+
+
+def admitted_offer(data: bytes) -> Offer:
+    """What a worker offers.
+
+    Raises:
+        Forged: It is none.
+    """
+    if len(data) > LARGEST_OFFER:
+        raise Forged(f"its offer has {len(data)} bytes")
+    try:
+        offer = msgspec.json.decode(data, type=Offer)
+    except msgspec.MsgspecError as error:
+        raise Forged(f"its offer is none: {error}") from error
+    if not 1 <= offer.slots <= _MOST_SLOTS:
+        raise Forged(f"it offers to execute {offer.slots} notebooks at once")
+    return offer
+
+
+def admitted(data: bytes, task: Task) -> Execution:
+    """The execution of a task, as a worker tells it.
+
+    Raises:
+        Forged: It is none, or none of this task.
+    """
+    if len(data) > LARGEST_ANSWER:
+        raise Forged(f"its answer has {len(data)} bytes")
+    try:
+        execution = decode_execution(data)
+    except (msgspec.MsgspecError, RecursionError) as error:
+        raise Forged(f"its answer is none: {error}") from error
+    if len(execution.cells) not in ({len(task.cells), 0} if execution.trouble else {len(task.cells)}):
+        raise Forged(f"it tells of {len(execution.cells)} cells where there are {len(task.cells)}")
+    checks = {index: cell.check for index, cell in enumerate(task.cells) if cell.check is not None}
+    if execution.verdicts.keys() != checks.keys():
+        raise Forged("its verdicts are not those of the notebook's checks")
+    for index, check in checks.items():
+        _look_at(execution.verdicts[index], check)
+    return replace(execution, cells=_harmless(execution.cells, task.limits))
+
+
+def _look_at(verdict: Verdict, check: Check) -> None:
+    if verdict.exercise != check.exercise:
+        raise Forged(f"it judged {verdict.exercise!r:.60} instead of {check.exercise}")
+    if verdict.max_score != check.points or not 0 <= verdict.score <= check.points:
+        raise Forged(f"it gives {verdict.score:g} of {verdict.max_score:g} points for {check.exercise}")
+    if verdict.state is State.NOT_CHECKED and verdict.score:
+        raise Forged("it gives points for what could not be checked")
+
+
+def _harmless(cells: tuple[CellRun, ...], limits: Limits) -> tuple[CellRun, ...]:
+    """The cells with their outputs cut and stripped again, as the box that they come from should have done."""
+    budget = Budget(limits.notebook_output_bytes + _CLOSING_LINE * len(cells))
+    harmless = []
+    for cell in cells:
+        collector = OutputCollector(limits.cell_output_bytes + _CLOSING_LINE, budget)
+        for output in cell.outputs:
+            collector.handle(str(output.get("output_type")), output)
+        harmless.append(replace(cell, outputs=collector.outputs(), error=cell.error[:500]))
+    return tuple(harmless)

@@ -1,0 +1,98 @@
+"""The grader's end of the line to the courier."""
+
+from __future__ import annotations
+
+import contextlib
+import queue
+import subprocess
+import sys
+import tempfile
+import threading
+from typing import TYPE_CHECKING, Self
+
+import msgspec
+
+from autograder.grading.cluster.messages import Broken, Command, News, encode
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+_GOODBYE_SECONDS = 1.5
+
+
+class Link:
+    """A courier process while it is needed.
+
+    Args:
+        address: The scheduler's.
+    """
+
+    def __init__(self, address: str) -> None:
+        self._address = address
+        self._news: queue.SimpleQueue[News] = queue.SimpleQueue()
+
+    def __enter__(self) -> Self:
+        self._log = tempfile.TemporaryFile()
+        self._courier = subprocess.Popen(
+            [sys.executable, "-m", "autograder.grading.cluster.courier", self._address],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._log,
+            start_new_session=True,  # Ctrl-C goes to the grader, which then ends the courier
+        )
+        threading.Thread(target=self._listen, daemon=True).start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """End the courier. The scheduler then takes back whatever it was given."""
+        with contextlib.suppress(OSError):
+            self._stdin.close()
+        try:
+            self._courier.wait(_GOODBYE_SECONDS)
+        except subprocess.TimeoutExpired:
+            self._courier.kill()
+            self._courier.wait()
+        self._log.close()
+
+    def say(self, command: Command) -> None:
+        """Tell the courier to do something. Where it is gone, :meth:`hear` says so."""
+        with contextlib.suppress(OSError):
+            self._stdin.write(encode(command) + b"\n")
+            self._stdin.flush()
+
+    def hear(self, within: float | None) -> News | None:
+        """The next thing that happened; None where nothing did.
+
+        Args:
+            within: Seconds to wait for it; None for as long as it takes.
+        """
+        try:
+            return self._news.get(timeout=None if within is None else max(0.0, within))
+        except queue.Empty:
+            return None
+
+    @property
+    def _stdin(self):  # type: ignore[no-untyped-def]
+        assert self._courier.stdin is not None
+        return self._courier.stdin
+
+    def _listen(self) -> None:
+        """Take up what the courier says, always: a courier that has to wait for us would not listen to us."""
+        assert self._courier.stdout is not None
+        with self._courier.stdout as lines:
+            try:
+                for line in lines:
+                    self._news.put(msgspec.json.decode(line, type=News))
+            except (msgspec.MsgspecError, ValueError, MemoryError) as error:
+                self._news.put(Broken(f"the courier spoke nonsense: {error}"))
+                return
+        self._news.put(Broken(f"the courier ended{self._last_words()}"))
+
+    def _last_words(self) -> str:
+        with contextlib.suppress(ValueError, OSError):
+            self._log.seek(0)
+            lines = self._log.read().decode(errors="replace").strip().splitlines()
+            return f" ({lines[-1][:300]})" if lines else ""
+        return ""

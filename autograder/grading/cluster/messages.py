@@ -1,0 +1,111 @@
+"""What passes between the grader and the courier, one line of JSON a message, and what a worker offers.
+
+Orders and answers are bytes to the courier: it carries them and never looks inside.
+"""
+
+from __future__ import annotations
+
+import msgspec
+
+
+class Offer(msgspec.Struct, frozen=True):
+    """What a worker says of itself before it gets work.
+
+    Attributes:
+        version: Stands for the course, as :func:`autograder.grading.cluster.offer.version` has it.
+        slots: Notebooks that it executes at once.
+        sandbox: Whether it can execute in boxes.
+        obstacle: Why it cannot, and what to do; empty where it can.
+    """
+
+    version: str
+    slots: int
+    sandbox: bool
+    obstacle: str = ""
+
+
+class Order(msgspec.Struct, frozen=True):
+    """What a worker is to do.
+
+    Attributes:
+        task: The task, as JSON.
+        judge: What makes a judge, as ``module:class``.
+    """
+
+    task: msgspec.Raw
+    judge: str
+
+
+class Give(msgspec.Struct, frozen=True, tag=True):
+    """To the courier: have this worker execute this order.
+
+    Attributes:
+        number: Names the order in what comes back.
+        worker: The worker's address.
+        order: An :class:`Order` as JSON.
+    """
+
+    number: int
+    worker: str
+    order: bytes
+
+
+class Drop(msgspec.Struct, frozen=True, tag=True):
+    """To the courier: nobody waits for this order any more."""
+
+    number: int
+
+
+class Joined(msgspec.Struct, frozen=True, tag=True):
+    """A worker is there and has said something that should be an :class:`Offer`."""
+
+    worker: str
+    name: str
+    offer: bytes
+
+
+class Unfit(msgspec.Struct, frozen=True, tag=True):
+    """A worker is there but could not say what it offers."""
+
+    worker: str
+    name: str
+    reason: str
+
+
+class Asked(msgspec.Struct, frozen=True, tag=True):
+    """Every worker that was there at the beginning was asked."""
+
+
+class Left(msgspec.Struct, frozen=True, tag=True):
+    """A worker is gone."""
+
+    worker: str
+
+
+class Answered(msgspec.Struct, frozen=True, tag=True):
+    """A worker's answer, which should be an execution as JSON; nobody has looked at it yet."""
+
+    number: int
+    data: bytes
+
+
+class Failed(msgspec.Struct, frozen=True, tag=True):
+    """An order brought no answer."""
+
+    number: int
+    reason: str
+
+
+class Broken(msgspec.Struct, frozen=True, tag=True):
+    """The scheduler cannot be reached (any more). The courier ends after it."""
+
+    reason: str
+
+
+Command = Give | Drop
+News = Joined | Unfit | Asked | Left | Answered | Failed | Broken
+
+LARGEST_ANSWER = 16_000_000
+"""Bytes. A notebook's outputs are cut at 2 MB, and what a judge saw is a few hundred kB at most."""
+
+encode = msgspec.json.encode

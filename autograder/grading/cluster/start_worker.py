@@ -1,0 +1,100 @@
+"""``autograder worker``: a Dask worker on this machine, after a look at what it can offer."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import os
+import signal
+import tempfile
+from typing import TYPE_CHECKING
+
+import dask
+from distributed import Worker
+
+from autograder.grading.cluster.connection import check_address
+from autograder.grading.cluster.offer import offer, version
+from autograder.grading.cluster.pool import SchedulerGone
+from autograder.grading.errors import GradingError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_CONNECT_SECONDS = 30
+_GOODBYE_SECONDS = 2.0
+
+# Dask watches the memory of its own process, and there nothing is: submissions have processes and limits of their own.
+_SETTINGS = {
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.system-monitor.gil.enabled": False,
+}
+
+
+class NoSandboxHere(GradingError):
+    """This machine cannot execute in boxes, so it can offer nothing."""
+
+
+def start_worker(
+    address: str | None, *, jobs: int | None, name: str | None, sandbox: bool, tell: Callable[[str], None]
+) -> None:
+    """Work for a scheduler until it ends or this process is told to.
+
+    Args:
+        address: The scheduler's; by default Dask's own setting, which its deployments set.
+        jobs: Notebooks at once; as many as there are processors by default.
+        name: What the worker is called in messages; Dask's setting, or host and process, by default.
+        sandbox: Whether to start only where boxes are possible.
+        tell: Called with a line on what is offered.
+
+    Raises:
+        GradingError: There is no scheduler, or nothing to offer.
+    """
+    address = address or os.environ.get("DASK_SCHEDULER_ADDRESS")
+    if not address:
+        raise GradingError("Say where the scheduler is, for example: autograder worker tcp://host:8786")
+    check_address(address)
+    name = name or os.environ.get("DASK_WORKER_NAME") or f"{os.uname().nodename}-{os.getpid()}"
+    offered = offer(jobs or len(os.sched_getaffinity(0)))
+    if sandbox and not offered.sandbox:
+        raise NoSandboxHere(
+            f"No sandbox is possible here: {offered.obstacle}. To offer this machine without one, for submissions "
+            "that you trust as your own programs, add --unsafe-no-sandbox."
+        )
+    tell(
+        f"{name} offers {offered.slots} notebooks at once, "
+        f"{'in boxes' if offered.sandbox else 'WITHOUT a sandbox'}, with course version {version()}."
+    )
+    logging.getLogger("distributed").setLevel(logging.ERROR)
+    with dask.config.set(_SETTINGS), tempfile.TemporaryDirectory(prefix="autograder-dask-") as folder:
+        asyncio.run(_work(address, name, offered.slots, folder, tell))
+
+
+async def _work(address: str, name: str, slots: int, folder: str, tell: Callable[[str], None]) -> None:
+    try:
+        worker = Worker(
+            address,
+            name=name,
+            nthreads=slots,
+            memory_limit=0,
+            dashboard=False,
+            local_directory=folder,
+            death_timeout=_CONNECT_SECONDS,
+        )
+        await worker
+    except (OSError, ValueError, TimeoutError) as error:
+        raise SchedulerGone(
+            f"There is no Dask scheduler at {address} ({error}). Start one with: dask scheduler"
+        ) from error
+    told = asyncio.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        asyncio.get_running_loop().add_signal_handler(number, told.set)
+    tell(f"{name} waits for work from {address}. Ctrl-C ends it.")
+    finished, stopped = asyncio.ensure_future(worker.finished()), asyncio.ensure_future(told.wait())
+    await asyncio.wait((finished, stopped), return_when=asyncio.FIRST_COMPLETED)
+    ended_by_scheduler = finished.done() and not stopped.done()
+    stopped.cancel()
+    with contextlib.suppress(Exception):
+        await worker.close(timeout=_GOODBYE_SECONDS, executor_wait=False)
+    if ended_by_scheduler:
+        tell(f"{name} ends: the scheduler at {address} is gone, or has ended it.")

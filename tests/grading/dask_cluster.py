@@ -1,0 +1,121 @@
+"""A scheduler and workers on loopback, each a process of its own, for as long as a test needs them."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Self
+
+import psutil
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_SCHEDULER = """
+import asyncio
+from distributed import Scheduler
+
+async def main():
+    async with Scheduler(host="127.0.0.1", port=0, dashboard=False) as scheduler:
+        print(scheduler.address, flush=True)
+        await scheduler.finished()
+
+asyncio.run(main())
+"""
+
+_WORKER = """
+import sys
+from autograder.grading.cluster import offer, start_worker
+
+address, name, slots, version, obstacle = sys.argv[1:6]
+if version:
+    # Agreed upon, also while somebody edits the course.
+    offer.version = start_worker.version = lambda: version
+if obstacle:
+    offer.why_impossible = lambda: obstacle
+exec(sys.argv[6])
+start_worker.start_worker(address, jobs=int(slots), name=name, sandbox=False, tell=lambda line: print(line, flush=True))
+"""
+
+VERSION = "test"
+UNBOXED = "this test has no boxes"
+
+
+class DaskCluster:
+    """A scheduler; workers are added."""
+
+    def __enter__(self) -> Self:
+        self._processes: list[subprocess.Popen[str]] = []
+        self.said = ""
+        self.address = self._started([sys.executable, "-c", _SCHEDULER]).strip()
+        self.scheduler = self._processes[0]
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for process in reversed(self._processes):
+            process.kill()
+        for process in self._processes:
+            process.wait()
+            assert process.stdout
+            process.stdout.close()
+
+    @contextlib.contextmanager
+    def worker(
+        self, name: str, slots: int = 1, *, version: str = VERSION, obstacle: str = UNBOXED, before: str = ""
+    ) -> Iterator[subprocess.Popen[str]]:
+        """A worker, ready for work.
+
+        Args:
+            name: What it is called.
+            slots: Notebooks at once.
+            version: What it takes for its course's version.
+            obstacle: Why it takes no sandbox to be possible.
+            before: Code that it executes first.
+        """
+        arguments = [self.address, name, str(slots), version, obstacle, before]
+        self._started([sys.executable, "-W", "ignore", "-c", _WORKER, *arguments], "waits for work")
+        process = self._processes.pop()
+        try:
+            yield process
+        finally:
+            end(process)
+
+    def _started(self, command: list[str], until: str = "") -> str:
+        here = str(Path(__file__).parent)  # for the fake judge
+        process = subprocess.Popen(
+            command,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            env={**os.environ, "PYTHONPATH": here},
+        )
+        self._processes.append(process)
+        assert process.stdout
+        for line in process.stdout:
+            self.said += line
+            if until in line:
+                return line
+        raise AssertionError(f"{command[-6:]} ended with {process.wait()}")
+
+
+def end(process: subprocess.Popen[str]) -> None:
+    """Kill a worker as a power cut does, and wait until nothing of it is left."""
+    children = psutil.Process(process.pid).children(recursive=True) if process.poll() is None else []
+    process.kill()
+    process.wait()
+    assert process.stdout
+    process.stdout.close()
+    _, alive = psutil.wait_procs(children, timeout=10)
+    assert alive == []
+
+
+def until(condition: object, within: float = 20.0) -> None:
+    """Wait for something that another process does."""
+    deadline = time.monotonic() + within
+    while not condition():  # type: ignore[operator]
+        assert time.monotonic() < deadline
+        time.sleep(0.02)

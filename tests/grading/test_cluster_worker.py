@@ -1,0 +1,99 @@
+"""``autograder worker``: looks at what it can offer, says so, and comes and goes cleanly."""
+
+from __future__ import annotations
+
+import importlib.util
+import signal
+
+import pytest
+from click.testing import CliRunner
+from dask_cluster import DaskCluster
+
+pytest.importorskip("distributed", reason="./course setup --with cluster installs it")
+
+from autograder.cli import cli
+from autograder.grading.cluster import offer as offer_module
+
+
+def test_without_a_sandbox_it_does_not_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(offer_module, "why_impossible", lambda: "bubblewrap is not installed")
+    done = CliRunner().invoke(cli, ["worker", "tcp://127.0.0.1:1"])
+    assert done.exit_code == 2
+    assert "No sandbox is possible here: bubblewrap is not installed." in done.output
+    assert "--unsafe-no-sandbox" in done.output
+
+
+def test_without_an_address_it_says_how_to_give_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("DASK_SCHEDULER_ADDRESS", raising=False)
+    done = CliRunner().invoke(cli, ["worker"])
+    assert done.exit_code == 2
+    assert "autograder worker tcp://host:8786" in done.output
+
+
+@pytest.mark.parametrize(
+    "address", ["nonsense://x:1", "host:8786", "tcp://host", "tcp://a b:1", "-x", "tcp://h:1;x"]
+)
+def test_what_is_no_address_is_refused(address: str) -> None:
+    done = CliRunner().invoke(cli, ["worker", "--", address])
+    assert done.exit_code == 2
+    assert "is no address of a Dask scheduler. One looks like tcp://host:8786" in done.output
+
+
+def test_without_a_scheduler_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    from autograder.grading.cluster import start_worker
+
+    monkeypatch.setattr(start_worker, "_CONNECT_SECONDS", 0.5)
+    monkeypatch.setattr(offer_module, "why_impossible", lambda: "")
+    done = CliRunner().invoke(cli, ["worker", "tcp://127.0.0.1:1"])
+    assert done.exit_code == 2, done.output
+    assert "There is no Dask scheduler at tcp://127.0.0.1:1" in done.output
+
+
+def test_without_dask_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    find = importlib.util.find_spec
+    monkeypatch.setattr(
+        importlib.util, "find_spec", lambda name: None if name == "distributed" else find(name)
+    )
+    for words in (["worker", "tcp://x:1"], ["grade", "nowhere", "--scheduler", "tcp://x:1"]):
+        done = CliRunner().invoke(cli, words)
+        assert done.exit_code == 2
+        assert "./course setup --with cluster" in done.output
+
+
+def test_it_says_what_it_offers_and_ends_when_it_is_told(tmp_path_factory: pytest.TempPathFactory) -> None:
+    with DaskCluster() as cluster, cluster.worker("w", slots=3, version="v1", obstacle="") as process:
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(timeout=20) == 0
+    assert "w offers 3 notebooks at once, in boxes, with course version v1." in cluster.said
+
+
+def test_it_ends_when_the_scheduler_does() -> None:
+    with DaskCluster() as cluster, cluster.worker("w") as process:
+        cluster.scheduler.kill()
+        assert process.wait(timeout=30) == 0
+        assert process.stdout
+        assert "the scheduler at" in process.stdout.read()
+
+
+def test_the_version_changes_with_what_decides_a_grade(
+    monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    root = tmp_path_factory.mktemp("course")
+    files = {
+        "solutions/chapter/lab.md": "a master",
+        "solutions/chapter/reference/lab.x.json": "{}",
+        "environment/ros2_ws/src/my_robot_interfaces/srv/X.srv": "int64 a",
+    }
+    for name, text in files.items():
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(text)
+    monkeypatch.setenv("AUTOGRADER_COURSE", str(root))
+    first = offer_module.version.__wrapped__()
+    assert first == offer_module.version.__wrapped__()
+    seen = {first}
+    for name in files:
+        (root / name).write_text("changed")
+        seen.add(offer_module.version.__wrapped__())
+    assert len(seen) == len(files) + 1
+    (root / "solutions" / "chapter" / "notes.txt").write_text("not part of it")
+    assert offer_module.version.__wrapped__() in seen
