@@ -10,6 +10,8 @@ if TYPE_CHECKING:
 
 WORKSPACE = "ros2_ws"
 """What the course calls a workspace."""
+PACKAGE_VARIABLE = "AUTOGRADER_ROBOT_PACKAGE"
+"""Names the folder of the course's own package where a grader has put it within reach of a notebook."""
 
 
 def workspace_of(file: Path, beside: Iterable[Path]) -> Path | None:

@@ -108,6 +108,11 @@ def reference_workspace() -> Path:
     return course.root() / "solutions" / WORKSPACE
 
 
+def reference_package() -> Path:
+    """The package with the course's own talker and listener."""
+    return reference_workspace() / "src" / PACKAGE
+
+
 @functools.cache
 def course_interfaces() -> tuple[Path, ...]:
     """All files and folders of the interfaces that come with the course.

@@ -44,11 +44,11 @@ class Doors:
 
     Attributes:
         judge: For the judge's box alone.
-        notebook: For the student's box.
+        notebook: For the student's box; None for no such door.
     """
 
     judge: Path
-    notebook: Path
+    notebook: Path | None
 
 
 class WorkspaceService:
@@ -73,10 +73,9 @@ class WorkspaceService:
         self._conversations: set[Lines] = set()
         self._threads: list[threading.Thread] = []
         self._closing = threading.Event()
-        self._listeners = [
-            self._open(doors.judge, self._serve_judge),
-            self._open(doors.notebook, self._serve_notebook),
-        ]
+        self._listeners = [self._open(doors.judge, self._serve_judge)]
+        if doors.notebook is not None:
+            self._listeners.append(self._open(doors.notebook, self._serve_notebook))
 
     def __enter__(self) -> Self:
         return self

@@ -1,0 +1,108 @@
+"""Answers of the bank, judged as a grader judges them: sources from a notebook, built and run by the grader's side.
+
+By hand: ``python tests/workspaces/graded.py lab_1_1.hello`` judges all answers with that in their names, without boxes.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from autograder.judge.process import JudgeProcess
+from autograder.judge.settings import subject_environment
+from autograder.notebook.path_run import send_sources
+from autograder.workspaces.lines import Lines
+from autograder.workspaces.plain_jobs import PlainJobs
+from autograder.workspaces.service import Doors, WorkspaceService
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "judge"))
+from bank import Answer, answers
+from workspace_answers import unpack
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from autograder.verdict import Verdict
+
+EXERCISES = ("lab_1_1.hello", "lab_1_3.interface", "exercise_1_1.remap")
+
+
+def gradable() -> list[Answer]:
+    """The answers that hand in a path, not a command."""
+    return [answer for answer in answers() if answer.exercise in EXERCISES and len(answer.command) == 1]
+
+
+@contextlib.contextmanager
+def graders_judge(folder: Path) -> Iterator[JudgeProcess]:
+    """A judge with a door to a grader's side that has no boxes.
+
+    Args:
+        folder: For the cache of builds.
+    """
+    builds = folder / "builds"
+    builds.mkdir(mode=0o700, exist_ok=True)
+    with tempfile.TemporaryDirectory() as name:
+        doors = Doors(Path(name) / "j", Path(name) / "n")
+        jobs = PlainJobs(subject_environment(0))
+        with (
+            WorkspaceService(doors, jobs, builds, {}, folder),
+            JudgeProcess(Path(name) / "s", seed="graded") as judge,
+        ):
+            judge.workspaces = str(doors.judge)
+            yield judge
+
+
+def judged(judge: JudgeProcess, exercise: str, path: Path) -> Verdict:
+    """Hand a path in as a notebook does; what the judge tells its grader.
+
+    Raises:
+        RuntimeError: The judge has no verdict.
+    """
+    judge.open(exercise)
+    connection = socket.socket(socket.AF_UNIX)
+    connection.connect(str(judge.socket_path))
+    kernel = Lines(connection)
+    kernel.say("check", exercise=exercise, kind="function")
+    assert kernel.hear()["say"] == "collect"
+    send_sources(kernel.say, path)
+    kernel.hear()
+    report = judge.close_report()
+    if report.verdict is None:
+        raise RuntimeError(report.trouble or "the judge has no verdict")
+    return report.verdict
+
+
+def judged_answer(judge: JudgeProcess, answer: Answer) -> Verdict:
+    """Judge an answer of the bank."""
+    with tempfile.TemporaryDirectory(prefix="answer-") as folder:
+        workspace = Path(folder) / "ros2_ws"
+        if answer.base is not None:
+            unpack(answer.file, answer.base, workspace)
+        (path,) = (part.format(file=answer.file, workspace=workspace) for part in answer.command)
+        with contextlib.chdir(folder):
+            return judged(judge, answer.exercise, Path(path))
+
+
+def main(wanted: list[str]) -> int:
+    """Judge answers, print what is not as expected."""
+    objections: list[Any] = []
+    with tempfile.TemporaryDirectory() as folder, graders_judge(Path(folder)) as judge:
+        for answer in gradable():
+            if any(word in answer.name for word in wanted):
+                began = time.monotonic()
+                objection = answer.objection(judged_answer(judge, answer))
+                objections += [objection] * bool(objection)
+                print(
+                    f"{answer.name}: {objection or 'as expected'} ({time.monotonic() - began:.1f} s)",
+                    flush=True,
+                )
+    return 1 if objections else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:] or [""]))
