@@ -5,7 +5,12 @@ The commands come in here. Imports are inside the functions: nbgrader alone take
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING
+
+# jsonschema, which nbformat and nbgrader import, loads a grammar of internationalised addresses where it finds one:
+# a second at every start, for a check that no notebook asks for. It does without where the import fails.
+sys.modules.setdefault("rfc3987_syntax", None)  # type: ignore[arg-type]
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

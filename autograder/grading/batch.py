@@ -3,55 +3,71 @@
 The order makes it fail closed. What is not known to be right in the gradebook is taken back first; then each
 result goes into the journal and from there, by one writer, into the gradebook. A run that is killed has left
 zeros and results, never a wrong grade, and the next run goes on from there.
+
+Nothing of a submission is held longer than it takes to write it down, so that a class of any size fits.
 """
 
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from autograder.grading import engine, gradebook
+from autograder.grading import gradebook
 from autograder.grading.class_directory import ClassDirectory, Refused, Submission
-from autograder.grading.errors import ClassIncomplete, GradingError, clear_disk_errors, is_disk_full
+from autograder.grading.errors import GradingError, clear_disk_errors, is_disk_full
+from autograder.grading.fingerprints import Fingerprints
 from autograder.grading.journal import Journal
-from autograder.grading.preparing import tasks_of
 from autograder.grading.progress import BatchProgress
-from autograder.grading.rebuild import grade_id, is_check
+from autograder.grading.records import Records
+from autograder.grading.released import check_release, graded_cells
 from autograder.grading.report import NOT_GRADED, NOT_SUBMITTED, GradeReport, Row, rows_of, write_csv
-from autograder.grading.worker import JUDGE
-from autograder.grading.writer import NotWritten, Writer
+from autograder.grading.timings import Timings
+
+# What only a class with something to grade needs is imported where it is used: nbgrader alone takes a second.
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from autograder.boxes.execution import Execution
+    from autograder.grading.released import GradedCell
     from autograder.grading.task import Task
+    from autograder.grading.writer import Writer
 
 
 @dataclass
 class _Work:
-    """A submission on its way through the batch."""
+    """A submission on its way through the batch.
+
+    Attributes:
+        submission: Where it lies.
+        fingerprint: Of what it is made from, as it was at the start.
+        notebooks: The names of its notebooks.
+        results: What is known of the notebooks that are not written down yet, by notebook.
+        rows: What the gradebook has for it, or why it has nothing; None while nothing is known.
+        written: Whether the gradebook holds exactly these results.
+    """
 
     submission: Submission
-    tasks: list[Task]
-    results: dict[str, Execution] = field(default_factory=dict)
-    """By notebook."""
+    fingerprint: str
+    notebooks: Sequence[str]
+    results: dict[str, tuple[Task, Execution]] = field(default_factory=dict)
+    rows: tuple[Row, ...] | None = None
     written: bool = False
-    """Whether the gradebook holds exactly these results."""
 
     @property
     def complete(self) -> bool:
-        return len(self.results) == len(self.tasks)
+        return len(self.results) == len(self.notebooks)
 
     @property
     def pairs(self) -> list[tuple[Task, Execution]]:
-        return [(task, self.results[task.notebook]) for task in self.tasks]
+        return [self.results[notebook] for notebook in self.notebooks]
 
 
 def grade(
@@ -63,7 +79,7 @@ def grade(
     again: bool = False,
     feedback: bool = True,
     console: Console | None = None,
-    judge: str = JUDGE,
+    judge: str = "",
 ) -> GradeReport:
     """Grade what was submitted in a class.
 
@@ -75,7 +91,7 @@ def grade(
         again: Execute everything anew, also what is unchanged.
         feedback: Make the pages that go back to the students.
         console: Where progress is shown; standard error by default.
-        judge: What makes a judge, as ``module:class``.
+        judge: What makes a judge, as ``module:class``; the real one by default.
 
     Returns:
         The report. Submissions that could not be graded are in it, with zero points and the reason.
@@ -90,116 +106,103 @@ def grade(
 
     sandboxing.require(directory)
     with directory.lock(), clear_disk_errors(directory.path):
-        _check_release(directory)
-        batch = _Batch(directory, console, jobs or os.cpu_count() or 1, judge)
+        batch = _Batch(directory, console, jobs or os.cpu_count() or 1, judge, feedback=feedback)
         batch.collect(assignments, students)
         batch.plan(again)
         batch.run()
-        if feedback:
-            batch.feedback()
         return batch.report(time.monotonic() - began)
 
 
 class _Batch:
-    def __init__(self, directory: ClassDirectory, console: Console, workers: int, judge: str) -> None:
+    def __init__(
+        self, directory: ClassDirectory, console: Console, workers: int, judge: str, *, feedback: bool
+    ) -> None:
         self._directory = directory
         self._console = console
         self._workers = workers
         self._judge = judge
+        self._feedback = feedback
+        self._fingerprints = Fingerprints(directory)
+        self._cells: dict[str, tuple[GradedCell, ...]] = graded_cells(directory, self._fingerprints)
+        check_release(directory, self._cells)
         self._journal = Journal(directory.state / "journal")
-        self._writer = Writer(directory)
+        self._records = Records(directory)
         self._works: list[_Work] = []
         self._others: list[_Work] = []
         self._refused: list[Refused] = []
         self._problems: list[str] = []
+        self._timings = Timings()
         self._executed = 0
         self._reused = 0
         self._written = 0
 
+    @functools.cached_property
+    def _writer(self) -> Writer:
+        from autograder.grading.writer import Writer
+
+        return Writer(self._directory, self._records)
+
     def collect(self, assignments: Sequence[str], students: Sequence[str]) -> None:
-        """Find the submissions and rebuild their notebooks."""
+        """Find the submissions."""
         found, refused = self._directory.submissions()
         _check_known(assignments, self._directory.assignments(), "assignment")
         _check_known(students, sorted({submission.student for submission in found}), "student")
         self._refused = refused
+        names = {assignment: self._directory.notebooks(assignment) for assignment in self._cells}
         for submission in found:
-            work = _Work(submission, tasks_of(self._directory, submission))
+            work = _Work(submission, self._fingerprints.of(submission), names[submission.assignment])
             chosen = not assignments or submission.assignment in assignments
             chosen = chosen and (not students or submission.student in students)
             (self._works if chosen else self._others).append(work)
 
     def plan(self, again: bool) -> None:
         """Settle what is known already, and take back the grades of all the rest."""
-        works = [*self._works, *self._others]
         in_gradebook = {
             assignment: gradebook.scores(self._directory.gradebook_url, assignment)
-            for assignment in {work.submission.assignment for work in works}
+            for assignment in sorted({work.submission.assignment for work in [*self._works, *self._others]})
         }
-        for work in self._works:
-            for task in work.tasks:
-                if again:
-                    self._journal.forget(task)
-        for work in works:
-            for task in work.tasks:
-                known = task.without_execution() if task.problem else self._journal.get(task)
-                if known is not None:
-                    work.results[task.notebook] = known
-            scores = in_gradebook[work.submission.assignment].get(work.submission.student, {})
-            work.written = work.complete and self._writer.is_written(work.submission, work.tasks, scores)
         for work in self._others:
-            if not work.written:
-                work.results.clear()  # known perhaps, but not what the gradebook says
-        self._reused = sum(
-            not task.problem for w in self._works for task in w.tasks if task.notebook in w.results
-        )
-        self._writer.take_back([work.submission for work in self._works if not work.written])
+            self._settle(work, in_gradebook)
+        for work in self._works:
+            if again:
+                self._journal.forget(work.submission, work.notebooks)
+            else:
+                self._settle(work, in_gradebook)
+        unsettled = [work.submission for work in self._works if not work.written]
+        if unsettled:
+            self._writer.take_back(unsettled)
 
     def run(self) -> None:
         """Execute what must be, and write each submission as soon as it is complete."""
-        owners = {
-            id(task): work for work in self._works for task in work.tasks if task.notebook not in work.results
-        }
-        tasks = [task for work in self._works for task in work.tasks if id(task) in owners]
         for work in self._works:
-            if work.complete and not work.written:
-                self._write(work)
-        if not tasks:
+            if work.written:
+                self._reused += len(work.notebooks)
+                self._make_pages(work)
+            else:
+                self._take_known(work)
+        waiting = [work for work in self._works if work.rows is None]
+        if not waiting:
             return
-        with BatchProgress(self._console, len(tasks)) as progress:
+        from autograder.grading import engine
+        from autograder.grading.worker import JUDGE
+
+        works = {(work.submission.student, work.submission.assignment): work for work in waiting}
+        missing = sum(len(work.notebooks) - len(work.results) for work in waiting)
+        with BatchProgress(self._console, missing) as progress:
             results = engine.execute_all(
-                tasks,
+                list(self._tasks(waiting)),
                 self._directory.scratch() / "batch",
-                self._workers,
+                min(self._workers, missing),
                 on_start=lambda _: progress.started(),
-                judge=self._judge,
+                judge=self._judge or JUDGE,
             )
             with contextlib.closing(results):
                 for done in results:
-                    self._executed += 1
-                    self._journal.put(done.task, done.execution)
-                    if done.execution.trouble:
-                        self._problems.append(
-                            f"{done.task.label} could not be checked: {done.execution.trouble}"
-                        )
-                    work = owners[id(done.task)]
-                    work.results[done.task.notebook] = done.execution
+                    self._take(works[done.task.student, done.task.assignment], done.task, done.execution)
                     progress.finished(done.task.label, failed=bool(done.execution.trouble))
-                    if work.complete:
-                        self._write(work)
-
-    def feedback(self) -> None:
-        """Make the pages of what was written now, and of what has none."""
-        wanting = [
-            w for w in self._works if w.written and not self._writer.has_feedback(w.submission, w.tasks)
-        ]
-        for assignment in sorted({work.submission.assignment for work in wanting}):
-            works = [work for work in wanting if work.submission.assignment == assignment]
-            self._writer.write_feedback(assignment, [work.submission for work in works])
-            for work in works:
-                if not self._writer.has_feedback(work.submission, work.tasks):
-                    self._problem(
-                        NotWritten(f"feedback for {work.submission.student}/{assignment} could not be made")
-                    )
+        for work in waiting:
+            if work.rows is None and work.complete:
+                self._write(work)  # no notebook of it could be executed, or that was known last
 
     def report(self, seconds: float) -> GradeReport:
         """The report on what was asked for; ``grades.csv``, written here, has the whole class."""
@@ -214,21 +217,93 @@ class _Batch:
             reused=self._reused,
             written=self._written,
             seconds=seconds,
+            timings=self._timings,
         )
 
+    def _settle(self, work: _Work, in_gradebook: dict[str, dict[str, dict[str, gradebook.Scores]]]) -> None:
+        """Find out whether the gradebook has the grades of exactly this submission."""
+        record = self._records.get(work.submission)
+        scores = in_gradebook[work.submission.assignment].get(work.submission.student, {})
+        if record is None or not self._records.holds(work.submission, record, scores):
+            return
+        if record.fingerprint != work.fingerprint:
+            # Other bytes, but perhaps the same work: saved again, or the course was changed elsewhere.
+            keys = {task.notebook: task.key() for task in self._tasks_of(work.submission)}
+            if record.keys != keys:
+                return
+            self._records.put(work.submission, replace(record, fingerprint=work.fingerprint))
+        work.rows = record.rows
+        work.written = True
+
+    def _take_known(self, work: _Work) -> None:
+        """Take over what the journal knows; write the submission down where that is all of it."""
+        if not self._journal.has(work.submission, work.notebooks):
+            return
+        for task in self._tasks_of(work.submission):
+            known = self._journal.get(task)
+            if known is not None:
+                self._reused += 1
+                work.results[task.notebook] = task, known
+        if work.complete:
+            self._write(work)
+
+    def _tasks(self, works: Sequence[_Work]) -> Iterator[Task]:
+        """What has to be executed, made when it is its turn."""
+        for work in works:
+            for task in self._tasks_of(work.submission):
+                if task.problem:
+                    work.results[task.notebook] = task, task.without_execution()
+                elif task.notebook not in work.results:
+                    yield task
+
+    def _tasks_of(self, submission: Submission) -> list[Task]:
+        from autograder.grading.preparing import tasks_of
+
+        with self._timings.measure("rebuild"):
+            return tasks_of(self._directory, submission)
+
+    def _take(self, work: _Work, task: Task, execution: Execution) -> None:
+        """Keep a result, and write its submission where it is complete now."""
+        self._executed += 1
+        self._timings.count(task.cells, execution)
+        self._journal.put(task, execution)
+        if execution.trouble:
+            self._problems.append(f"{task.label} could not be checked: {execution.trouble}")
+        work.results[task.notebook] = task, execution
+        if work.complete:
+            self._write(work)
+
     def _write(self, work: _Work) -> None:
+        rows = tuple(row for pair in work.pairs for row in rows_of(*pair))
+        from autograder.grading.writer import NotWritten
+
         try:
-            self._writer.write(work.submission, work.pairs)
+            with self._timings.measure("gradebook"):
+                self._writer.write(work.submission, work.fingerprint, work.pairs, rows)
         except NotWritten as error:
-            self._problem(error)
+            if is_disk_full(error):
+                raise
+            self._problem(str(error))
+            work.rows = tuple(_without_grade(row) for row in rows)
         else:
+            work.rows = rows
             work.written = True
             self._written += 1
+            self._make_pages(work)
+        work.results.clear()
 
-    def _problem(self, error: NotWritten) -> None:
-        if is_disk_full(error):
-            raise error
-        self._problems.append(f"{error} (see {self._directory.state / 'nbgrader.log'})")
+    def _make_pages(self, work: _Work) -> None:
+        """Make the pages of a submission that has none."""
+        submission = work.submission
+        if not self._feedback or self._records.has_pages(submission, work.notebooks):
+            return
+        with self._timings.measure("feedback"):
+            self._writer.write_feedback(submission)
+        if not self._records.has_pages(submission, work.notebooks):
+            self._problem(f"feedback for {submission.student}/{submission.assignment} could not be made")
+
+    def _problem(self, text: str) -> None:
+        self._problems.append(f"{text} (see {self._directory.state / 'nbgrader.log'})")
 
     def _rows(self, works: Sequence[_Work]) -> list[Row]:
         found = {(work.submission.student, work.submission.assignment): work for work in works}
@@ -241,40 +316,28 @@ class _Batch:
             for row in self._rows_of(student, assignment, found.get((student, assignment)))
         ]
 
-    def _rows_of(self, student: str, assignment: str, work: _Work | None) -> list[Row]:
-        if work is None or not work.complete:
-            state = NOT_SUBMITTED if work is None else NOT_GRADED
-            return [
-                Row(student, assignment, exercise, 0.0, worth, state)
-                for exercise, worth in _exercises(self._directory, assignment)
-            ]
-        rows = [row for task, execution in work.pairs for row in rows_of(task, execution)]
-        if work.written:
-            return rows
-        reason = "The result could not be entered into the gradebook; it has zero points there."
+    def _rows_of(self, student: str, assignment: str, work: _Work | None) -> Sequence[Row]:
+        if work is not None and work.rows is not None:
+            return work.rows
+        state = NOT_SUBMITTED if work is None else NOT_GRADED
         return [
-            Row(
-                row.student,
-                row.assignment,
-                row.exercise,
-                0.0,
-                row.max_score,
-                "not_checked",
-                "not_written_down",
-                reason,
-            )
-            for row in rows
+            Row(student, assignment, cell.exercise, 0.0, cell.worth, state)
+            for cell in self._cells[assignment]
         ]
 
 
-def _exercises(directory: ClassDirectory, assignment: str) -> Iterator[tuple[str, float]]:
-    from autograder.grading.master import check_of
-
-    for notebook in directory.notebooks(assignment):
-        for cell in directory.master(assignment, notebook).cells:
-            check = check_of(cell)
-            if check is not None:
-                yield check.exercise, check.worth
+def _without_grade(row: Row) -> Row:
+    reason = "The result could not be entered into the gradebook; it has zero points there."
+    return Row(
+        row.student,
+        row.assignment,
+        row.exercise,
+        0.0,
+        row.max_score,
+        "not_checked",
+        "not_written_down",
+        reason,
+    )
 
 
 def _check_known(wanted: Sequence[str], known: Sequence[str], what: str) -> None:
@@ -283,26 +346,3 @@ def _check_known(wanted: Sequence[str], known: Sequence[str], what: str) -> None
             raise GradingError(
                 f"There is no {what} named {name} here. There is: {', '.join(known) or 'none'}."
             )
-
-
-def _check_release(directory: ClassDirectory) -> None:
-    """The gradebook must know the cells that the sources have, with the same points."""
-    assignments = directory.assignments()
-    if not assignments:
-        raise ClassIncomplete(
-            f"{directory.path / 'source'} holds no assignment. Put one there, or make a new class."
-        )
-    for assignment in assignments:
-        entered = gradebook.worth(directory.gradebook_url, assignment)
-        for notebook in directory.notebooks(assignment):
-            cells = directory.master(assignment, notebook).cells
-            wanted = {
-                grade_id(cell): float(cell.metadata.nbgrader["points"]) for cell in cells if is_check(cell)
-            }
-            have = entered.get(notebook, {})
-            if any(have.get(name) != worth for name, worth in wanted.items()):
-                raise ClassIncomplete(
-                    f"The gradebook does not know {notebook} as it is in "
-                    f"{directory.path / 'source' / assignment}. Enter it: "
-                    f"cd {directory.path} && nbgrader generate_assignment {assignment} --force"
-                )

@@ -7,22 +7,20 @@ class that was configured otherwise goes through nbgrader itself (:mod:`autograd
 
 from __future__ import annotations
 
-import errno
-import os
 from typing import TYPE_CHECKING, Any
 
 from nbformat.v4 import nbjson
 from nbgrader.preprocessors import LimitOutput
-from nbgrader.utils import compute_checksum, determine_grade, is_grade, is_solution, is_task, parse_utc
+from nbgrader.utils import compute_checksum, determine_grade, is_grade, is_solution, is_task
 
 from autograder.grading.class_directory import SUFFIX
 from autograder.grading.gradebook import NotebookEntry
 from autograder.grading.preparing import rebuilt_notebook, task_of
 from autograder.grading.preprocessors import with_results
+from autograder.grading.timestamps import TIMESTAMP, read_timestamp
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from datetime import datetime
     from pathlib import Path
 
     from nbformat import NotebookNode
@@ -32,9 +30,6 @@ if TYPE_CHECKING:
     from autograder.grading.class_directory import ClassDirectory, Submission
     from autograder.grading.task import Task
 
-TIMESTAMP = "timestamp.txt"
-"""nbgrader's file with the time at which a submission was handed in."""
-_LONGEST_TIMESTAMP = 200
 _READ_ONLY = 0o444
 
 _USUAL_AUTOGRADE = {
@@ -100,8 +95,8 @@ def convert(
     folder.mkdir(parents=True)
     for name, data in directory.files(submission.assignment).items():
         _write(folder / name, data)
-    stamp = _read_timestamp(submission.folder)
-    if stamp is not None:
+    stamp = read_timestamp(submission.folder)
+    if stamp:
         _write(folder / TIMESTAMP, stamp.encode())
     entries = {}
     for task, execution in results:
@@ -110,22 +105,6 @@ def convert(
         _write(folder / f"{task.notebook}{SUFFIX}", f"{nbjson.writes(notebook)}\n".encode())
         entries[task.notebook] = _entry(notebook)
     return entries
-
-
-def handed_in_at(submission: Submission) -> datetime | None:
-    """When a submission was handed in, in UTC; None where nobody wrote it down.
-
-    Raises:
-        ValueError: What was written down is no time.
-    """
-    stamp = _read_timestamp(submission.folder)
-    if not stamp:
-        return None
-    try:
-        at: datetime = parse_utc(stamp)
-    except (ValueError, OverflowError) as error:
-        raise ValueError(f"{submission.folder / TIMESTAMP} holds no time: {stamp[:60]!r}") from error
-    return at
 
 
 def _graded(
@@ -157,18 +136,6 @@ def _entry(notebook: NotebookNode) -> NotebookEntry:
 def _comment(cell: Any) -> str | None:
     untouched = cell.metadata.nbgrader.get("checksum") == compute_checksum(cell)
     return "No response." if untouched and not is_task(cell) else None
-
-
-def _read_timestamp(folder: Path) -> str | None:
-    """The text of nbgrader's timestamp, unless it is a link to something else."""
-    try:
-        descriptor = os.open(folder / TIMESTAMP, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
-    except OSError as error:
-        if error.errno in (errno.ENOENT, errno.ELOOP, errno.ENXIO):
-            return None
-        raise
-    with os.fdopen(descriptor, "rb") as file:
-        return file.read(_LONGEST_TIMESTAMP).decode(errors="replace").strip()
 
 
 def _write(path: Path, data: bytes) -> None:

@@ -12,8 +12,10 @@ import msgspec
 from autograder.boxes.execution import Execution  # noqa: TC001  (msgspec reads the annotations)
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
+    from autograder.grading.class_directory import Submission
     from autograder.grading.task import Task
 
 
@@ -50,12 +52,20 @@ class Journal:
         if not execution.trouble:
             write_whole(self._path(task), msgspec.json.encode(_Entry(task.key(), execution)))
 
-    def forget(self, task: Task) -> None:
-        """Drop what is known of this student's notebook."""
-        self._path(task).unlink(missing_ok=True)
+    def has(self, submission: Submission, notebooks: Iterable[str]) -> bool:
+        """Whether anything is known of a submission; it may be of an earlier version of it."""
+        return any(self._file(submission, notebook).is_file() for notebook in notebooks)
+
+    def forget(self, submission: Submission, notebooks: Iterable[str]) -> None:
+        """Drop what is known of a submission."""
+        for notebook in notebooks:
+            self._file(submission, notebook).unlink(missing_ok=True)
 
     def _path(self, task: Task) -> Path:
         return self._folder / task.assignment / f"{task.notebook}@{task.student}.json"
+
+    def _file(self, submission: Submission, notebook: str) -> Path:
+        return self._folder / submission.assignment / f"{notebook}@{submission.student}.json"
 
 
 def write_whole(path: Path, data: bytes) -> None:

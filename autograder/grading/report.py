@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from autograder.grading.journal import write_whole
 from autograder.grading.points import points
 from autograder.grading.spreadsheet import csv_text
+from autograder.grading.timings import Timings
 from autograder.verdict import State
 
 if TYPE_CHECKING:
@@ -62,6 +63,7 @@ class GradeReport:
         reused: Notebooks whose result was known.
         written: Submissions entered into the gradebook in this run.
         seconds: Wall time.
+        timings: Where it went.
     """
 
     path: Path
@@ -72,6 +74,7 @@ class GradeReport:
     reused: int = 0
     written: int = 0
     seconds: float = 0.0
+    timings: Timings = field(default_factory=Timings)
 
     @property
     def note(self) -> str:

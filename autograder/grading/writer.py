@@ -6,12 +6,10 @@ import contextlib
 import logging
 import shutil
 import warnings
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import msgspec
-from nbgrader.converters import Autograde, BaseConverter, GenerateFeedback, NbGraderException
+from nbgrader.converters import BaseConverter, GenerateFeedback
 from nbgrader.coursedir import CourseDirectory
 from nbgrader.preprocessors import AssignLatePenalties
 from traitlets.config import Config
@@ -19,27 +17,17 @@ from traitlets.config import Config
 from autograder.grading import conversion, feedback, gradebook, nodes
 from autograder.grading.class_directory import SUFFIX, ClassDirectory, Submission
 from autograder.grading.errors import is_disk_full
-from autograder.grading.journal import write_whole
+from autograder.grading.nbgrader_guard import GuardedAutograde
 from autograder.grading.points import scores_of
+from autograder.grading.records import Records, Written
+from autograder.grading.timestamps import handed_in_at
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
     from autograder.boxes.execution import Execution
+    from autograder.grading.report import Row
     from autograder.grading.task import Task
-
-
-@dataclass(frozen=True)
-class Written:
-    """What a finished submission left in the gradebook.
-
-    Attributes:
-        keys: The task of each notebook.
-        scores: The points of each check cell, by notebook and grade_id.
-    """
-
-    keys: dict[str, str]
-    scores: dict[str, dict[str, float]]
 
 
 class NotWritten(RuntimeError):
@@ -51,47 +39,37 @@ class Writer:
 
     Args:
         directory: The class, locked by this process.
+        records: Where it is noted what was written.
     """
 
-    def __init__(self, directory: ClassDirectory) -> None:
+    def __init__(self, directory: ClassDirectory, records: Records) -> None:
         self._directory = directory
-        self._records = directory.state / "written"
+        self._records = records
         self._pages = feedback.FeedbackPages(directory)
 
     def take_back(self, submissions: Sequence[Submission]) -> None:
         """Remove what an earlier run left of these submissions: grades, converted notebooks, feedback."""
         for submission in submissions:
-            self._record_path(submission).unlink(missing_ok=True)
+            self._records.forget(submission)
             for step in ("autograded", "feedback"):
                 _remove(self._folder(step, submission))
         pairs = [(submission.assignment, submission.student) for submission in submissions]
         gradebook.reset(self._directory.gradebook_url, pairs)
 
-    def is_written(
-        self, submission: Submission, tasks: Sequence[Task], in_gradebook: Mapping[str, gradebook.Scores]
-    ) -> bool:
-        """Whether gradebook and folders already hold exactly the results of these tasks.
+    def write(
+        self,
+        submission: Submission,
+        fingerprint: str,
+        results: Sequence[tuple[Task, Execution]],
+        rows: tuple[Row, ...],
+    ) -> None:
+        """Convert the submission and enter its grades.
 
         Args:
-            submission: The submission.
-            tasks: Its tasks.
-            in_gradebook: The scores that the gradebook has for it now, by notebook.
-        """
-        try:
-            record = msgspec.json.decode(self._record_path(submission).read_bytes(), type=Written)
-        except (OSError, msgspec.MsgspecError):
-            return False
-        if record.keys != {task.notebook: task.key() for task in tasks}:
-            return False
-        files = (self._folder("autograded", submission) / f"{task.notebook}{SUFFIX}" for task in tasks)
-        return all(file.is_file() for file in files) and all(
-            in_gradebook.get(notebook, {}).get(name) == score
-            for notebook, scores in record.scores.items()
-            for name, score in scores.items()
-        )
-
-    def write(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
-        """Convert the submission and enter its grades.
+            submission: What was executed.
+            fingerprint: Of all that it was made from.
+            results: A pair for each notebook of the assignment.
+            rows: The same for the report.
 
         Raises:
             NotWritten: That failed, or the gradebook then says something else. The grades are zero then.
@@ -110,11 +88,15 @@ class Writer:
         except Exception as error:
             self.take_back([submission])
             raise NotWritten(f"{submission.student}/{submission.assignment}: {error}") from error
+        if any(execution.trouble for _, execution in results):
+            return  # the next run tries again
         record = Written(
+            fingerprint=fingerprint,
             keys={task.notebook: task.key() for task, _ in results},
             scores={task.notebook: scores_of(task, execution) for task, execution in results},
+            rows=rows,
         )
-        write_whole(self._record_path(submission), msgspec.json.encode(record))
+        self._records.put(submission, record)
 
     def _convert_and_enter(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
         """What nbgrader's conversion does. Notebooks first: without grades they are only files."""
@@ -123,7 +105,7 @@ class Writer:
         entries = conversion.convert(self._directory, submission, results, folder)
         url = self._directory.gradebook_url
         has_due_date = gradebook.enter(
-            url, submission.assignment, submission.student, entries, conversion.handed_in_at(submission)
+            url, submission.assignment, submission.student, entries, handed_in_at(submission.folder)
         )
         if has_due_date:
             for task, _ in results:
@@ -133,41 +115,22 @@ class Writer:
                     nodes.notebook([], {}), resources
                 )
 
-    def write_feedback(self, assignment: str, submissions: Sequence[Submission]) -> None:
-        """Make the HTML pages that go back to the students.
-
-        A page that cannot be made does not keep others from being made: ask :meth:`has_feedback` afterwards.
+    def write_feedback(self, submission: Submission) -> None:
+        """Make the HTML pages that go back to a student; ask ``Records.has_pages`` afterwards.
 
         Raises:
             OSError: There is no room on the disk.
         """
         with quiet(self._directory.state):
-            if feedback.is_usual(self._directory.config):
-                for submission in submissions:
-                    self._write_pages(submission)
-            else:
-                self._generate_feedback(assignment, submissions)
-
-    def _write_pages(self, submission: Submission) -> None:
-        try:
-            self._pages.write(submission, self._directory.notebooks(submission.assignment))
-        except Exception as error:
-            if is_disk_full(error):
-                raise
-            logging.getLogger("traitlets").exception("no page for %s", submission.folder)
-
-    def _generate_feedback(self, assignment: str, submissions: Sequence[Submission]) -> None:
-        """One conversion for all, since most of its time goes into reading templates."""
-        converter = _Feedback(assignment, submissions, self._course())
-        with contextlib.suppress(NbGraderException):
-            converter.start()
-        if converter.cause is not None and is_disk_full(converter.cause):
-            raise converter.cause
-
-    def has_feedback(self, submission: Submission, tasks: Sequence[Task]) -> bool:
-        """Whether there is a page for each notebook."""
-        folder = self._folder("feedback", submission)
-        return all((folder / f"{task.notebook}.html").is_file() for task in tasks)
+            try:
+                if feedback.is_usual(self._directory.config):
+                    self._pages.write(submission, self._directory.notebooks(submission.assignment))
+                else:
+                    _Feedback(submission, self._course()).convert()
+            except Exception as error:
+                if is_disk_full(error):
+                    raise
+                logging.getLogger("traitlets").exception("no page for %s", submission.folder)
 
     def _verify(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
         found = gradebook.scores_of_student(
@@ -184,9 +147,6 @@ class Writer:
     def _folder(self, step: str, submission: Submission) -> Path:
         return self._directory.path / step / submission.student / submission.assignment
 
-    def _record_path(self, submission: Submission) -> Path:
-        return self._records / submission.assignment / f"{submission.student}.json"
-
 
 class _Remembering(BaseConverter):
     """A conversion that remembers what went wrong, which nbgrader only logs."""
@@ -201,8 +161,19 @@ class _Remembering(BaseConverter):
             self.cause = error
             raise
 
+    def convert(self) -> None:
+        """Convert the submission.
 
-class _Autograde(_Remembering, Autograde):
+        Raises:
+            Exception: What nbgrader, or a step of it, ran into.
+        """
+        try:
+            self.start()
+        except Exception as error:
+            raise (self.cause or error) from error
+
+
+class _Autograde(_Remembering, GuardedAutograde):
     """nbgrader's conversion of one submission.
 
     It expects the notebooks of the assignment, not those that happen to be in the folder: a notebook that was
@@ -219,17 +190,6 @@ class _Autograde(_Remembering, Autograde):
         self._submission = submission
         self._expected = [str(submission.folder / f"{task.notebook}{SUFFIX}") for task, _ in results]
 
-    def convert(self) -> None:
-        """Convert the submission.
-
-        Raises:
-            Exception: What nbgrader, or a step of it, ran into.
-        """
-        try:
-            self.start()
-        except Exception as error:
-            raise (self.cause or error) from error
-
     def init_notebooks(self) -> None:
         """Say what is to be converted."""
         self.assignments = {str(self._submission.folder): self._expected}
@@ -237,23 +197,21 @@ class _Autograde(_Remembering, Autograde):
 
 
 class _Feedback(_Remembering, GenerateFeedback):
-    """nbgrader's feedback for some submissions of one assignment."""
+    """nbgrader's feedback for one submission."""
 
-    def __init__(self, assignment: str, submissions: Sequence[Submission], course: CourseDirectory) -> None:
-        course.assignment_id = assignment
+    def __init__(self, submission: Submission, course: CourseDirectory) -> None:
+        course.assignment_id, course.student_id = submission.assignment, submission.student
         config = Config(course.config)
         config.HTMLExporter.template_name = "feedback"
         super().__init__(coursedir=course, config=config)
         self.force = True
-        self._submissions = submissions
+        self._submission = submission
 
     def init_notebooks(self) -> None:
         """Say what is to be converted."""
+        folder = Path(self._format_source(self._submission.assignment, self._submission.student))
         self.notebooks: list[str] = []
-        self.assignments = {}
-        for submission in self._submissions:
-            folder = Path(self._format_source(submission.assignment, submission.student))
-            self.assignments[str(folder)] = sorted(str(path) for path in folder.glob(f"*{SUFFIX}"))
+        self.assignments = {str(folder): sorted(str(path) for path in folder.glob(f"*{SUFFIX}"))}
 
 
 class _LogFile(logging.FileHandler):

@@ -1,0 +1,94 @@
+"""Whether anything has changed since a submission was written down, told from bytes alone.
+
+Rebuilding a notebook says it more exactly, but a class of a hundred students has a thousand notebooks, and most runs
+find nothing new. What differs here is looked at again, cell by cell.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from autograder import course
+from autograder.grading import sandboxing
+from autograder.grading.class_directory import CONFIG_NAME, SUFFIX
+from autograder.grading.submission import UnreadableSubmission, read_bytes
+from autograder.grading.timestamps import TIMESTAMP
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from autograder.grading.class_directory import ClassDirectory, Submission
+
+
+_CODE = {".py", ".json", ".xml", ".toml", ".j2", ".css", ".html"}
+
+
+class Fingerprints:
+    """The fingerprints of one class as it is now.
+
+    Args:
+        directory: The class.
+    """
+
+    def __init__(self, directory: ClassDirectory) -> None:
+        self._directory = directory
+
+    def of(self, submission: Submission) -> str:
+        """Changes with the submission and with everything that its grade, notebook and page are made from."""
+        files = [submission.folder / f"{name}{SUFFIX}" for name in self._notebooks(submission.assignment)]
+        return _digest(
+            [
+                self.of_sources(submission.assignment),
+                self._directory.secret.hex(),
+                str(sandboxing.switched_off(self._directory)),
+                submission.student,
+                *(_content(file) for file in (*files, submission.folder / TIMESTAMP)),
+            ]
+        )
+
+    def of_sources(self, assignment: str) -> str:
+        """Changes with an assignment's sources, with the class's configuration and with the code."""
+        return self._of_sources(assignment)
+
+    @functools.cache  # noqa: B019  (lives as long as one batch)
+    def _of_sources(self, assignment: str) -> str:
+        folder = self._directory.path / "source" / assignment
+        files = sorted(path for path in folder.rglob("*") if path.is_file())
+        return _digest(
+            [
+                _code(),
+                _content(self._directory.path / CONFIG_NAME),
+                assignment,
+                *(f"{path.relative_to(folder)} {_content(path)}" for path in files),
+            ]
+        )
+
+    @functools.cache  # noqa: B019
+    def _notebooks(self, assignment: str) -> list[str]:
+        return self._directory.notebooks(assignment)
+
+
+@functools.cache
+def _code() -> str:
+    """Stands for the code of the package and for the reference outputs."""
+    package = Path(course.__file__).parent
+    files = [*package.rglob("*"), *(course.root() / "solutions").glob("*/reference/*.json")]
+    return _digest(_content(path) for path in sorted(files) if path.suffix in _CODE)
+
+
+def _content(path: Path) -> str:
+    """Stands for the bytes of a file, or for the reason why it has none for us."""
+    try:
+        return hashlib.sha256(read_bytes(path)).hexdigest()
+    except UnreadableSubmission as error:
+        return str(error)
+
+
+def _digest(parts: Iterable[str]) -> str:
+    digest = hashlib.sha256()
+    for part in parts:
+        digest.update(f"{len(part)}:{part};".encode())
+    return digest.hexdigest()
