@@ -13,6 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.boxes.environment import box_environment
+from autograder.boxes.guards import BoxGuard
+from autograder.boxes.limits import Limits
 from autograder.boxes.sandbox import Bind, Enclosure
 from autograder.boxes.view import HOME, WORK
 from autograder.workspaces.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, Built
@@ -23,9 +25,16 @@ if TYPE_CHECKING:
 
     from autograder.boxes.sandbox import Running
 
-BUILD_SCRATCH_BYTES = 300_000_000
-BUILD_INODES = 20_000
-"""Bytes and files that a build may write in all; an interface package writes 5 million bytes in 600 files."""
+BUILD_LIMITS = Limits(
+    cpu_seconds=300.0,
+    memory_bytes=1_500_000_000,
+    processes=200,
+    scratch_bytes=300_000_000,
+    scratch_files=20_000,
+)
+"""An interface package takes 10 s of processor time, 400 MB, and writes 5 million bytes in 600 files."""
+PROGRAM_LIMITS = Limits(cpu_seconds=200.0, memory_bytes=1_500_000_000, processes=400)
+"""What a program may take, where the limits of the whole submission are not held by the system itself."""
 LOOK_EVERY = 0.5
 """Seconds between two questions whether a build is still wanted."""
 _ITS_TIME = 1e6
@@ -78,15 +87,18 @@ class BoxedJobs:
         folder = Path(tempfile.mkdtemp(prefix="build-", dir=self._folder))
         binds = [Bind(entry / "src", place / "src"), *_covers(hidden, folder)]
         variables = {"COLCON_DEFAULTS_FILE": os.devnull, "CMAKE_BUILD_PARALLEL_LEVEL": "2"}
+        guard = BoxGuard(BUILD_LIMITS)
         try:
             with Enclosure(
-                self._keepers, folder, scratch_bytes=BUILD_SCRATCH_BYTES, scratch_inodes=BUILD_INODES
-            ) as enclosure:
+                self._keepers, folder, guard=guard,
+                scratch_bytes=BUILD_LIMITS.scratch_bytes, scratch_inodes=BUILD_LIMITS.scratch_files,
+            ) as enclosure:  # fmt: skip
                 with enclosure.start(
                     command, binds=binds, environment=box_environment(variables), cwd=HOME,
                     output_bytes=MAX_LOG_BYTES,
                 ) as running:  # fmt: skip
-                    returncode = _wait(running, BUILD_SECONDS, cancelled)
+                    guard.watch(running.pid)
+                    returncode = _wait(running, BUILD_SECONDS, lambda: cancelled() or bool(guard.exceeded()))
                     output = running.said
                 if returncode != 0:
                     return Built(returncode, output)
@@ -97,6 +109,7 @@ class BoxedJobs:
                 whole = packed.returncode == 0 and not packed.cut
                 return Built(returncode, output, packed.output if whole else None)
         finally:
+            guard.close()
             shutil.rmtree(folder, ignore_errors=True)
 
     def start(
@@ -137,10 +150,14 @@ class BoxedProgram:
         self._running = running
         self._ended = False
         self._code: int | None = None
+        self._guard = BoxGuard(PROGRAM_LIMITS)
+        self._guard.watch(running.pid)
         self.pid = running.pid
 
     def read(self, within: float) -> bytes | None:
         """Its output, stdout and stderr in one."""
+        if self._guard.exceeded():
+            self._ended = True
         if self._ended:
             return b""
         if not select.select([self._running], [], [], within)[0]:
@@ -157,14 +174,15 @@ class BoxedProgram:
 
     def end(self) -> None:
         """Kill the box."""
+        self._guard.close()
         self._running.end()
 
 
-def _wait(running: Running, limit: float, cancelled: Callable[[], bool]) -> int | None:
+def _wait(running: Running, limit: float, over: Callable[[], bool]) -> int | None:
     """The exit code; None where it was ended."""
     deadline = time.monotonic() + limit
     while running.read(LOOK_EVERY):
-        if time.monotonic() > deadline or cancelled():
+        if time.monotonic() > deadline or over():
             return None
     return running.wait(limit).returncode
 

@@ -262,7 +262,8 @@ class _Run(threading.Thread):
         """What it says, line by line, as long as it is wanted."""
         left, line = MAX_OUTPUT, b""
         while not self._cancelled.is_set() and (data := program.read(0.1)) != b"":
-            data, left = (data or b"")[:left], left - len(data or b"")
+            data = (data or b"")[:left]
+            left -= len(data)
             *complete, line = (line + data).split(b"\n")
             for text in (*complete, line) if len(line) > MAX_LINE else complete:
                 self._say_output(text)

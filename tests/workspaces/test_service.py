@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from autograder.exercises.evidence import REPORTS
-from autograder.workspaces import door, front, service, sources
+from autograder.workspaces import door, front, service, session, sources
 from autograder.workspaces.jobs import Built
 from autograder.workspaces.lines import Hangup, Lines
 from autograder.workspaces.plain_jobs import PlainProgram
@@ -368,3 +368,20 @@ def test_garbage_at_a_door_hurts_nobody(doors: Doors, lab: Path, garbage: bytes)
     judge = FakeJudge(doors)
     judge.check(lab)
     assert judge.run()[-1]["say"] == "exited"
+
+
+def test_endless_output_is_cut_and_ends_with_the_run(
+    doors: Doors, jobs: FakeJobs, lab: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(session, "MAX_OUTPUT", 10_000)
+    jobs.script = "yes"
+    judge = FakeJudge(doors)
+    judge.check(lab)
+    judge.lines.say("start", run=1, path="ros2_ws")
+    size = 0
+    while size < 9_900:
+        size += len(judge.lines.hear().get("text", "")) + 1
+    judge.lines.say("stop", run=1, path="ros2_ws")
+    while (words := judge.lines.hear())["say"] != "stopped":
+        size += len(words["text"]) + 1
+    assert size <= 12_000
