@@ -209,6 +209,21 @@ def _not_written(evidence: Evidence) -> Advice | None:
     )
 
 
+def _returned_silently(evidence: Evidence) -> Advice | None:
+    """A function came back with nothing, said nothing and asked for nothing, in each run."""
+    for part in evidence:
+        ending = part.ending
+        silent = ending is not None and ending.name == "returned" and not part.said()
+        if not silent or any(part.of(kind) for kind in ("request", "goal", "message")):
+            return None
+    if not evidence.main.events:
+        return None
+    return Advice(
+        "Your function comes back at once, with nothing, and nobody was asked for anything: a step is not written yet.",
+        "Find the TODO in your solution cell and write that step; the hints below it open one at a time.",
+    )
+
+
 def _nothing_on_the_graph(evidence: Evidence) -> Advice | None:
     if any(survey.data.get("nodes") for part in evidence for survey in part.of("interface")):
         return None
@@ -234,6 +249,7 @@ def _never_constructed(evidence: Evidence) -> Advice | None:
 NEVER_CONSTRUCTED = Mistake("never_ended", _never_constructed, certain=True)
 
 NOTHING_THERE = (
+    Mistake("not_written", _returned_silently, certain=True),
     Mistake("main_guard", _main_guard, certain=True),
     Mistake("nothing_on_the_graph", _nothing_on_the_graph, certain=True),
     Mistake("not_written", _not_written),

@@ -6,7 +6,7 @@ import pytest
 
 from autograder import exercises
 from autograder.exercises.evidence import Event, Evidence, Part
-from autograder.judge import reference
+from autograder.judge import reference, trial
 
 
 @pytest.mark.parametrize("exercise_id", exercises.all_ids())
@@ -35,3 +35,17 @@ def test_each_criterion_and_mistake_can_look_at_any_evidence(exercise_id: str) -
         assert not criterion.judge(evidence).passed
     for mistake in exercise.mistakes:
         mistake.recognise(evidence)
+
+
+@pytest.mark.parametrize(
+    "exercise_id", ["exercise_1_2.three_ints", "exercise_1_3.cancel", "lab_1_3.client", "lab_1_4.client"]
+)
+@pytest.mark.parametrize("seen", [True, False], ids=["its client was seen", "it was gone too soon"])
+def test_a_function_that_comes_back_with_nothing_is_not_written_yet(exercise_id: str, seen: bool) -> None:
+    stored = reference.load(exercise_id)
+    survey = Event(0.5, "interface", "graph", {"nodes": ["/client"], **stored.interface} if seen else {})
+    returned = Event(0.6, "subject", "returned", {"value": None})
+    parts = [Part(part.name, part.inputs, [survey, returned]) for part in stored.parts]
+    diagnosis = trial.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
+    asked_nothing = {"not_written", "no_call", "one_call_only"} if seen else {"not_written"}
+    assert diagnosis.key in asked_nothing
