@@ -106,7 +106,7 @@ class _Keeper:
                 if message["name"] in self._started:
                     self._started[message["name"]].kill()
 
-    def _open(self, scratch: str, size: int, inodes: int, files: str) -> None:
+    def _open(self, scratch: str, size: int, inodes: int, files: str, texts: Mapping[str, str]) -> None:
         user, group = os.geteuid(), os.getegid()
         linux.unshare(linux.CLONE_NEWUSER | linux.CLONE_NEWNET | linux.CLONE_NEWNS)
         linux.map_only_user(0, user, group)
@@ -116,6 +116,9 @@ class _Keeper:
         linux.mount_tmpfs(place, size, inodes)
         for name in SCRATCH_FOLDERS:
             (place / name).mkdir()
+        for name, text in texts.items():
+            (place / name).parent.mkdir(exist_ok=True)
+            (place / name).write_text(text)
         if files:
             shutil.copytree(files, place / "work", dirs_exist_ok=True)
         self._channel.send({"say": "opened"})
@@ -138,8 +141,14 @@ class _Keeper:
         """
         if name in self._started:
             raise ValueError(f"there is a box named {name} already")
-        filter_file = _file_with(filter_for_boxes(hidden_memory=hidden_memory))
         info, writing = os.pipe()
+        kept = [writing]
+        seccomp = filter_for_boxes(hidden_memory=hidden_memory)
+        if seccomp:
+            kept.append(_file_with(seccomp))
+            arguments = [*arguments, "--seccomp", str(kept[-1])]
+        # In a file, because a box sees the command line of its first process, and folders of the host are in it.
+        kept.append(_file_with(b"".join(os.fsencode(word) + b"\0" for word in arguments)))
 
         def before_bwrap() -> None:
             for procs in cgroups:
@@ -147,23 +156,19 @@ class _Keeper:
             apply_rlimits(rlimits or {})
 
         idle = not command
-        words = [
-            "bwrap", "--info-fd", str(writing), *arguments,
-            *(("--seccomp", str(filter_file)) if filter_file >= 0 else ()),
-            "--", *(command or ("/bin/sh", "-c", "echo; exec cat")),
-        ]  # fmt: skip
+        words = ["bwrap", "--info-fd", str(writing), "--args", str(kept[-1]), "--"]
         try:
             process = subprocess.Popen(
-                words,
+                [*words, *(command or ("/bin/sh", "-c", "echo; exec cat"))],
                 stdin=subprocess.PIPE if idle else descriptors[0],
                 stdout=subprocess.PIPE if idle else descriptors[1],
                 stderr=subprocess.STDOUT if idle else descriptors[2],
-                pass_fds=(writing, filter_file) if filter_file >= 0 else (writing,),
+                pass_fds=kept,
                 preexec_fn=before_bwrap,  # this process has no thread
                 start_new_session=True,
             )
         finally:
-            close_all([writing, filter_file])
+            close_all(kept)
         started = self._started[name] = _Started(process, os.pidfd_open(process.pid))
         with open(info, "rb") as told:  # noqa: PTH123 (a descriptor)
             text = told.read()
@@ -204,10 +209,8 @@ class _Keeper:
 
 
 def _file_with(data: bytes) -> int:
-    """A descriptor of an anonymous file with this content; -1 for none."""
-    if not data:
-        return -1
-    descriptor = os.memfd_create("filter")
+    """A descriptor of an anonymous file with this content, at its beginning."""
+    descriptor = os.memfd_create("for-bubblewrap")
     os.write(descriptor, data)
     os.lseek(descriptor, 0, os.SEEK_SET)
     return descriptor

@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from autograder.boxes.channel import Channel, ChannelClosed, close_all
 from autograder.boxes.forkserver import KEEPER_MODULE, WarmProcess
-from autograder.boxes.view import HOME, WORK, Bind, box_arguments, write_etc
+from autograder.boxes.view import ETC, ETC_FILES, HOME, WORK, Bind, box_arguments
 from autograder.boxes.warm import BESIDE
 
 if TYPE_CHECKING:
@@ -114,7 +114,6 @@ class Enclosure:
         self._folder = folder
         self._scratch = folder / "scratch"
         self._scratch.mkdir(parents=True)
-        write_etc(folder / "etc")
         self._guard = guard
         self._boxes: dict[str, Box] = {}
         self._ended: dict[str, int] = {}
@@ -129,6 +128,7 @@ class Enclosure:
                 size=scratch_bytes,
                 inodes=scratch_inodes,
                 files=str(_written(files, folder / "files")) if files else "",
+                texts={f"{ETC}/{name}": text for name, text in ETC_FILES.items()},
             )
         except BaseException:
             self._channel.close()
@@ -149,7 +149,7 @@ class Enclosure:
             "started",
             say="start",
             name=name,
-            arguments=box_arguments(self._scratch, self._folder / "etc", binds, scratch_visible=scratch),
+            arguments=box_arguments(self._scratch, binds, scratch_visible=scratch),
             command=[],
         )
         box = Box(name, message["pid"], descriptors[0])
@@ -208,7 +208,7 @@ class Enclosure:
         with self._turn:
             self._commands += 1
             name = f"command {self._commands}"
-        words = box_arguments(self._scratch, self._folder / "etc", binds, scratch_visible=scratch)
+        words = box_arguments(self._scratch, binds, scratch_visible=scratch)
         for variable, value in (box_environment() if environment is None else environment).items():
             words += ["--setenv", variable, value]
         reading, writing = os.pipe()

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 _SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32")
-_ETC = (
+_ETC_OF_THE_HOST = (
     "ld.so.cache",
     "ld.so.conf",
     "ld.so.conf.d",
@@ -48,7 +48,9 @@ _PROC_HIDDEN = (
     "pagetypeinfo", "slabinfo", "vmallocinfo",
 )  # fmt: skip
 
-_FILES = {
+ETC = "etc"
+"""The folder of the scratch that no box can write to."""
+ETC_FILES = {
     "passwd": f"{USER}:x:{USER_ID}:{USER_ID}::{HOME}:/bin/sh\n",
     "group": f"{USER}:x:{USER_ID}:\n",
     "hosts": "127.0.0.1 localhost box\n",
@@ -80,14 +82,11 @@ class Bind:
         ]
 
 
-def box_arguments(
-    scratch: Path, etc: Path, binds: Sequence[Bind], *, scratch_visible: bool = True
-) -> list[str]:
+def box_arguments(scratch: Path, binds: Sequence[Bind], *, scratch_visible: bool = True) -> list[str]:
     """The arguments of bubblewrap for a box.
 
     Args:
         scratch: The keeper's file system in memory.
-        etc: A folder that :func:`write_etc` has filled.
         binds: What is to be seen beside the system, Python and the course's package.
         scratch_visible: Give the box the scratch as its home, its ``/tmp`` and its ``/dev/shm``. Else it has small
             ones of its own.
@@ -98,7 +97,7 @@ def box_arguments(
         "--cap-drop", "ALL", "--die-with-parent", "--clearenv",
     ]  # fmt: skip
     words += _system()
-    words += ["--ro-bind", str(etc), "/etc"]
+    words += _etc(scratch)
     words += ["--proc", "/proc", *_proc_covers(), "--dev", "/dev"]
     if scratch_visible:
         for name, place in (("home", HOME), ("work", WORK), ("tmp", Path("/tmp")), ("shm", Path("/dev/shm"))):
@@ -112,32 +111,14 @@ def box_arguments(
     return [*words, "--remount-ro", "/dev", "--remount-ro", "/"]
 
 
-def write_etc(folder: Path) -> None:
-    """Make the ``/etc`` of the boxes: a user, a host, the linker's and the clock's files, no name service.
-
-    Args:
-        folder: Made here.
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, text in _FILES.items():
-        (folder / name).write_text(text)
-    for name in _ETC:
-        source = Path("/etc") / name
-        if source.is_dir():
-            _copy_links(source, folder / name)
-        elif source.exists():
-            (folder / name).write_bytes(source.read_bytes())
-
-
-def _copy_links(source: Path, folder: Path) -> None:
-    """Copy a flat folder of small files and links, such as ``/etc/alternatives``."""
-    folder.mkdir(exist_ok=True)
-    for path in source.iterdir():
-        copy = folder / path.name
-        if path.is_symlink():
-            copy.symlink_to(path.readlink())
-        elif path.is_file():
-            copy.write_bytes(path.read_bytes())
+def _etc(scratch: Path) -> list[str]:
+    """The ``/etc`` of a box: a user, a host, the linker's and the clock's files, no name service."""
+    words: list[str] = []
+    for name in ETC_FILES:
+        words += ["--ro-bind", str(scratch / ETC / name), f"/etc/{name}"]
+    for name in _ETC_OF_THE_HOST:
+        words += ["--ro-bind-try", f"/etc/{name}", f"/etc/{name}"]
+    return words
 
 
 def _proc_covers() -> list[str]:

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import psutil
 import pytest
 
-from autograder.boxes import guards
+from autograder.boxes import cgroups, guards
 from autograder.boxes.execution import Cell, Check, Ended, Execution
-from autograder.boxes.forkserver import Addresses
 from autograder.boxes.limits import Limits
 from autograder.boxes.place import BoxedPlace, JudgeSetting
 from autograder.boxes.runner import run_notebook
 from autograder.boxes.scratch import scratch_folder
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from autograder.boxes.forkserver import Addresses
 
 CHECK = Cell("print('alive')", check=Check("lab.one", "One", points=10, worth=10, limit=2), name="lab-one")
 
@@ -36,8 +40,8 @@ def run(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses) -> Ite
     with pytest.MonkeyPatch.context() as patch:
         if request.param == "watched":
             patch.setattr(guards, "usable", dict)
-            patch.setattr(guards, "Group", lambda memory, processes: guards_group(memory, processes))
-        elif len(guards.usable()) < 2:
+            patch.setattr(guards, "Group", lambda memory, processes: cgroups.Group(memory, processes, {}))
+        elif len(cgroups.usable()) < 2:
             pytest.skip("this host lets us make no cgroups")
 
         def go(source: str, **changed: float) -> Execution:
@@ -56,13 +60,6 @@ def run(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses) -> Ite
                 )
 
         yield go
-
-
-def guards_group(memory: int, processes: int) -> guards.Group:
-    """A group where none can be made."""
-    from autograder.boxes.cgroups import Group
-
-    return Group(memory, processes, {})
 
 
 def key(execution: Execution) -> str:
@@ -98,7 +95,10 @@ def test_processes(run: Run) -> None:
 
 
 def test_threads_that_the_system_refuses(run: Run) -> None:
-    threads = "import threading, time\nfor _ in range(300):\n    threading.Thread(target=time.sleep, args=(600,)).start()"
+    threads = (
+        "import threading, time\nfor _ in range(300):\n"
+        "    threading.Thread(target=time.sleep, args=(600,)).start()"
+    )
     execution = run(threads + '\ntime.sleep(3)\nraise RuntimeError("can\'t start new thread")', processes=60)
     assert execution.cells[0].ended in (Ended.TOO_MANY_PROCESSES, Ended.RAISED)
 

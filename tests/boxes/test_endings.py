@@ -1,0 +1,137 @@
+"""However a box ends, and whoever is killed, no process of it lives on."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import psutil
+import pytest
+
+from autograder.boxes.entering import Entrance
+from autograder.boxes.environment import box_environment
+from autograder.boxes.forked import ForkedProcess
+from autograder.boxes.forkserver import KEEPER_MODULE, WarmProcess
+from autograder.boxes.sandbox import Enclosure
+from autograder.boxes.view import WORK
+from autograder.boxes.warm import BESIDE, INSIDE
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from autograder.boxes.forkserver import Addresses
+
+STUBBORN = "trap '' INT TERM HUP; (setsid sh -c \"trap '' INT TERM HUP; sleep 7654.5\" &); sleep 7654.5"
+WORKER = """
+import sys, time
+from pathlib import Path
+from autograder.boxes.sandbox import Enclosure
+enclosure = Enclosure(sys.argv[1], Path(sys.argv[2]))
+running = enclosure.start(["sh", "-c", sys.argv[3]])
+print("up", flush=True)
+time.sleep(600)
+"""
+
+
+def sleepers() -> list[psutil.Process]:
+    """What the stubborn program has started."""
+    return [p for p in psutil.process_iter(["cmdline"]) if p.info["cmdline"] == ["sleep", "7654.5"]]
+
+
+def gone(within: float = 10.0) -> bool:
+    """Whether all sleepers end, which the kernel brings about by itself a moment after the cause."""
+    _, alive = psutil.wait_procs(sleepers(), timeout=within)
+    return not alive and not sleepers()
+
+
+def await_sleepers() -> None:
+    while len(sleepers()) < 2:
+        time.sleep(0.01)
+
+
+@pytest.fixture
+def keepers(boxed: Addresses, tmp_path: Path) -> Iterator[WarmProcess]:
+    process = WarmProcess(BESIDE, KEEPER_MODULE, tmp_path / "keepers")
+    yield process
+    process.stop()
+
+
+def test_closing_ends_all(keepers: WarmProcess, tmp_path: Path) -> None:
+    with Enclosure(keepers.address, tmp_path / "box") as enclosure:
+        enclosure.start(["sh", "-c", STUBBORN])
+        await_sleepers()
+    assert gone()
+
+
+def kill_worker(keepers: WarmProcess, worker: subprocess.Popen[bytes]) -> None:
+    worker.kill()
+
+
+def kill_keeper(keepers: WarmProcess, worker: subprocess.Popen[bytes]) -> None:
+    for child in psutil.Process(keepers.pid).children():
+        child.kill()
+
+
+def kill_warm(keepers: WarmProcess, worker: subprocess.Popen[bytes]) -> None:
+    os.kill(keepers.pid, signal.SIGKILL)
+
+
+@pytest.mark.parametrize("kill", [kill_worker, kill_keeper, kill_warm])
+def test_killing_anyone_ends_all(
+    keepers: WarmProcess, tmp_path: Path, kill: Callable[[WarmProcess, subprocess.Popen[bytes]], None]
+) -> None:
+    worker = subprocess.Popen(
+        [sys.executable, "-c", WORKER, keepers.address, str(tmp_path / "box"), STUBBORN],
+        stdout=subprocess.PIPE,
+    )
+    try:
+        assert worker.stdout is not None
+        assert worker.stdout.readline() == b"up\n"
+        await_sleepers()
+        kill(keepers, worker)
+        assert gone()
+    finally:
+        worker.kill()
+        worker.communicate()
+    assert str(tmp_path) not in Path("/proc/self/mountinfo").read_text()
+
+
+def test_a_process_that_entered_ends_with_its_box(keepers: WarmProcess, tmp_path: Path) -> None:
+    warm = WarmProcess(INSIDE, "tests.boxes.sleeping_module", tmp_path / "warm", extra={"PYTHONPATH": ROOT})
+    try:
+        with Enclosure(keepers.address, tmp_path / "box") as enclosure:
+            box = enclosure.box("student")
+            entrance = Entrance(cwd=str(WORK), environment=box_environment(), boxed=True)
+            process = ForkedProcess(warm.address, entrance, [box.pidfd])
+            await_sleepers()
+            assert process.alive
+            enclosure.end("student")
+            assert process.wait(10.0)
+            assert not process.lost
+            process.close()
+        assert gone()
+    finally:
+        warm.stop()
+
+
+def test_a_process_whose_grader_hangs_up_is_killed(keepers: WarmProcess, tmp_path: Path) -> None:
+    warm = WarmProcess(INSIDE, "tests.boxes.sleeping_module", tmp_path / "warm", extra={"PYTHONPATH": ROOT})
+    try:
+        with Enclosure(keepers.address, tmp_path / "box") as enclosure:
+            box = enclosure.box("student")
+            entrance = Entrance(cwd=str(WORK), environment=box_environment(), boxed=True)
+            process = ForkedProcess(warm.address, entrance, [box.pidfd])
+            inside = psutil.Process(process.pid)
+            process._channel.close()
+            psutil.wait_procs([inside], timeout=10.0)
+            assert not inside.is_running()
+    finally:
+        warm.stop()
+
+
+ROOT = str(Path(__file__).resolve().parents[2])

@@ -1,0 +1,295 @@
+"""What a box can see and touch, and what not: asked from inside, by a notebook in a box and by a command."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import socket
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from autograder import course
+from autograder.boxes.execution import Cell
+from autograder.boxes.limits import Limits
+from autograder.boxes.place import BoxedPlace, JudgeSetting
+from autograder.boxes.runner import run_notebook
+from autograder.boxes.sandbox import Bind, Enclosure
+from autograder.boxes.scratch import scratch_folder
+from autograder.boxes.view import installation
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from autograder.boxes.forkserver import Addresses
+
+Ask = Callable[[str], Any]
+
+
+class SilentJudge:
+    def open(self, exercise_id: str) -> None:
+        pass
+
+    def close(self) -> None:
+        return None
+
+
+@pytest.fixture(params=["the kernel", "a command"])
+def ask(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses) -> Ask:
+    """Runs Python code in a box; the answer is what it leaves in ``answer``."""
+    source = "import ctypes, errno, json, os, pathlib, socket, subprocess, sys\n{code}\nprint('>' + json.dumps(answer))"
+
+    def kernel(code: str) -> Any:
+        limits = Limits(cell_seconds=30)
+        with (
+            scratch_folder(tmp_path) as folder,
+            BoxedPlace(boxed, folder, {"data/a.txt": b"hello"}, {}, "JUDGE", JudgeSetting(), limits) as place,
+        ):
+            run = run_notebook(
+                [Cell(source.format(code=code))],
+                judge=contextlib.nullcontext(SilentJudge()),
+                start=place.start_kernel,
+                folder=folder,
+                limits=limits,
+                guard=place.guard,
+            ).cells[0]
+        return answer("".join(output.get("text", "") for output in run.outputs) or run.error)
+
+    def command(code: str) -> Any:
+        with (
+            scratch_folder(tmp_path) as folder,
+            Enclosure(boxed.keepers, folder / "box", files={"data/a.txt": b"hello"}) as enclosure,
+        ):
+            done = enclosure.run(["python", "-c", source.format(code=code)], limit=30.0)
+        return answer(done.output.decode())
+
+    def answer(said: str) -> Any:
+        line = next((line for line in said.splitlines() if line.startswith(">")), None)
+        assert line is not None, said
+        return json.loads(line[1:])
+
+    return kernel if request.param == "the kernel" else command
+
+
+def test_its_own_files_and_the_notebooks(ask: Ask) -> None:
+    code = (
+        "answer = [pathlib.Path('data/a.txt').read_text(), os.getcwd(), os.environ['HOME'], os.getuid() != 0]"
+    )
+    assert ask(code) == ["hello", "/home/student/notebook", "/home/student", True]
+
+
+def test_nothing_of_the_hosts_files(ask: Ask, tmp_path: Path) -> None:
+    (tmp_path / "gradebook.db").write_text("points")
+    root = course.root()
+    secret = [
+        root / "solutions",
+        root / "tests",
+        root / ".git",
+        root / "pyproject.toml",
+        tmp_path,
+        Path.home() / ".bashrc",
+    ]
+    names = [str(path) for path in secret if path.exists()]
+    assert ask(f"answer = [name for name in {names!r} if os.path.exists(name)]") == []
+    assert ask("answer = sorted(os.listdir('/home')) + os.listdir('/tmp')") == ["student"]
+
+
+def test_only_the_installation_below_a_home_folder(ask: Ask) -> None:
+    home = str(Path.home())
+    code = (
+        f"answer = [os.path.join(folder, name) for folder, _, names in os.walk({home!r}, onerror=None)"
+        f" for name in names if not any(folder.startswith(root) for root in {[str(p) for p in installation()]!r})]"
+    )
+    assert ask(code) == []
+
+
+def test_nothing_but_the_scratch_can_be_written(ask: Ask) -> None:
+    code = """
+answer = []
+places = ["/", "/usr", "/usr/local/lib", "/etc", "/dev", "/run", "/home", "/proc/sys/kernel", "/sys", "/var"]
+for place in [*places, sys.prefix, *sys.path]:
+    try:
+        with open(os.path.join(place, "mine"), "w"):
+            answer.append(place)
+    except OSError:
+        pass
+for name in ["sys/kernel/core_pattern", "sys/vm/drop_caches", "sysrq-trigger", "mtrr", "../etc/passwd"]:
+    try:
+        os.close(os.open("/proc/" + name, os.O_WRONLY))
+        answer.append(name)
+    except OSError:
+        pass
+"""
+    writable = ask(code)
+    # An empty entry of sys.path is the notebook's own folder; mtrr is hidden by what takes anything and keeps nothing.
+    assert [name for name in writable if name not in ("", "mtrr")] == []
+
+
+def test_the_kernels_settings_stay_as_they_are(ask: Ask) -> None:
+    before = Path("/proc/sys/kernel/core_pattern").read_text()
+    ask("answer = subprocess.run('echo mine > /proc/sys/kernel/core_pattern', shell=True).returncode")
+    assert Path("/proc/sys/kernel/core_pattern").read_text() == before
+
+
+def test_no_variable_of_the_host(ask: Ask) -> None:
+    known = (
+        "PATH", "LANG", "LANGUAGE", "TZ", "HOME", "USER", "TMPDIR", "PWD", "IPYTHONDIR", "JUPYTER_", "LD_LIBRARY_PATH",
+        "VIRTUAL_ENV", "PYTHON", "LC_", "ROS_", "RMW_", "RCUTILS_", "AMENT_", "CMAKE_PREFIX", "COLCON_PREFIX", "CONDA_",
+        "FASTDDS_", "JUDGE", "_", "CLICOLOR", "FORCE_COLOR", "GIT_PAGER", "PAGER", "TERM", "MPLBACKEND", "PYDEVD",
+        "SHLVL", "KERNEL_", "JPY",
+    )  # fmt: skip
+    for code in ("answer = sorted(os.environ)", "answer = open('/proc/self/environ').read().split(chr(0))"):
+        assert [name for name in ask(code) if name and not name.startswith(known)] == []
+
+
+def test_no_other_process(ask: Ask, tmp_path: Path) -> None:
+    code = "answer = [open(f'/proc/{pid}/cmdline').read() for pid in os.listdir('/proc') if pid.isdecimal()]"
+    lines = ask(code)
+    assert 1 <= len(lines) <= 4
+    assert not [line for line in lines if str(tmp_path) in line]
+
+
+def test_no_network_but_its_own_loopback(ask: Ask) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+        code = f"""
+answer = []
+for address in [("127.0.0.1", {port}), ("10.0.0.1", 80), ("1.1.1.1", 53)]:
+    with socket.socket() as s:
+        s.settimeout(2)
+        answer.append(s.connect_ex(address))
+answer.append(sorted(name for _, name in socket.if_nameindex()))
+"""
+        *refused, interfaces = ask(code)
+    assert 0 not in refused
+    assert interfaces == ["lo"]
+
+
+def test_no_abstract_socket_of_the_host(ask: Ask) -> None:
+    name = f"\0autograder-test-{os.getpid()}"
+    with socket.socket(socket.AF_UNIX) as server:
+        server.bind(name)
+        server.listen()
+        code = f"s = socket.socket(socket.AF_UNIX); answer = s.connect_ex({name!r})"
+        assert ask(code) != 0
+
+
+def test_no_host_of_a_virtual_machine(ask: Ask) -> None:
+    code = """
+answer = []
+for family in (38, 40, 17):  # AF_ALG, AF_VSOCK, AF_PACKET
+    try:
+        socket.socket(family, socket.SOCK_STREAM)
+        answer.append(family)
+    except OSError:
+        pass
+"""
+    assert ask(code) == []
+
+
+def test_no_right_at_all(ask: Ask) -> None:
+    code = "answer = dict(line.split(':', 1) for line in open('/proc/self/status').read().splitlines())"
+    status = {name: value.strip() for name, value in ask(code).items()}
+    for kind in ("CapInh", "CapPrm", "CapEff", "CapBnd", "CapAmb"):
+        assert int(status[kind], 16) == 0, kind
+    assert status["NoNewPrivs"] == "1"
+    assert status["Seccomp"] == "2"
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "libc.unshare(0x10000000)",  # a user namespace of one's own
+        "libc.mount(b'tmpfs', b'/tmp', b'tmpfs', 0, None)",
+        "libc.ptrace(16, 1, 0, 0)",
+        "libc.setns(os.open('/proc/self/ns/net', 0), 0)",
+        "libc.syscall(250, 0, -3, 0)",  # keyctl
+        "libc.syscall(425, 8, 0)",  # io_uring_setup
+        "libc.syscall(321, 0, 0, 0)",  # bpf
+        "libc.syscall(298, 0, 0, -1, -1, 0)",  # perf_event_open
+        "libc.syscall(323, 0)",  # userfaultfd
+        "libc.syscall(304, 0, 0, 0)",  # open_by_handle_at
+        "libc.syscall(56, 0x10000000 | 17, 0, 0, 0, 0)",  # clone with a user namespace
+        "libc.chroot(b'/tmp')",
+        "libc.sethostname(b'x', 1)",
+    ],
+)
+@pytest.mark.skipif(os.uname().machine != "x86_64", reason="the numbers are those of x86_64")
+def test_calls_that_are_refused(ask: Ask, call: str) -> None:
+    code = f"libc = ctypes.CDLL(None, use_errno=True)\nresult = {call}\nanswer = [result, ctypes.get_errno()]"
+    result, number = ask(code)
+    assert result == -1
+    assert number in (1, 38), os.strerror(number)  # EPERM, ENOSYS
+
+
+def test_what_honest_programs_need_is_there(ask: Ask) -> None:
+    code = """
+import multiprocessing, pty, tempfile, threading
+results = []
+thread = threading.Thread(target=results.append, args=(1,)); thread.start(); thread.join()
+results.append(subprocess.run(["sh", "-c", "exit 3"]).returncode)
+results.append(os.WEXITSTATUS(pty.spawn(["true"])))
+with tempfile.NamedTemporaryFile() as file:
+    results.append(os.path.exists(file.name))
+with multiprocessing.get_context("fork").Pool(2) as pool:
+    results.append(pool.map(abs, [-1, -2]))
+results.append(len(os.sched_getaffinity(0)) == os.cpu_count())
+results.append(open("/dev/urandom", "rb").read(1) != b"")
+answer = results
+"""
+    assert ask(code) == [1, 3, 0, True, [1, 2], True, True]
+
+
+@pytest.fixture
+def enclosure(tmp_path: Path, boxed: Addresses) -> Iterator[Enclosure]:
+    with scratch_folder(tmp_path) as folder, Enclosure(boxed.keepers, folder / "box") as made:
+        yield made
+
+
+def test_a_commands_end_and_output(enclosure: Enclosure) -> None:
+    done = enclosure.run(["sh", "-c", "echo out; echo err >&2; exit 7"], limit=10.0)
+    assert (done.returncode, done.output, done.cut, done.timed_out) == (7, b"out\nerr\n", False, False)
+    assert enclosure.run(["sh", "-c", "kill -9 $$"], limit=10.0).returncode == -9
+
+
+def test_a_command_at_its_limit_and_its_daemons(enclosure: Enclosure) -> None:
+    done = enclosure.run(["sh", "-c", "setsid sleep 987.25 & sleep 987.25"], limit=0.5)
+    assert done.timed_out
+    assert subprocess.run(["pgrep", "-f", "sleep 987.25"], stdout=subprocess.PIPE).stdout == b""
+
+
+def test_a_commands_output_is_cut(enclosure: Enclosure) -> None:
+    done = enclosure.run(["sh", "-c", "head -c 3000000 /dev/zero"], limit=10.0, output_bytes=1000)
+    assert done.cut
+    assert len(done.output) == 1000
+
+
+def test_a_bind_shows_a_folder_and_protects_it(enclosure: Enclosure, tmp_path: Path) -> None:
+    (tmp_path / "given").mkdir()
+    (tmp_path / "given" / "file").write_text("text")
+    binds = [Bind(tmp_path / "given", Path("/given"))]
+    done = enclosure.run(["sh", "-c", "cat /given/file; echo x > /given/file"], limit=10.0, binds=binds)
+    assert done.output.startswith(b"text")
+    assert done.returncode != 0
+    assert (tmp_path / "given" / "file").read_text() == "text"
+
+
+def test_boxes_of_one_submission_share_a_network_and_others_do_not(
+    tmp_path: Path, boxed: Addresses, enclosure: Enclosure
+) -> None:
+    serve = (
+        "import socket; s = socket.create_server(('127.0.0.1', 4242)); print('up', flush=True); s.accept()"
+    )
+    knock = ["python", "-c", "import socket; socket.create_connection(('127.0.0.1', 4242), 5)"]
+    with (
+        Enclosure(boxed.keepers, tmp_path / "neighbour") as neighbour,
+        enclosure.start(["python", "-c", serve]) as server,
+    ):
+        while server.said != b"up\n":
+            assert server.read(10.0)
+        assert neighbour.run(knock, limit=10.0).returncode != 0
+        assert enclosure.run(knock, limit=10.0).returncode == 0
