@@ -235,18 +235,25 @@ def folder_space(name: str, folder: Path, needed: int, remedy: str) -> Finding:
 
 
 def sandbox() -> list[Finding]:
-    """Look at whether a submission could be shut off in a sandbox of its own."""
+    """Look at whether submissions can be shut off in boxes, and at what holds a box to its limits."""
+    name = "Sandbox"
     path = shutil.which("bwrap")
     if path is None:
         return _not_there("sandbox")
-    # What such a sandbox is made of: its own processes, its own network, nothing else to see.
-    code, text = _output([path, "--ro-bind", "/", "/", "--unshare-all", "--proc", "/proc", "true"])
-    if code != 0:
-        remedy = (
-            "User namespaces may be off here: look at sysctl kernel.unprivileged_userns_clone, or AppArmor"
-        )
-        return [Finding("bubblewrap", "optional", f"{path} cannot work here: {_last_line(text)}", remedy)]
-    return [Finding("bubblewrap", "ok", f"{_first_line(_output([path, '--version'])[1])}, {path}")]
+    # A process of its own: this one must also run where the course's package is not installed yet.
+    line = _last_line(_output([sys.executable, "-m", "autograder.boxes.report"])[1])
+    try:
+        report = json.loads(line)
+        why, guards = report["why_impossible"], report["guards"]
+    except (ValueError, LookupError, TypeError):
+        return [Finding(name, "unchecked", f"boxes cannot be looked at: {line}")]
+    if why:
+        return [
+            Finding(name, "optional", f"none is possible here: {why}", "It is needed to grade a class only.")
+        ]
+    bubblewrap = _first_line(_output([path, "--version"])[1])
+    found = [Finding(name, "ok", f"a program was run in a box ({bubblewrap}, {path})")]
+    return found + [Finding(f"Limit on {limit}", "ok", guard) for limit, guard in guards.items()]
 
 
 def for_tests() -> list[Finding]:

@@ -99,7 +99,7 @@ TABLE = (
     ),
     SystemPackage(
         title="bubblewrap",
-        reason="to shut submissions off from each other",
+        reason="to grade a class: it shuts submissions off from everything",
         need="sandbox",
         debian=("bubblewrap",),
         is_there=lambda: find_program("bwrap") is not None,

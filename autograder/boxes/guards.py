@@ -11,7 +11,7 @@ import os
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from autograder.boxes.cgroups import Group, usable
 from autograder.boxes.execution import Ended
@@ -191,13 +191,18 @@ class NoGuard:
         return None
 
 
-def guards() -> Mapping[str, Any]:
+def guards() -> Mapping[str, str]:
     """Which guard holds each limit on this host, for ``autograder doctor``: words by limit."""
-    watched = "looked at four times a second"
+    watched = "looked at four times a second (no cgroup can be made here)"
     return {
-        "memory": "cgroup" if "memory" in usable() else watched,
-        "processes": "cgroup" if "pids" in usable() else watched,
-        "processor time": f"{watched}, and a limit on each process",
-        "disk": "a file system in memory with a size and a number of files",
+        "memory": _cgroup("memory") or watched,
+        "processes": _cgroup("pids") or watched,
+        "processor time": "looked at four times a second, and a limit on each process",
+        "disk": "a file system in memory, with a size and a number of files",
         "open files": "a limit on each process",
     }
+
+
+def _cgroup(kind: str) -> str:
+    controller = usable().get(kind)
+    return f"cgroup (version {controller.version})" if controller else ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from typing import TYPE_CHECKING
 
 import pytest
@@ -129,18 +130,28 @@ def test_room_in_a_folder(tmp_path: Path) -> None:
     assert doctor.folder_space("Disk", tmp_path / "nowhere", 1, "Make room.").state == "missing"
 
 
-def test_a_sandbox_that_is_not_there_or_cannot_work_is_optional(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_sandbox_that_is_not_there_is_optional(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     (found,) = doctor.sandbox()
     assert (found.name, found.state) == ("bubblewrap", "optional")
+    assert "grade a class" in found.detail
+
+
+def test_a_sandbox_that_cannot_work_is_optional_and_says_why(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     program(tmp_path, "bwrap", "echo 'bwrap: No permissions to create new namespace' >&2; exit 1")
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
     (found,) = doctor.sandbox()
-    assert found.state == "optional"
+    assert (found.name, found.state) == ("Sandbox", "optional")
     assert "No permissions" in found.detail
-    program(tmp_path, "bwrap", "echo bubblewrap 0.8.0")
-    assert doctor.sandbox()[0].state == "ok"
+
+
+def test_a_sandbox_that_works_and_its_guards() -> None:
+    first, *limits = doctor.sandbox()
+    if first.state != "ok":
+        pytest.skip(first.detail)
+    assert {"Limit on memory", "Limit on processes", "Limit on disk"} <= {found.name for found in limits}
 
 
 def test_a_missing_compiler_comes_with_its_remedy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
