@@ -195,6 +195,11 @@ def new_class(folder: Path, assignments: tuple[str, ...]) -> None:
     is_flag=True,
     help="Run submissions with all your rights where no sandbox is possible. They could change any grade.",
 )
+@click.option(
+    "--scheduler",
+    metavar="tcp://HOST:PORT",
+    help="Have the workers of this Dask scheduler run the submissions (see `autograder worker`).",
+)
 def grade(
     folder: Path,
     assignments: tuple[str, ...],
@@ -202,10 +207,13 @@ def grade(
     again: bool,
     jobs: int | None,
     unsafe_no_sandbox: bool,
+    scheduler: str | None,
 ) -> None:
     """Grade what was submitted in the class directory FOLDER."""
     from autograder import grading
 
+    if scheduler is not None and jobs is not None:
+        fail("--jobs is for this machine; each worker of a cluster has its own: autograder worker --jobs")
     with grading_errors():
         report = grading.grade(
             folder,
@@ -214,6 +222,7 @@ def grade(
             again=again,
             jobs=jobs,
             unsafe_no_sandbox=unsafe_no_sandbox,
+            scheduler=scheduler,
         )
     sys.exit(report.exit_code)
 

@@ -41,6 +41,7 @@ def grade(
     again: bool = False,
     jobs: int | None = None,
     unsafe_no_sandbox: bool = False,
+    scheduler: str | None = None,
     console: Console | None = None,
 ) -> GradeReport:
     """Grade a class and print what came of it; see :func:`autograder.grading.batch.grade`.
@@ -51,7 +52,8 @@ def grade(
         students: Only these; all by default.
         again: Execute everything anew, also what is unchanged.
         jobs: Notebooks executed at once; as many as there are processors by default.
-        unsafe_no_sandbox: Run submissions with all rights of this process.
+        unsafe_no_sandbox: Run submissions with all rights of whatever process executes them.
+        scheduler: The address of a Dask scheduler whose workers execute the notebooks; this machine by default.
         console: Where the result is printed; standard output by default. Progress goes to standard error.
 
     Raises:
@@ -63,7 +65,9 @@ def grade(
 
     if unsafe_no_sandbox:
         sandboxing.switch_off(path)
-    report = grade_class(path, assignments=assignments, students=students, again=again, jobs=jobs)
+    report = grade_class(
+        path, assignments=assignments, students=students, again=again, jobs=jobs, scheduler=scheduler
+    )
     show(report, console)
     return report
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import os
 import time
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -19,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from autograder.grading import gradebook
+from autograder.grading import gradebook, places
 from autograder.grading.class_directory import ClassDirectory, Refused, Submission
 from autograder.grading.errors import GradingError, clear_disk_errors, is_disk_full
 from autograder.grading.fingerprints import Fingerprints
@@ -36,6 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from autograder.boxes.execution import Execution
+    from autograder.grading.places import Execute
     from autograder.grading.released import GradedCell
     from autograder.grading.task import Task
     from autograder.grading.writer import Writer
@@ -80,6 +80,7 @@ def grade(
     feedback: bool = True,
     console: Console | None = None,
     judge: str = "",
+    scheduler: str | None = None,
 ) -> GradeReport:
     """Grade what was submitted in a class.
 
@@ -87,40 +88,49 @@ def grade(
         path: The class directory.
         assignments: Only these; all by default.
         students: Only these; all by default.
-        jobs: Notebooks executed at once; as many as there are processors by default.
+        jobs: Notebooks executed at once; as many as load and memory allow by default.
         again: Execute everything anew, also what is unchanged.
         feedback: Make the pages that go back to the students.
         console: Where progress is shown; standard error by default.
         judge: What makes a judge, as ``module:class``; the real one by default.
+        scheduler: The address of a Dask scheduler whose workers execute the notebooks; this machine by default.
 
     Returns:
         The report. Submissions that could not be graded are in it, with zero points and the reason.
 
     Raises:
-        GradingError: The class cannot be graded: it is none, it is busy, the disk is full.
+        GradingError: The class cannot be graded: it is none, it is busy, the disk is full, nobody can execute it.
     """
     began = time.monotonic()
-    directory = ClassDirectory(Path(path))
     console = console or Console(stderr=True)
-    from autograder.grading import sandboxing
+    directory = ClassDirectory(Path(path))
+    if scheduler is None:
+        from autograder.grading import sandboxing
 
-    sandboxing.require(directory)
-    with directory.lock(), clear_disk_errors(directory.path):
-        batch = _Batch(directory, console, jobs or os.cpu_count() or 1, judge, feedback=feedback)
+        sandboxing.require(directory)
+        place = places.here(directory, jobs, judge)
+    else:
+        from autograder.grading.cluster.connection import check_address, check_dask
+
+        check_dask()
+        check_address(scheduler)
+        tell = functools.partial(console.print, markup=False, highlight=False, soft_wrap=True)
+        place = places.on_cluster(directory, scheduler, judge, tell)
+    with directory.lock(), clear_disk_errors(directory.path), contextlib.ExitStack() as stack:
+        batch = _Batch(directory, console, feedback=feedback)
         batch.collect(assignments, students)
         batch.plan(again)
-        batch.run()
+        # Before anything is taken back: where nobody can execute anything, all stays as it is.
+        execute = stack.enter_context(place) if batch.unsettled else None
+        batch.take_back()
+        batch.run(execute)
         return batch.report(time.monotonic() - began)
 
 
 class _Batch:
-    def __init__(
-        self, directory: ClassDirectory, console: Console, workers: int, judge: str, *, feedback: bool
-    ) -> None:
+    def __init__(self, directory: ClassDirectory, console: Console, *, feedback: bool) -> None:
         self._directory = directory
         self._console = console
-        self._workers = workers
-        self._judge = judge
         self._feedback = feedback
         self._fingerprints = Fingerprints(directory)
         self._cells: dict[str, tuple[GradedCell, ...]] = graded_cells(directory, self._fingerprints)
@@ -156,7 +166,7 @@ class _Batch:
             (self._works if chosen else self._others).append(work)
 
     def plan(self, again: bool) -> None:
-        """Settle what is known already, and take back the grades of all the rest."""
+        """Settle what is known already."""
         in_gradebook = {
             assignment: gradebook.scores(self._directory.gradebook_url, assignment)
             for assignment in sorted({work.submission.assignment for work in [*self._works, *self._others]})
@@ -168,12 +178,23 @@ class _Batch:
                 self._journal.forget(work.submission, work.notebooks)
             else:
                 self._settle(work, in_gradebook)
-        unsettled = [work.submission for work in self._works if not work.written]
-        if unsettled:
-            self._writer.take_back(unsettled)
 
-    def run(self) -> None:
-        """Execute what must be, and write each submission as soon as it is complete."""
+    @property
+    def unsettled(self) -> list[Submission]:
+        """The submissions of which the gradebook does not have the grades."""
+        return [work.submission for work in self._works if not work.written]
+
+    def take_back(self) -> None:
+        """Take back the grades of all that is not settled."""
+        if self.unsettled:
+            self._writer.take_back(self.unsettled)
+
+    def run(self, execute: Execute | None) -> None:
+        """Execute what must be, and write each submission as soon as it is complete.
+
+        Args:
+            execute: Executes tasks; None where all is settled.
+        """
         for work in self._works:
             if work.written:
                 self._reused += len(work.notebooks)
@@ -181,21 +202,12 @@ class _Batch:
             else:
                 self._take_known(work)
         waiting = [work for work in self._works if work.rows is None]
-        if not waiting:
+        if not waiting or execute is None:
             return
-        from autograder.grading import engine
-        from autograder.grading.worker import JUDGE
-
         works = {(work.submission.student, work.submission.assignment): work for work in waiting}
         missing = sum(len(work.notebooks) - len(work.results) for work in waiting)
         with BatchProgress(self._console, missing) as progress:
-            results = engine.execute_all(
-                list(self._tasks(waiting)),
-                self._directory.scratch() / "batch",
-                min(self._workers, missing),
-                on_start=lambda _: progress.started(),
-                judge=self._judge or JUDGE,
-            )
+            results = execute(self._tasks(waiting), lambda _: progress.started())
             with contextlib.closing(results):
                 for done in results:
                     self._take(works[done.task.student, done.task.assignment], done.task, done.execution)

@@ -191,6 +191,26 @@ def test_what_a_worker_could_not_run_is_run_by_another_one(tasks: list[Task]) ->
     assert students(list(pool.execute_all(tasks))) == [task.student for task in tasks]
 
 
+def test_what_a_worker_cannot_run_does_not_come_back_to_it(tasks: list[Task]) -> None:
+    link = FakeLink(joined("full"), joined("good"), Asked())
+    link.answer = lambda give, task: (
+        Failed(give.number, "no room") if give.worker == "full" else honest(give, task)
+    )
+    pool = make_pool(link)
+    pool.await_workers()
+    assert students(list(pool.execute_all(tasks))) == [task.student for task in tasks]
+
+
+def test_what_no_worker_can_run_is_given_up(tasks: list[Task]) -> None:
+    link = FakeLink(joined("a"), joined("b"), Asked())
+    link.answer = lambda give, task: Failed(give.number, "no room")
+    pool = make_pool(link)
+    pool.await_workers()
+    done = list(pool.execute_all(tasks))
+    assert len(done) == len(tasks)
+    assert {one.execution.trouble for one in done} == {"its worker could not run it: no room"}
+
+
 def test_a_worker_that_forges_is_turned_out_by_name(tasks: list[Task]) -> None:
     link = FakeLink(joined("good"), joined("bad"), Asked())
     told: list[str] = []

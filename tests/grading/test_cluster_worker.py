@@ -11,8 +11,13 @@ from dask_cluster import DaskCluster
 
 pytest.importorskip("distributed", reason="./course setup --with cluster installs it")
 
+from typing import TYPE_CHECKING
+
 from autograder.cli import cli
 from autograder.grading.cluster import offer as offer_module
+
+if TYPE_CHECKING:
+    from conftest import TinyClass
 
 
 def test_without_a_sandbox_it_does_not_start(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -49,15 +54,24 @@ def test_without_a_scheduler_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None
     assert "There is no Dask scheduler at tcp://127.0.0.1:1" in done.output
 
 
-def test_without_dask_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_dask_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch, tiny: TinyClass) -> None:
     find = importlib.util.find_spec
     monkeypatch.setattr(
         importlib.util, "find_spec", lambda name: None if name == "distributed" else find(name)
     )
-    for words in (["worker", "tcp://x:1"], ["grade", "nowhere", "--scheduler", "tcp://x:1"]):
+    for words in (["worker", "tcp://x:1"], ["grade", str(tiny.path), "--scheduler", "tcp://x:1"]):
         done = CliRunner().invoke(cli, words)
         assert done.exit_code == 2
         assert "./course setup --with cluster" in done.output
+
+
+def test_what_is_no_address_or_belongs_to_this_machine_is_refused_by_grade(tiny: TinyClass) -> None:
+    done = CliRunner().invoke(cli, ["grade", str(tiny.path), "--scheduler", "host"])
+    assert done.exit_code == 2
+    assert "is no address of a Dask scheduler" in done.output
+    done = CliRunner().invoke(cli, ["grade", str(tiny.path), "--scheduler", "tcp://x:1", "--jobs", "2"])
+    assert done.exit_code == 2
+    assert "autograder worker --jobs" in done.output
 
 
 def test_it_says_what_it_offers_and_ends_when_it_is_told(tmp_path_factory: pytest.TempPathFactory) -> None:

@@ -67,8 +67,6 @@ def connected(
         SchedulerGone: There is no scheduler at that address.
         NoWorkers: It has no worker that can be given work.
     """
-    check_dask()
-    check_address(address)
     with Link(address) as link:
         pool = Pool(link, address, judge=judge, boxed=boxed, tell=tell)
         pool.await_workers()

@@ -182,14 +182,19 @@ class _Courier:
 
     async def _answer(self, number: int, key: str, future: Any) -> News:
         await wait([future])
+        if future.status == "error":
+            return Failed(number, _first_line(await future.exception()))
         # As the scheduler has it from the worker: nothing is fetched that says itself that it is too large.
         size = (await self._client.nbytes(keys=[key], summary=False)).get(key, 0)
         if size > 2 * LARGEST_ANSWER:
-            return Failed(number, f"its answer has {size} bytes")
-        data = await future
-        return (
-            Answered(number, data) if isinstance(data, bytes) else Failed(number, "its answer is not bytes")
-        )
+            return Failed(number, f"its answer has {size} bytes", forged=True)
+        try:
+            data = await future
+        except (TypeError, MemoryError) as error:  # it is no plain bytes, or claims a size that it has not
+            return Failed(number, _first_line(error), forged=True)
+        if not isinstance(data, bytes):
+            return Failed(number, "its answer is not bytes", forged=True)
+        return Answered(number, data)
 
     def _drop(self, number: int) -> None:
         self._given.pop(number, None)

@@ -90,10 +90,17 @@ class Answered(msgspec.Struct, frozen=True, tag=True):
 
 
 class Failed(msgspec.Struct, frozen=True, tag=True):
-    """An order brought no answer."""
+    """An order brought no answer.
+
+    Attributes:
+        number: The order.
+        reason: Why.
+        forged: Whether the worker answered something that no worker of ours would.
+    """
 
     number: int
     reason: str
+    forged: bool = False
 
 
 class Broken(msgspec.Struct, frozen=True, tag=True):

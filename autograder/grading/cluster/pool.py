@@ -66,10 +66,11 @@ class _Worker:
 
 @dataclass
 class _Job:
-    """A task that is to be executed, and how often that was tried."""
+    """A task that is to be executed, how often that was tried, and on which workers."""
 
     task: Task
     attempts: int = 0
+    tried: set[str] = field(default_factory=set)
 
 
 @dataclass(frozen=True)
@@ -160,7 +161,7 @@ class Pool:
         """Fill every free slot; nothing is queued on a worker, so little is lost with it."""
         for address, worker in self._workers.items():
             while len(worker.flights) < worker.slots and len(self._flights) < _MOST_IN_FLIGHT:
-                job = self._next_for(worker, jobs)
+                job = self._next_for(address, worker, jobs)
                 if job is None:
                     break
                 if not job.attempts:
@@ -168,13 +169,16 @@ class Pool:
                 self._send(job, address, worker)
         self._look_ahead(jobs)
 
-    def _next_for(self, worker: _Worker, jobs: Iterator[_Job]) -> _Job | None:
-        """What a worker gets next: never two tasks that were lost before.
+    def _next_for(self, address: str, worker: _Worker, jobs: Iterator[_Job]) -> _Job | None:
+        """What a worker gets next. Of tasks that were lost before only one at a time, and rather not those it lost.
 
         One of them may be what ends workers, and the other one must not be lost with it again.
         """
-        if self._again and not any(self._flights[number].job.attempts > 1 for number in worker.flights):
-            return self._again.popleft()
+        if not any(self._flights[number].job.attempts > 1 for number in worker.flights):
+            for job in self._again:
+                if address not in job.tried or job.tried >= self._workers.keys():
+                    self._again.remove(job)
+                    return job
         self._look_ahead(jobs)
         return self._new.popleft() if self._new else None
 
@@ -185,6 +189,7 @@ class Pool:
 
     def _send(self, job: _Job, address: str, worker: _Worker) -> None:
         job.attempts += 1
+        job.tried.add(address)
         self._number += 1
         self._flights[self._number] = _Flight(job, address, time.monotonic() + _most_seconds(job.task))
         worker.flights.add(self._number)
@@ -211,8 +216,11 @@ class Pool:
                 self._forget(address, "its worker ended while it ran this submission")
             case Answered(number, data) if number in self._flights:
                 self._answered(number, data)
-            case Failed(number, reason) if number in self._flights:
-                self._lost(number, f"its worker could not run it: {reason}")
+            case Failed(number, reason, forged) if number in self._flights:
+                if forged:
+                    self._turn_out(self._flights[number].worker, _cannot_be(reason))
+                else:
+                    self._lost(number, f"its worker could not run it: {reason}")
             case Broken(reason):
                 raise SchedulerGone(
                     f"The Dask scheduler at {self._address} cannot be reached ({reason}). "
@@ -256,7 +264,7 @@ class Pool:
         try:
             execution = admitted(data, flight.job.task)
         except Forged as error:
-            self._turn_out(flight.worker, f"what it says cannot be: {error}. Look at that machine")
+            self._turn_out(flight.worker, _cannot_be(str(error)))
             return
         self._land(number)
         self._done.append(Done(flight.job.task, execution))
@@ -300,6 +308,10 @@ def _most_seconds(task: Task) -> float:
     limits = task.limits
     # A local engine tries a task whose process died once more.
     return 2 * (limits.start_seconds + limits.notebook_seconds + limits.interrupt_grace) + _EXTRA_SECONDS
+
+
+def _cannot_be(reason: str) -> str:
+    return f"what it says cannot be: {reason}. Look at that machine"
 
 
 def _given_up(task: Task, reason: str) -> Execution:
