@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import tempfile
 import time
 from dataclasses import dataclass
@@ -58,7 +57,7 @@ def execute_command(
     Args:
         root: The folder with ``solutions`` and ``chapters``.
         only: Names such as ``"lab_1_2"``; all notebooks where empty.
-        jobs: Notebooks at once; as many as there are processors by default.
+        jobs: Notebooks at once; as many as load and memory allow by default.
         reports: Where the page about a notebook that failed is kept; pages of an earlier run are removed.
         console: Where progress and result are shown; standard error by default.
 
@@ -99,7 +98,7 @@ def execute_all(
     Args:
         planned: What to execute.
         reports: Where the page about a notebook that failed is kept.
-        jobs: Notebooks at once; as many as there are processors by default.
+        jobs: Notebooks at once; as many as load and memory allow by default.
         console: Where progress is shown.
         judge: What makes a judge, as ``module:class``.
 
@@ -114,7 +113,7 @@ def execute_all(
         running = engine.execute_all(
             [item.task for item in _longest_first(planned)],
             scratch,
-            jobs or os.cpu_count() or 1,
+            jobs,
             on_start=lambda _: progress.started(),
             judge=judge,
         )

@@ -1,37 +1,30 @@
-"""Executing tasks in worker processes. A worker that dies costs only its task, which is tried once more."""
+"""Executing tasks side by side, each in a worker process of its own, as many at once as the machine bears."""
 
 from __future__ import annotations
 
 import contextlib
 import os
 import queue
-import select
-import subprocess
-import sys
-import tempfile
 import threading
 import time
-from dataclasses import dataclass, replace
-from typing import IO, TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import msgspec
-
-from autograder.boxes.execution import Execution
-from autograder.boxes.processes import end_processes_in
 from autograder.boxes.scratch import remove_tree
-from autograder.boxes.zero import grader_trouble
-from autograder.grading import warmth
-from autograder.grading.task import Task, decode_execution, encode
+from autograder.grading.lane import GOODBYE_SECONDS, Lane
+from autograder.grading.pacing import TICK, Gate, Machine, Pace, cores
 from autograder.grading.worker import JUDGE
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Sequence
+    from collections.abc import Callable, Generator, Iterable, Iterator
     from pathlib import Path
 
-ATTEMPTS = 2
-_RESULT_BYTES = 64_000_000
-_EXTRA_SECONDS = 60.0
-_GOODBYE_SECONDS = 3.0
+    from autograder.boxes.execution import Execution
+    from autograder.grading.task import Task
+
+__all__ = ["Done", "KeptLane", "execute_all", "execute_one"]
+
+KeptLane = Lane
 
 
 @dataclass(frozen=True)
@@ -42,14 +35,10 @@ class Done:
     execution: Execution
 
 
-class WorkerLost(RuntimeError):
-    """A worker ended or fell silent; the message says which."""
-
-
 def execute_all(
-    tasks: Sequence[Task],
+    tasks: Iterable[Task],
     scratch: Path,
-    workers: int,
+    workers: int | None = None,
     *,
     on_start: Callable[[Task], None] = lambda _: None,
     judge: str = JUDGE,
@@ -59,35 +48,23 @@ def execute_all(
     Leaving the loop early ends every worker and what it runs.
 
     Args:
-        tasks: In the order in which they are begun.
+        tasks: In the order in which they are begun; each is asked for, from a thread, when there is a place for it.
         scratch: Where submissions run; emptied at the end.
-        workers: Processes at work at once.
+        workers: How many run at once; found out while they run where it is None.
         on_start: Called from a thread when a task is begun.
         judge: What makes a judge, as ``module:class``.
     """
-    waiting: queue.SimpleQueue[Task] = queue.SimpleQueue()
-    for task in tasks:
-        waiting.put(task)
-    done: queue.SimpleQueue[Done | BaseException] = queue.SimpleQueue()
-    boxed = any(task.boxed for task in tasks)
-    lanes = [
-        _Lane(waiting, done, scratch / str(number), judge, on_start, boxed)
-        for number in range(max(1, min(workers, len(tasks))))
-    ]
+    crew = _Crew(_Feed(tasks), scratch, Gate(workers or Pace(cores()).first), judge, on_start)
+    pacer = None if workers else _Pacer(crew)
     try:
-        for lane in lanes:
-            lane.start()
-        for _ in tasks:
-            result = done.get()
-            if isinstance(result, BaseException):
-                raise result
-            yield result
+        crew.fill()
+        if pacer is not None:
+            pacer.start()
+        yield from crew.results()
     finally:
-        for lane in lanes:
-            lane.stop()
-        deadline = time.monotonic() + _GOODBYE_SECONDS
-        for lane in lanes:
-            lane.await_end(deadline)
+        if pacer is not None:
+            pacer.stop()
+        crew.end()
         with contextlib.suppress(OSError):
             remove_tree(scratch)
             scratch.parent.rmdir()
@@ -100,180 +77,123 @@ def execute_one(task: Task, scratch: Path, *, judge: str = JUDGE) -> Execution:
         return next(running).execution
 
 
-class KeptLane:
-    """A worker process that is kept from task to task, for whoever is handed tasks one by one.
+class _Feed:
+    """Tasks, for many threads."""
 
-    Args:
-        scratch: Where submissions run; for this lane alone.
-        judge: What makes a judge, as ``module:class``.
-        boxed: Whether the tasks to come are executed in boxes.
-    """
+    def __init__(self, tasks: Iterable[Task]) -> None:
+        self._tasks: Iterator[Task] = iter(tasks)
+        self._lock = threading.Lock()
+        self.taken = 0
+        self.exhausted = False
 
-    def __init__(self, scratch: Path, *, judge: str = JUDGE, boxed: bool = True) -> None:
-        self._lane = _Lane(queue.SimpleQueue(), queue.SimpleQueue(), scratch, judge, lambda _: None, boxed)
+    def next(self) -> Task | None:
+        """The next task, or None where there is none."""
+        with self._lock:
+            task = None if self.exhausted else next(self._tasks, None)
+            if task is None:
+                self.exhausted = True
+            else:
+                self.taken += 1
+            return task
 
-    def execute(self, task: Task) -> Execution:
-        """Execute a task. For one thread at a time."""
-        return self._lane._execute(task)
 
-    def stop(self) -> None:
-        """End the worker and what it runs, from any thread; a task that is being executed ends with trouble."""
-        self._lane.stop()
+class _Crew:
+    """The lanes of a run, each with a thread that speaks with it."""
+
+    def __init__(
+        self, feed: _Feed, scratch: Path, gate: Gate, judge: str, on_start: Callable[[Task], None]
+    ) -> None:
+        self.feed, self.gate = feed, gate
+        self._scratch, self._judge, self._on_start = scratch, judge, on_start
+        # None is a thread that found nothing more to do: whoever waits for results looks again.
+        self._done: queue.SimpleQueue[Done | BaseException | None] = queue.SimpleQueue()
+        self._threads: list[_LaneThread] = []
+
+    def fill(self) -> None:
+        """Have as many threads as may be at work. From one thread at a time."""
+        while len(self._threads) < self.gate.allowed and not self.feed.exhausted:
+            lane = Lane(self._scratch / str(len(self._threads)), judge=self._judge)
+            thread = _LaneThread(lane, self.feed, self.gate, self._done, self._on_start)
+            self._threads.append(thread)
+            thread.start()
+
+    def results(self) -> Iterator[Done]:
+        """Results until the last task is done."""
+        received = 0
+        while not (self.feed.exhausted and received == self.feed.taken):
+            result = self._done.get()
+            if isinstance(result, BaseException):
+                raise result
+            if result is not None:
+                received += 1
+                yield result
+
+    def end(self) -> None:
+        """End every worker and what it runs."""
+        self.feed.exhausted = True
+        self.gate.close()
+        for thread in self._threads:
+            thread.lane.stop()
+        deadline = time.monotonic() + GOODBYE_SECONDS
+        for thread in self._threads:
+            thread.join(max(0.0, deadline - time.monotonic()))
+        for thread in self._threads:
+            thread.lane.kill()
+        for thread in self._threads:
+            thread.join()
 
 
-class _Lane(threading.Thread):
-    """One worker process and the thread that speaks with it."""
+class _LaneThread(threading.Thread):
+    """Takes task after task until none is left."""
 
     def __init__(
         self,
-        waiting: queue.SimpleQueue[Task],
-        done: queue.SimpleQueue[Done | BaseException],
-        scratch: Path,
-        judge: str,
+        lane: Lane,
+        feed: _Feed,
+        gate: Gate,
+        done: queue.SimpleQueue[Done | BaseException | None],
         on_start: Callable[[Task], None],
-        boxed: bool,
     ) -> None:
         super().__init__(daemon=True)
-        self._waiting, self._done = waiting, done
-        self._scratch = scratch
-        self._command = [sys.executable, "-m", "autograder.grading.worker", str(scratch), judge]
-        self._boxed = boxed
-        self._on_start = on_start
-        # What a worker says on its way down, in a file: a pipe that nobody reads would fill up. Lives with
-        # the lane.
-        self._log = tempfile.TemporaryFile()  # noqa: SIM115
-        self._worker: subprocess.Popen[bytes] | None = None
-        self._stopping = False
-        self._changing = threading.Lock()
+        self.lane = lane
+        self._feed, self._gate, self._done, self._on_start = feed, gate, done, on_start
 
     def run(self) -> None:
-        """Take task after task until none is left."""
+        """The thread's life."""
         try:
-            while not self._stopping:
+            while self._gate.enter():
                 try:
-                    task = self._waiting.get_nowait()
-                except queue.Empty:
-                    return
-                self._on_start(task)
-                self._done.put(Done(task, self._execute(task)))
-        except BaseException as error:  # the main thread waits for this many results: tell it
+                    task = self._feed.next()
+                    if task is None:
+                        return
+                    self._on_start(task)
+                    self._done.put(Done(task, self.lane.execute(task)))
+                finally:
+                    self._gate.leave()
+        except BaseException as error:  # the main thread waits for results: tell it
             self._done.put(error)
         finally:
-            self._end_worker()
+            self._done.put(None)
+            self.lane.end()
+
+
+class _Pacer(threading.Thread):
+    """Lets more or fewer run at once, by what the machine says."""
+
+    def __init__(self, crew: _Crew) -> None:
+        super().__init__(daemon=True)
+        self._crew = crew
+        self._stopped = threading.Event()
+
+    def run(self) -> None:
+        """The thread's life."""
+        pace, machine, gate = Pace(cores()), Machine(), self._crew.gate
+        while not self._stopped.wait(TICK) and not self._crew.feed.exhausted:
+            all_at_work = gate.inside >= gate.allowed
+            gate.allow(pace.next(gate.allowed, machine.look(), all_at_work=all_at_work))
+            self._crew.fill()
 
     def stop(self) -> None:
-        """Ask the worker to end; it ends what it runs. Called from the main thread."""
-        with self._changing:
-            self._stopping = True
-            if self._worker is not None:
-                _close(self._worker.stdin)
-
-    def await_end(self, deadline: float) -> None:
-        """Wait for the thread, and kill a worker that does not end in time."""
-        if self.ident is None:
-            return
-        self.join(max(0.0, deadline - time.monotonic()))
-        with self._changing:
-            if self._worker is not None:
-                self._worker.kill()
+        """Change nothing any more."""
+        self._stopped.set()
         self.join()
-
-    def _execute(self, task: Task) -> Execution:
-        reason = ""
-        for _ in range(ATTEMPTS):
-            try:
-                execution = self._ask(task)
-                if execution.trouble:
-                    if not warmth.holds(self._boxed):
-                        raise WorkerLost(execution.trouble)  # with fresh warm processes it may succeed
-                    return replace(execution, trouble=f"{execution.trouble}{self._last_words()}")
-                return execution
-            except (WorkerLost, OSError, ValueError) as error:
-                self._end_worker()
-                reason = f"{error}{self._last_words()}"
-        verdicts = {i: grader_trouble(cell.check, reason) for i, cell in enumerate(task.cells) if cell.check}
-        return Execution(cells=(), verdicts=verdicts, trouble=reason)
-
-    def _last_words(self) -> str:
-        self._log.seek(0)
-        lines = self._log.read().decode(errors="replace").strip().splitlines()
-        return f" ({lines[-1][:300]})" if lines else ""
-
-    def _ask(self, task: Task) -> Execution:
-        worker = self._running_worker()
-        assert worker.stdin is not None
-        assert worker.stdout is not None
-        worker.stdin.write(encode(task) + b"\n")
-        worker.stdin.flush()
-        limits = task.limits
-        within = limits.start_seconds + limits.notebook_seconds + limits.interrupt_grace + _EXTRA_SECONDS
-        line = _read_line(worker.stdout.fileno(), time.monotonic() + within)
-        try:
-            return decode_execution(line)
-        except msgspec.MsgspecError as error:
-            raise WorkerLost(
-                f"the grader's worker process said something else than a result: {error}"
-            ) from error
-
-    def _running_worker(self) -> subprocess.Popen[bytes]:
-        with self._changing:
-            if self._stopping:
-                raise WorkerLost("the grading run was stopped")
-            if self._worker is None:
-                addresses = msgspec.json.encode(warmth.addresses(self._boxed)).decode()
-                self._worker = subprocess.Popen(
-                    [*self._command, addresses],
-                    stdin=subprocess.PIPE,
-                    stdout=subprocess.PIPE,
-                    stderr=self._log,
-                    # Ctrl-C goes to the grader, which then ends its workers in good order.
-                    start_new_session=True,
-                )
-            return self._worker
-
-    def _end_worker(self) -> None:
-        """End the worker. Only this thread reads from its pipe, so only this thread closes it."""
-        worker = self._worker
-        if worker is None:
-            return
-        _close(worker.stdin)
-        try:
-            worker.wait(_GOODBYE_SECONDS)
-        except subprocess.TimeoutExpired:
-            worker.kill()
-            worker.wait()
-        if worker.returncode != 0:
-            # It may not have come to tidying up after itself.
-            end_processes_in(self._scratch)
-        with self._changing:
-            self._worker = None
-        _close(worker.stdout)
-
-
-def _close(pipe: IO[bytes] | None) -> None:
-    with contextlib.suppress(OSError):
-        assert pipe is not None
-        pipe.close()
-
-
-def _read_line(descriptor: int, deadline: float) -> bytes:
-    """One line from a pipe.
-
-    Raises:
-        WorkerLost: The pipe was closed, or the deadline passed.
-    """
-    pieces: list[bytes] = []
-    size = 0
-    while True:
-        ready, _, _ = select.select([descriptor], [], [], max(0.0, deadline - time.monotonic()))
-        if not ready:
-            raise WorkerLost("the grader's worker process did not answer in time")
-        piece = os.read(descriptor, 1 << 16)
-        if not piece:
-            raise WorkerLost("the grader's worker process ended while it ran this submission")
-        pieces.append(piece)
-        size += len(piece)
-        if piece.endswith(b"\n"):
-            return b"".join(pieces)
-        if size > _RESULT_BYTES:
-            raise WorkerLost("the grader's worker process returned too much")
