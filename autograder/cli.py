@@ -107,7 +107,9 @@ def build(only_check: bool) -> None:
 @cli.command()
 @click.argument("notebooks", nargs=-1, metavar="[NOTEBOOK]...")
 @click.option(
-    "--jobs", type=click.IntRange(min=1), help="Notebooks at once; as many as cores where not given."
+    "--jobs",
+    type=click.IntRange(min=1),
+    help="Notebooks at once; as many as load and memory allow where not given.",
 )
 @click.option(
     "--reports", type=click.Path(path_type=Path), help="Keep the pages about failed notebooks in this folder."
@@ -188,8 +190,11 @@ def new_class(folder: Path, assignments: tuple[str, ...]) -> None:
 @click.option("--student", "students", multiple=True, help="Only this student; may be given several times.")
 @click.option("--again", is_flag=True, help="Run unchanged submissions again.")
 @click.option(
-    "--jobs", type=click.IntRange(min=1), help="Submissions at once; as many as cores where not given."
+    "--jobs",
+    type=click.IntRange(min=1),
+    help="Notebooks at once; as many as load and memory allow where not given.",
 )
+@click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
 @click.option(
     "--unsafe-no-sandbox",
     is_flag=True,
@@ -206,6 +211,7 @@ def grade(
     students: tuple[str, ...],
     again: bool,
     jobs: int | None,
+    as_json: bool,
     unsafe_no_sandbox: bool,
     scheduler: str | None,
 ) -> None:
@@ -223,6 +229,7 @@ def grade(
             jobs=jobs,
             unsafe_no_sandbox=unsafe_no_sandbox,
             scheduler=scheduler,
+            as_json=as_json,
         )
     sys.exit(report.exit_code)
 

@@ -42,6 +42,7 @@ def grade(
     jobs: int | None = None,
     unsafe_no_sandbox: bool = False,
     scheduler: str | None = None,
+    as_json: bool = False,
     console: Console | None = None,
 ) -> GradeReport:
     """Grade a class and print what came of it; see :func:`autograder.grading.batch.grade`.
@@ -51,9 +52,10 @@ def grade(
         assignments: Only these; all by default.
         students: Only these; all by default.
         again: Execute everything anew, also what is unchanged.
-        jobs: Notebooks executed at once; as many as there are processors by default.
+        jobs: Notebooks executed at once; as many as load and memory allow by default.
         unsafe_no_sandbox: Run submissions with all rights of whatever process executes them.
         scheduler: The address of a Dask scheduler whose workers execute the notebooks; this machine by default.
+        as_json: Print one JSON object instead of the table.
         console: Where the result is printed; standard output by default. Progress goes to standard error.
 
     Raises:
@@ -61,14 +63,20 @@ def grade(
     """
     from autograder.grading import sandboxing
     from autograder.grading.batch import grade as grade_class
-    from autograder.grading.showing import show
 
     if unsafe_no_sandbox:
         sandboxing.switch_off(path)
     report = grade_class(
         path, assignments=assignments, students=students, again=again, jobs=jobs, scheduler=scheduler
     )
-    show(report, console)
+    if as_json:
+        from autograder.grading.machine_form import report_json
+
+        sys.stdout.write(f"{report_json(report).decode()}\n")
+    else:
+        from autograder.grading.showing import show
+
+        show(report, console)
     return report
 
 

@@ -142,6 +142,7 @@ class _Batch:
         self._refused: list[Refused] = []
         self._problems: list[str] = []
         self._timings = Timings()
+        self._began = time.monotonic()
         self._executed = 0
         self._reused = 0
         self._written = 0
@@ -207,9 +208,11 @@ class _Batch:
         works = {(work.submission.student, work.submission.assignment): work for work in waiting}
         missing = sum(len(work.notebooks) - len(work.results) for work in waiting)
         with BatchProgress(self._console, missing) as progress:
+            self._timings.first_started = time.monotonic() - self._began
             results = execute(self._tasks(waiting), lambda _: progress.started())
             with contextlib.closing(results):
                 for done in results:
+                    self._timings.last_ended = time.monotonic() - self._began
                     self._take(works[done.task.student, done.task.assignment], done.task, done.execution)
                     progress.finished(done.task.label, failed=bool(done.execution.trouble))
         for work in waiting:

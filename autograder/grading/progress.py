@@ -1,18 +1,12 @@
-"""What a person sees while a class is graded: a bar in a terminal, plain lines in a log file."""
+"""What a person sees while a class is graded: a bar in a terminal, plain lines in a log file or in a notebook."""
 
 from __future__ import annotations
 
+import threading
 import time
 from typing import TYPE_CHECKING, Self
 
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -24,7 +18,7 @@ _LINES = 20
 
 
 class BatchProgress:
-    """Counts notebooks done, running and failed.
+    """Counts notebooks done, running, waiting and failed. Safe to call from any thread.
 
     Args:
         console: Where to show it.
@@ -41,20 +35,23 @@ class BatchProgress:
         self._failed = 0
         self._running = 0
         self._began = time.monotonic()
+        self._lock = threading.Lock()
+        # A notebook is no terminal: what moves the cursor there is shown as it is.
+        self._lively = console.is_terminal and not console.is_jupyter
         self._bar = Progress(
             TextColumn(doing),
-            BarColumn(),
+            BarColumn(bar_width=None),
             MofNCompleteColumn(),
             TextColumn("{task.fields[now]}"),
             TimeElapsedColumn(),
-            TimeRemainingColumn(),
             console=console,
             transient=True,
+            refresh_per_second=4,
         )
         self._task = self._bar.add_task("", total=total, now="")
 
     def __enter__(self) -> Self:
-        if self._console.is_terminal and self._total:
+        if self._lively and self._total:
             self._bar.start()
         return self
 
@@ -66,8 +63,9 @@ class BatchProgress:
 
     def started(self) -> None:
         """A notebook is being executed now."""
-        self._running += 1
-        self._show()
+        with self._lock:
+            self._running += 1
+            self._show()
 
     def finished(self, label: str, failed: bool) -> None:
         """A notebook is done.
@@ -76,25 +74,43 @@ class BatchProgress:
             label: What it is called.
             failed: Whether the grader itself had trouble with it.
         """
-        self._running -= 1
-        self._done += 1
-        self._failed += failed
-        self._bar.advance(self._task)
-        self._show()
-        step = max(1, self._total // _LINES)
-        if not self._console.is_terminal and (failed or self._done % step == 0 or self._done == self._total):
-            self._console.print(
-                f"{self._did} {self._done} of {self._total}: {label}{self._left()}",
-                markup=False,
-                highlight=False,
-            )
+        with self._lock:
+            self._running -= 1
+            self._done += 1
+            self._failed += failed
+            self._show()
+            step = max(1, self._total // _LINES)
+            line = failed or self._done % step == 0 or self._done == self._total
+            text = f"{self._did} {self._done} of {self._total}: {label}{self._rest()}"
+        if line and not self._lively:
+            self._console.print(text, markup=False, highlight=False, soft_wrap=True)
 
     def _show(self) -> None:
-        failed = f", {self._failed} not checked" if self._failed else ""
-        self._bar.update(self._task, now=f"{self._running} running{failed}")
+        self._bar.update(self._task, completed=self._done, now=", ".join(self._now()))
 
-    def _left(self) -> str:
-        if self._done == self._total:
-            return ""
-        seconds = (time.monotonic() - self._began) / self._done * (self._total - self._done)
-        return f" (about {seconds:.0f} s left)"
+    def _rest(self) -> str:
+        """What stands in brackets behind a line of a log file; nothing behind the last one."""
+        return f" ({', '.join(self._now())})" if self._done < self._total else ""
+
+    def _now(self) -> list[str]:
+        waiting = max(0, self._total - self._done - self._running)
+        words = [f"{self._running} running", f"{waiting} waiting"]
+        if self._failed:
+            words.append(f"{self._failed} not checked")
+        if self._done:
+            seconds = max(1e-3, time.monotonic() - self._began)
+            words.append(_rate(self._done / seconds))
+            words.append(f"about {_duration(seconds / self._done * (self._total - self._done))} left")
+        return words
+
+
+def _rate(per_second: float) -> str:
+    return f"{per_second:.1f}/s" if per_second >= 1 else f"{60 * per_second:.1f}/min"
+
+
+def _duration(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    if hours:
+        return f"{hours} h {minutes:02} min"
+    return f"{minutes} min {rest:02} s" if minutes else f"{rest} s"

@@ -55,6 +55,8 @@ def show(report: GradeReport, console: Console | None = None) -> None:
     ):
         if path.exists():
             _line(console, f"{name:<10} {_near(path)}")
+    if report.executed:
+        _line(console, report.timings.line())
 
 
 def table(rows: Sequence[Row], *, diagnoses: bool) -> Table:

@@ -24,6 +24,8 @@ class Timings:
         rebuild: Reading submissions and building the notebooks that run.
         gradebook: Converting notebooks and entering grades.
         feedback: Making pages.
+        first_started: When the first notebook began, in seconds since the start of the batch.
+        last_ended: When the last one was done, in the same seconds.
     """
 
     boxes: float = 0.0
@@ -32,6 +34,8 @@ class Timings:
     rebuild: float = 0.0
     gradebook: float = 0.0
     feedback: float = 0.0
+    first_started: float = 0.0
+    last_ended: float = 0.0
 
     def count(self, cells: Sequence[Cell], execution: Execution) -> None:
         """Add one notebook's execution."""

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import io
+import threading
 
 import pytest
 from rich.console import Console
@@ -43,3 +44,33 @@ def test_a_terminal_gets_a_bar() -> None:
     shown = screen.getvalue()
     assert "2/2" in shown
     assert "1 not checked" in shown
+
+
+def test_a_line_says_what_runs_what_waits_how_fast_and_how_long() -> None:
+    line = lines_of(50, {1})[1]
+    for word in ("0 running", "waiting", "1 not checked", "/s", "about", "left"):
+        assert word in line
+
+
+def test_a_notebook_gets_plain_lines_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    console = Console(file=io.StringIO(), force_terminal=True, width=200)
+    console.is_jupyter = True
+    printed: list[str] = []
+    monkeypatch.setattr(console, "print", lambda text, **_: printed.append(text))
+    with BatchProgress(console, 1) as progress:
+        assert not progress._bar.live.is_started
+        progress.started()
+        progress.finished("ada", failed=False)
+    assert printed == ["graded 1 of 1: ada"]
+
+
+def test_threads_may_start_while_another_one_ends() -> None:
+    with BatchProgress(Console(file=io.StringIO()), 400) as progress:
+        threads = [threading.Thread(target=progress.started) for _ in range(400)]
+        for thread in threads:
+            thread.start()
+        for number in range(400):
+            progress.finished(str(number), failed=False)
+        for thread in threads:
+            thread.join()
+        assert progress._running == 0
