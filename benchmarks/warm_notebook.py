@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
+import psutil
 
 from autograder.boxes.execution import Kind
 from autograder.grading.task import decode_task
@@ -62,9 +63,9 @@ def _floor(task: Task) -> dict[str, Any]:
         reading, writing = os.pipe()
         with JudgeProcess(folder / "judge", seed=task.seed) as judge:
             # From here on, when it is warm, the judge counts.
-            assert judge._process is not None
-            if group:
-                group.take(judge._process.pid)
+            for child_process in psutil.Process().children(recursive=True):
+                if group:
+                    group.take(child_process.pid)
             began = time.monotonic()
             child = os.fork()
             if child == 0:

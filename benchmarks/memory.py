@@ -1,0 +1,94 @@
+"""Memory while a class is graded: of all together, and of each box by itself."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Self
+
+import psutil
+
+_EVERY_SECONDS = 2.0
+
+
+@dataclass(frozen=True)
+class MemorySample:
+    """One look.
+
+    Attributes:
+        seconds: Since the first look.
+        grader: Resident bytes of the grader's own process.
+        together: Bytes of all processes of the run, each page counted once (PSS).
+        boxes: Bytes of each process namespace that is not the grader's (PSS): what each box has for itself.
+    """
+
+    seconds: float
+    grader: int
+    together: int
+    boxes: tuple[int, ...]
+
+
+@dataclass
+class MemoryWatch:
+    """Looks at a process and all that it has started, every two seconds.
+
+    Args:
+        pid: The grader.
+    """
+
+    pid: int
+    samples: list[MemorySample] = field(default_factory=list)
+
+    def __enter__(self) -> Self:
+        self._stop = threading.Event()
+        self._began = time.monotonic()
+        self._thread = threading.Thread(target=self._look, daemon=True)
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stop.set()
+        self._thread.join()
+
+    def _look(self) -> None:
+        while not self._stop.wait(_EVERY_SECONDS):
+            try:
+                self.samples.append(_sample(self.pid, time.monotonic() - self._began))
+            except psutil.Error:  # the grader is gone
+                return
+
+
+def _sample(pid: int, seconds: float) -> MemorySample:
+    grader = psutil.Process(pid)
+    own = _namespace(pid)
+    together = _pss(pid)
+    boxes: dict[int, int] = {}
+    for process in grader.children(recursive=True):
+        size = _pss(process.pid)
+        together += size
+        space = _namespace(process.pid)
+        if space and space != own:
+            boxes[space] = boxes.get(space, 0) + size
+    return MemorySample(seconds, grader.memory_info().rss, together, tuple(boxes.values()))
+
+
+def _namespace(pid: int) -> int:
+    """The number of the process namespace; 0 where the process is gone."""
+    try:
+        return os.stat(f"/proc/{pid}/ns/pid").st_ino  # noqa: PTH116  (Path.stat resolves less plainly)
+    except OSError:
+        return 0
+
+
+def _pss(pid: int) -> int:
+    """Proportional set size (proc_pid_smaps(5)): shared pages are divided among those who share them."""
+    try:
+        for line in Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines():
+            if line.startswith("Pss:"):
+                return int(line.split()[1]) * 1024
+    except OSError:
+        pass
+    return 0

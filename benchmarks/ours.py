@@ -1,0 +1,89 @@
+"""``autograder grade`` on a class, as a person starts it."""
+
+from __future__ import annotations
+
+import os
+import statistics
+import subprocess
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from benchmarks.machine import Usage, Watch
+from benchmarks.memory import MemorySample, MemoryWatch
+from benchmarks.stock import Points, points_in
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from benchmarks.classes import BenchmarkClass
+
+GRADE = (sys.executable, "-m", "autograder", "grade")
+
+
+@dataclass(frozen=True)
+class OurRun:
+    """What ``autograder grade`` needed for a class.
+
+    Attributes:
+        notebooks: How many it executed.
+        report: What it said of itself, as ``--json`` has it.
+        usage: The machine meanwhile.
+        busy_working: Share of all cores that was busy between the first and the last notebook, 0 to 1.
+        memory: What it took, every two seconds.
+        points: What the gradebook says.
+    """
+
+    notebooks: int
+    report: dict[str, object]
+    usage: Usage
+    busy_working: float
+    memory: tuple[MemorySample, ...]
+    points: Points
+
+
+def run_ours(made: BenchmarkClass, log: Path, *options: str) -> OurRun:
+    """Grade a class and watch.
+
+    Args:
+        made: The class.
+        log: Where standard error goes.
+        options: More options of ``grade``.
+
+    Raises:
+        RuntimeError: It could not be graded.
+    """
+    with Watch() as watch, log.open("wb") as errors:
+        process = subprocess.Popen(
+            [*GRADE, str(made.path), "--json", *options],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=errors,
+            env=dict(os.environ),
+            preexec_fn=watch.prepare,
+        )
+        with MemoryWatch(process.pid) as memory:
+            said, _ = process.communicate()
+    assert watch.usage is not None
+    if process.returncode not in (0, 2) or not said:
+        raise RuntimeError(f"autograder grade failed; see {log}")
+    report = msgspec.json.decode(said)
+    return OurRun(
+        notebooks=int(report["totals"]["executed"]),
+        report=report,
+        usage=watch.usage,
+        busy_working=_while_working(watch.busy_by_second, report),
+        memory=tuple(memory.samples),
+        points=points_in(made.path, made.assignments, made.students),
+    )
+
+
+def _while_working(busy: Sequence[float], report: dict[str, object]) -> float:
+    """The mean over the seconds from the first notebook's start to the last one's end."""
+    timings = msgspec.convert(report["timings"], dict[str, float])
+    first, last = timings["first_started"], timings["last_ended"]
+    inside = busy[int(first) : max(int(first) + 1, int(last))]
+    return statistics.fmean(inside) if inside else 0.0
