@@ -79,6 +79,7 @@ class BoxedJobs:
         name: str,
         entry: Path,
         command: Sequence[str],
+        variables: Mapping[str, str],
         cancelled: Callable[[], bool],
         hidden: Sequence[Path],
     ) -> Built:
@@ -86,7 +87,7 @@ class BoxedJobs:
         place = self.place(name, entry)
         folder = Path(tempfile.mkdtemp(prefix="build-", dir=self._folder))
         binds = [Bind(entry / "src", place / "src"), *_covers(hidden, folder)]
-        variables = {"COLCON_DEFAULTS_FILE": os.devnull, "CMAKE_BUILD_PARALLEL_LEVEL": "2"}
+        environment = box_environment({"COLCON_DEFAULTS_FILE": os.devnull, **variables})
         guard = BoxGuard(BUILD_LIMITS)
         try:
             with Enclosure(
@@ -94,7 +95,7 @@ class BoxedJobs:
                 scratch_bytes=BUILD_LIMITS.scratch_bytes, scratch_inodes=BUILD_LIMITS.scratch_files,
             ) as enclosure:  # fmt: skip
                 with enclosure.start(
-                    command, binds=binds, environment=box_environment(variables), cwd=HOME,
+                    command, binds=binds, environment=environment, cwd=HOME,
                     output_bytes=MAX_LOG_BYTES,
                 ) as running:  # fmt: skip
                     guard.watch(running.pid)

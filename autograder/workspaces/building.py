@@ -150,8 +150,13 @@ def choose(found: Build, targets: Targets | None) -> tuple[list[Package], Build]
     return [], replace(found, trouble="bad_package", line=found.unusable[0])
 
 
-def command(packages: Iterable[Package], folder: Path) -> list[str]:
+def command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()) -> list[str]:
     """Colcon's command line for these packages alone; ``build``, ``install`` and ``log`` come into the folder.
+
+    Args:
+        packages: The packages.
+        folder: Where all that is made comes to.
+        cmake: More arguments for CMake.
 
     Release defines NDEBUG: without it a value of the wrong type in a field of a generated message ends the
     whole
@@ -163,7 +168,7 @@ def command(packages: Iterable[Package], folder: Path) -> list[str]:
         "--build-base", str(folder / "build"), "--install-base", str(folder / "install"),
         "--event-handlers", "console_cohesion+", "console_start_end+", "desktop_notification-", "status-",
         "--cmake-args", f"-DPython3_EXECUTABLE={sys.executable}", "-DCMAKE_BUILD_TYPE=Release",
-        "-DBUILD_TESTING=OFF", "--no-warn-unused-cli", "-Wno-dev",
+        "-DBUILD_TESTING=OFF", "--no-warn-unused-cli", "-Wno-dev", *cmake,
     ]  # fmt: skip
 
 

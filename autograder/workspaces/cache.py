@@ -82,6 +82,11 @@ def is_ones_own(folder: Path) -> bool:
     return own and not found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
 
 
+def is_complete(key: str, base: Path) -> bool:
+    """Whether there is a finished entry, without waiting for anybody who makes it."""
+    return (base / key / _MARKER).is_file()
+
+
 @contextlib.contextmanager
 def entry(key: str, base: Path | None = None) -> Iterator[Entry]:
     """Hold the entry of a key: nobody else builds it at the same time.

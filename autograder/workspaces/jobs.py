@@ -87,6 +87,7 @@ class Jobs(Protocol):
         name: str,
         entry: Path,
         command: Sequence[str],
+        variables: Mapping[str, str],
         cancelled: Callable[[], bool],
         hidden: Sequence[Path],
     ) -> Built:
@@ -97,6 +98,7 @@ class Jobs(Protocol):
             entry: Holds ``src``, which the build may read. All that it writes is gone afterwards, but for what is
                 in the archive: ``install`` of the place.
             command: Names everything as it is seen from the job.
+            variables: More variables of its environment.
             cancelled: Asked now and then; the build is ended when it says so.
             hidden: Files and folders of the environment that the build must not find.
         """

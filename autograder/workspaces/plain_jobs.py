@@ -53,13 +53,14 @@ class PlainJobs:
         name: str,
         entry: Path,
         command: Sequence[str],
+        variables: Mapping[str, str],
         cancelled: Callable[[], bool],
         hidden: Sequence[Path],
     ) -> Built:
         """Build in the entry, pack what came of it and remove that again."""
         del name, hidden
-        variables = {"COLCON_DEFAULTS_FILE": os.devnull}
-        program = PlainProgram(command, {**self._environment, **variables}, entry)
+        environment = {**self._environment, "COLCON_DEFAULTS_FILE": os.devnull, **variables}
+        program = PlainProgram(command, environment, entry)
         output = bytearray()
         deadline = time.monotonic() + BUILD_SECONDS
         try:

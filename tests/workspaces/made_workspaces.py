@@ -49,3 +49,39 @@ def python_package(src: Path, name: str = "tiny_pkg") -> Path:
         f"[develop]\nscript_dir={script}\n[install]\ninstall_scripts={script}\n"
     )
     return folder
+
+
+CMAKE = """cmake_minimum_required(VERSION 3.10)
+project(my_robot_interfaces)
+
+find_package(ament_cmake REQUIRED)
+find_package(rosidl_default_generators REQUIRED)
+rosidl_generate_interfaces(${PROJECT_NAME} "srv/AddTwoInts.srv")
+ament_package()
+"""
+INTERFACE_PACKAGE_XML = """<?xml version="1.0"?>
+<package format="3">
+  <name>my_robot_interfaces</name>
+  <version>0.0.0</version>
+  <description>Mine</description>
+  <maintainer email="ada@example.com">Ada</maintainer>
+  <license>MIT</license>
+  <buildtool_depend>ament_cmake</buildtool_depend>
+  <buildtool_depend>rosidl_default_generators</buildtool_depend>
+  <member_of_group>rosidl_interface_packages</member_of_group>
+  <export>
+    <build_type>ament_cmake</build_type>
+  </export>
+</package>
+"""
+DEFINITION = "int64 a\nint64 b\n---\nint64 sum\n"
+
+
+def interface_package(folder: Path, comment: str = "") -> Path:
+    """A package that makes one service type; the comment is in all of its texts."""
+    (folder / "srv").mkdir(parents=True)
+    (folder / "srv" / "AddTwoInts.srv").write_text(f"{comment}{DEFINITION}")
+    (folder / "CMakeLists.txt").write_text(f"{comment}{CMAKE}")
+    (folder / "package.xml").write_text(INTERFACE_PACKAGE_XML)
+    (folder / "LICENSE").write_text(comment)
+    return folder

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import sys
 import tarfile
 import tempfile
 import threading
@@ -20,6 +21,9 @@ from autograder.workspaces.lines import Hangup, Lines
 from autograder.workspaces.plain_jobs import PlainProgram
 from autograder.workspaces.service import Doors, WorkspaceService
 
+sys.path.insert(0, str(Path(__file__).parent))
+from made_workspaces import interface_package, python_package
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
@@ -33,6 +37,7 @@ class FakeJobs:
     def __init__(self) -> None:
         self.environment: Mapping[str, str] = {"PATH": "/usr/bin:/bin"}
         self.builds: list[list[str]] = []
+        self.sources: list[str] = []
         self.commands: list[Sequence[str]] = []
         self.built = Built(
             0, b"all is well\n", _packed("my_robot_pkg/lib/my_robot_pkg/simple_node", "my_robot_pkg/share/x")
@@ -52,10 +57,12 @@ class FakeJobs:
         name: str,
         entry: Path,
         command: Sequence[str],
+        variables: Mapping[str, str],
         cancelled: Callable[[], bool],
         hidden: Sequence[Path],
     ) -> Built:
         self.builds.append(sorted(path.name for path in (entry / "src").iterdir()))
+        self.sources.append("".join(path.read_text() for path in entry.rglob("*") if path.is_file()))
         self.waiting(cancelled)
         return self.built
 
@@ -124,8 +131,6 @@ def doors(jobs: FakeJobs, tmp_path: Path) -> Iterator[Doors]:
 
 @pytest.fixture
 def lab(tmp_path: Path) -> Path:
-    from made_workspaces import python_package
-
     python_package(tmp_path / "ros2_ws" / "src", "my_robot_pkg")
     return tmp_path / "ros2_ws"
 
@@ -202,8 +207,6 @@ def test_the_same_sources_are_built_once_for_all(doors: Doors, jobs: FakeJobs, l
 
 
 def test_what_is_not_needed_is_not_built(doors: Doors, jobs: FakeJobs, lab: Path) -> None:
-    from made_workspaces import python_package
-
     (python_package(lab / "src", "half_done") / "package.xml").write_text("<package>")
     judge = FakeJudge(doors)
     judge.check(lab)
@@ -349,6 +352,7 @@ def until_they_hang_up(lines: Lines) -> list[str]:
 
 
 def test_a_notebook_has_only_so_many_builds(doors: Doors) -> None:
+    assert doors.notebook is not None
     for _ in range(service.MAX_BUILDS):
         lines = Lines.to(doors.notebook, 20.0)
         lines.say("nothing")
@@ -360,6 +364,7 @@ def test_a_notebook_has_only_so_many_builds(doors: Doors) -> None:
     "garbage", [b"\xff\xff garbage\n", b"[" * 100_000 + b"\n", b'{"say": 1}\n', b"x" * 1_200_000]
 )
 def test_garbage_at_a_door_hurts_nobody(doors: Doors, lab: Path, garbage: bytes) -> None:
+    assert doors.notebook is not None
     for path in (doors.notebook, doors.judge):
         lines = Lines.to(path, 20.0)
         with contextlib.suppress(OSError):
@@ -385,3 +390,35 @@ def test_endless_output_is_cut_and_ends_with_the_run(
     while (words := judge.lines.hear())["say"] != "stopped":
         size += len(words["text"]) + 1
     assert size <= 12_000
+
+
+def test_interfaces_that_mean_the_same_are_built_in_nobody_s_words(
+    doors: Doors, jobs: FakeJobs, tmp_path: Path
+) -> None:
+    generated = "my_robot_interfaces/lib/python3/site-packages/my_robot_interfaces/srv/_add_two_ints.py"
+    jobs.built = Built(0, b"", _packed(generated, "my_robot_interfaces/share/x"))
+    for name in ("ada", "ben", "cid"):
+        interface_package(tmp_path / name / "src" / "my_robot_interfaces", f"# by {name}\n")
+        judge = FakeJudge(doors)
+        judge.check(tmp_path / name, "lab_1_3.interface")
+        told = reports(judge.run())[-1]
+        assert told["built"], told
+        assert f"# by {name}" in told["packages"][0]["interfaces"][0]["text"]
+        judge.lines.close()
+    assert len(jobs.sources) == 2
+    assert "# by ada" in jobs.sources[0]
+    assert "by" not in jobs.sources[1]
+
+
+def test_what_fails_in_nobody_s_words_is_told_in_the_student_s(
+    doors: Doors, jobs: FakeJobs, tmp_path: Path
+) -> None:
+    good = jobs.built = Built(0, b"", _packed("my_robot_interfaces/share/x"))
+    for name, built in (("ada", good), ("ben", Built(1, b"error: no\n"))):
+        jobs.built = built
+        interface_package(tmp_path / name / "src" / "my_robot_interfaces", f"# by {name}\n")
+        judge = FakeJudge(doors)
+        judge.check(tmp_path / name, "lab_1_3.interface")
+        judge.run()
+        judge.lines.close()
+    assert ["by" in text for text in jobs.sources] == [True, False, True]
