@@ -8,6 +8,7 @@ succeeds, so that a client that only claims "canceled" is told from one that loo
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder.exercises import common_mistakes as common
@@ -40,7 +41,11 @@ AT_ONCE = 0.01
 GOAL_LIMIT = 15.0
 """Seconds in which a goal must arrive once the client is on the graph."""
 END_LIMIT = {Look.FAST: 2.0, Look.REAL_TIME: 5.0}
-"""Seconds in which the client must ask for the result, and in which it must have said how the goal ended."""
+"""Seconds in which the client must ask for the result."""
+HANGS_AFTER = 5.0
+"""Seconds after the result in which the client must have said how the goal ended; where it has not, it hangs."""
+WAITS_FOR_ITSELF = ("nested_spin", "call_in_same_group")
+"""Hangs that no time can end. In the others the client may be busy with something that comes to an end."""
 AFTERMATH = 1.0
 """Seconds in which a client that has reported may end, or say more."""
 
@@ -97,7 +102,7 @@ def run(bench: Bench, name: str, *, accept: bool) -> bool:
         if not cancelled:
             bench.note_whether_it_spins()
         server.finish("canceled" if cancelled and accept else "succeeded", sequence=sequence)
-        if bench.wait_until(lambda evidence: bool(_after_result(evidence.main)), END_LIMIT[bench.look]):
+        if bench.wait_until(lambda evidence: bool(_after_result(evidence.main)), HANGS_AFTER):
             bench.await_end(AFTERMATH)
         else:
             bench.note_where_it_hangs()
@@ -133,18 +138,40 @@ def telling_count(evidence: Evidence) -> int | None:
     return next((n for n in counts if n is None or not FIRST_FEEDBACK <= n <= LAST_FEEDBACK), counts[0])
 
 
-def says_canceled(lines: Sequence[str], elsewhere: Sequence[str] = ()) -> bool:
+def says_canceled(lines: Sequence[str], elsewhere: Sequence[str] = (), otherwise: Sequence[str] = ()) -> bool:
     """Whether a line names the status CANCELED, by its name or by its number 5 (action_msgs/msg/GoalStatus).
 
     Args:
         lines: What was said.
-        elsewhere: What was said of a goal that was not canceled: a 5 in a line of these is no status.
+        elsewhere: What was said in the run with a goal that was not canceled: a 5 in the same place of a line there is
+            no status.
+        otherwise: What was said there of how the goal ended: a name that is in the same line there tells nothing.
     """
+    ends = {_shape(line) for line in otherwise}
     return any(
-        _names_canceled(line)
-        or (line not in elsewhere and re.search(r"(?<![\d.])5(?![\d.])", _without_lists(line)))
+        (_names_canceled(line) and _shape(line) not in ends) or _has_the_number(line, elsewhere)
         for line in lines
     )
+
+
+def _has_the_number(line: str, elsewhere: Sequence[str]) -> bool:
+    twins = [_numbers(other) for other in elsewhere if _shape(other) == _shape(line)]
+    return any(
+        number == "5" and all(twin[place] != "5" for twin in twins)
+        for place, number in enumerate(_numbers(line))
+    )
+
+
+_NUMBER = re.compile(r"\d+(?:\.\d+)*")
+
+
+def _numbers(line: str) -> list[str]:
+    return _NUMBER.findall(_without_lists(line))
+
+
+def _shape(line: str) -> str:
+    """A line with a place for each number, so that two lines for two goals can be compared."""
+    return _NUMBER.sub("#", _without_lists(line))
 
 
 def _names_canceled(line: str) -> bool:
@@ -222,7 +249,7 @@ def reports_the_status(evidence: Evidence) -> Finding:
     if part.first("result_request") is None:
         return Finding(False, expected, "never asked for the result")
     said = _after_result(part)
-    if not says_canceled(said, refused.said()):
+    if not says_canceled(said, refused.said(), _after_result(refused)):
         return Finding(False, expected, f"“{said[-1]}”" if said else "nothing was said after the result")
     claimed = _false_claim(refused)
     if claimed:
@@ -385,12 +412,14 @@ EXERCISE = Exercise(
         *common.OTHER_CRASHES,
         Mistake("field_typo", order_never_filled, certain=True),
         Mistake("wrong_order", wrong_order, certain=True),
-        *HANGS,
+        *(replace(hang, certain=hang.key in WAITS_FOR_ITSELF) for hang in HANGS),
         Mistake("never_spun", never_spun),
         Mistake("cancel_missing", cancel_missing),
         Mistake("cancel_too_early", cancel_too_early),
         Mistake("cancel_too_late", cancel_too_late),
         Mistake("cancel_repeated", cancel_repeated, certain=True),
+        Mistake("status_misreported", common.only_if_ended(status_misreported), certain=True),
+        Mistake("status_not_reported", common.only_if_ended(status_not_reported), certain=True),
         Mistake("status_misreported", status_misreported),
         Mistake("status_not_reported", status_not_reported),
         *common.NOTHING_THERE,

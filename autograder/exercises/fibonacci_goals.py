@@ -19,6 +19,8 @@ LAST_ORDER = 2
 """The order of the goal after the bad ones."""
 FIRST_TOO_LARGE = 47
 """The first order whose last number does not fit into an int32."""
+ERROR_GOAL_TERMINATED = 3
+"""From action_msgs/srv/CancelGoal."""
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
 """From action_msgs/msg/GoalStatus."""
 STATUS = {
@@ -44,6 +46,7 @@ class Goal:
         accepted: The server's answer; None where there is none.
         feedback: The partial sequences, in order.
         cancel_accepted: The answer to the cancel request; None where there is none.
+        cancelled_too_late: The answer to the cancel request was that the goal had ended.
         before_cancel: How many numbers the last feedback before the cancel request had.
         unread: How many feedback messages came between the cancel request and its answer.
         seconds: Wall time from the acceptance to the result; None where one of them is missing.
@@ -55,6 +58,7 @@ class Goal:
     accepted: bool | None
     feedback: list[list[int]]
     cancel_accepted: bool | None
+    cancelled_too_late: bool
     before_cancel: int
     unread: int
     seconds: float | None
@@ -83,6 +87,7 @@ def goal(part: Part, number: int) -> Goal:
         accepted=data.get("goal_answer", {}).get("accepted"),
         feedback=[list(event.data["fields"]["partial_sequence"]) for event in heard],
         cancel_accepted=data.get("cancel_answer", {}).get("accepted"),
+        cancelled_too_late=data.get("cancel_answer", {}).get("return_code") == ERROR_GOAL_TERMINATED,
         before_cancel=len(before[-1].data["fields"]["partial_sequence"]) if before else 0,
         unread=sum(split < events.index(event) < answered for event in heard),
         seconds=by_kind["result_heard"].t - by_kind["goal_answer"].t if "result_heard" in by_kind else None,

@@ -202,6 +202,11 @@ def cancel_refused(evidence: Evidence) -> Advice | None:
     )
 
 
+def cancel_refused_on_its_way(evidence: Evidence) -> Advice | None:
+    """The same, of a goal that had not ended: whether the request came in time has no part in it."""
+    return None if goal(evidence.part(GOALS), LONG).cancelled_too_late else cancel_refused(evidence)
+
+
 def cancel_not_read(evidence: Evidence) -> Advice | None:
     """The goal goes on and the cancel request is not answered."""
     long = goal(evidence.part(GOALS), LONG)
@@ -296,11 +301,12 @@ MISTAKES = (
     Mistake("wrong_sequence", wrong_sequence, certain=True),
     Mistake("feedback_missing", feedback_missing),
     Mistake("wrong_feedback", wrong_feedback),
-    Mistake("cancel_not_accepted", cancel_refused, certain=True),
+    Mistake("cancel_not_accepted", cancel_refused_on_its_way, certain=True),
+    Mistake("cancel_not_accepted", cancel_refused),
     Mistake("cancel_not_accepted", cancel_not_read),
     Mistake("done_at_once", done_at_once),
     Mistake("cancel_ignored", cancel_ignored),
-    Mistake("partial_result_missing", partial_result_missing),
+    Mistake("partial_result_missing", partial_result_missing, certain=True),
     Mistake("bad_order_accepted", bad_order_accepted, certain=True),
     *HANGS,
     common.never_spun("action_server"),

@@ -51,6 +51,8 @@ def scenario(bench: Bench) -> None:
     served(bench, LATE, ADDER, {"/add_two_ints": SWITCH, _name(random): SWITCH}, late=True)
     served(bench, OTHER, RESET, {_name(random): ADDER, _name(random): SWITCH}, late=False)
     others = {_name(random): ADDER, _name(random): SWITCH}
+    if bench.keep(ABSENT):
+        return
     bench.part(ABSENT, type=TRIGGER, right="", others=others)
     _serve(bench, others)
     bench.start(TRIGGER, patience_sec=SHORT_PATIENCE)

@@ -130,6 +130,13 @@ class Bench(Protocol):
         """Begin a part: a fresh run of the subject; ``inputs`` are written into the transcript."""
         ...
 
+    def keep(self, name: str) -> bool:
+        """In a second look: take over a part of the first one in which the subject came to its own end.
+
+        For parts in which nothing depends on the pace. False where there is nothing to take over.
+        """
+        ...
+
     def start(self, *arguments: Any, **options: Any) -> None:
         """Start the subject; a class is made but not yet spun, a command or function runs at once.
 

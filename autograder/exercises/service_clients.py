@@ -80,6 +80,8 @@ def is_done(evidence: Evidence, calls: int) -> bool:
 
 def unserved(bench: Bench, numbers: Sequence[int]) -> None:
     """One run without the service."""
+    if bench.keep(ABSENT):
+        return
     bench.part(ABSENT, numbers=list(numbers))
     bench.start(*numbers, patience_sec=SHORT_PATIENCE)
     service, _ = bench.reference.only("client")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import time
 from typing import TYPE_CHECKING, Any
 
 from autograder.exercises.evidence import Evidence, Part, Reference
@@ -17,6 +16,7 @@ from autograder.judge.interfaces import service_fields
 from autograder.judge.planted import Bed
 from autograder.judge.recorder import Recorder
 from autograder.judge.services import Answer, RecordedServer
+from autograder.judge.settling import Settling
 from autograder.judge.topics import Ear, LogReader, Mouth
 from autograder.judge.wire import JudgeFailed, Wire
 
@@ -48,13 +48,20 @@ class TestBench:
     __test__ = False  # not a pytest class
 
     def __init__(
-        self, subject: Subject, domain_id: int, reference: Reference, look: Look, random: Random
+        self,
+        subject: Subject,
+        domain_id: int,
+        reference: Reference,
+        look: Look,
+        random: Random,
+        before: Evidence | None = None,
     ) -> None:
         self.look = look
         self.random = random
         self.reference = reference
         self.parts: list[Part] = []
         self.doubtful = False
+        self._before = before
         self._subject = subject
         self._domain_id = domain_id
         self._recorder = Recorder()
@@ -82,6 +89,15 @@ class TestBench:
             # One reader for all parts of a participant: a new one would be told the log of the parts before.
             self._log = LogReader(self._wire, self._recorder)
             self._subject.renew()
+
+    def keep(self, name: str) -> bool:
+        """In a second look, take over what the first one saw in a part, if the subject came to its own end there."""
+        known = self._before.part(name) if self._before else Part(name)
+        if known.ending is None:
+            return False
+        self.stop()
+        self.parts.append(known)
+        return True
 
     def stop(self) -> None:
         """End the subject, keep what was seen and take away what the judge put up for this part."""
@@ -171,7 +187,7 @@ class TestBench:
 
     def _await_graph(self, there: Callable[[], bool]) -> None:
         """Wait for something on the graph, until the subject has ended or has surely made all that it makes."""
-        settled = _Settling(SETTLED[self.look])
+        settled = Settling(SETTLED[self.look])
 
         def over() -> bool:
             if there() or self._subject.ended:
@@ -379,19 +395,3 @@ def _made(part: Part) -> Part:
     return Part(
         part.name, part.inputs, [event for event in part.events if event.kind in ("subject", "stack")]
     )
-
-
-class _Settling:
-    """Tells when a command's graph has not changed for a while, once there is anything on it."""
-
-    def __init__(self, seconds: float) -> None:
-        self._now = time.monotonic
-        self._seconds = seconds
-        self._last: Any = None
-        self._since = self._now()
-
-    def unchanged(self, interface: graph.Interface, nodes: int) -> bool:
-        state = (nodes, interface)
-        if state != self._last:
-            self._last, self._since = state, self._now()
-        return nodes > 0 and self._now() - self._since > self._seconds

@@ -16,9 +16,11 @@ from autograder.judge.settings import subject_environment
 from autograder.judge.subjects import CannotStart
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from autograder.judge.recorder import Recorder
+
+    Record = Callable[..., None]
 
 MAX_LINE = 4_000
 """Characters of one line that are kept."""
@@ -80,7 +82,8 @@ class CommandSubject:
         except (OSError, ValueError) as error:
             raise CannotStart(f"cannot start {self._command[0]!r}: {error}") from error
         self._done, self._dying, self._last_words = threading.Event(), threading.Event(), []
-        threading.Thread(target=self._follow, args=(recorder, self._process, self._done), daemon=True).start()
+        follow = (recorder.in_this_part(), self._process, self._done)
+        threading.Thread(target=self._follow, args=follow, daemon=True).start()
 
     def release(self) -> None:
         """A command runs from its start."""
@@ -112,10 +115,10 @@ class CommandSubject:
         self._process.wait()
         self._process = None
 
-    def _follow(self, recorder: Recorder, process: subprocess.Popen[bytes], done: threading.Event) -> None:
+    def _follow(self, record: Record, process: subprocess.Popen[bytes], done: threading.Event) -> None:
         budget = _Budget(MAX_OUTPUT)
         readers = [
-            threading.Thread(target=self._read, args=(recorder, stream, name, budget), daemon=True)
+            threading.Thread(target=self._read, args=(record, stream, name, budget), daemon=True)
             for name, stream in (("stdout", process.stdout), ("stderr", process.stderr))
         ]
         for reader in readers:
@@ -126,10 +129,10 @@ class CommandSubject:
             # though.
             reader.join(timeout=READ_LIMIT)
         # What the judge has ended did not end by itself.
-        recorder.record("subject", "aborted" if self._dying.is_set() else "exited", code=code)
+        record("subject", "aborted" if self._dying.is_set() else "exited", code=code)
         done.set()
 
-    def _read(self, recorder: Recorder, stream: IO[bytes] | None, name: str, budget: _Budget) -> None:
+    def _read(self, record: Record, stream: IO[bytes] | None, name: str, budget: _Budget) -> None:
         assert stream is not None
         with stream:
             while line := stream.readline(MAX_LINE):
@@ -140,7 +143,7 @@ class CommandSubject:
                 if self._dying.is_set() and name == "stderr":
                     self._last_words.append(text)
                 else:
-                    recorder.record("output", name, text=text)
+                    record("output", name, text=text)
 
 
 class _Budget:

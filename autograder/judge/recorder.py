@@ -28,9 +28,8 @@ _SPEECH = ("output", "log")
 class Recorder:
     """An append-only list of events with a condition to wait on.
 
-    Times are seconds since :meth:`begin`. ``simulated_now`` is asked at each event, so that a message carries
-    the
-    simulated time at which it arrived.
+    Times are seconds since :meth:`begin`; ``began_at`` is that moment in seconds of Unix time. ``simulated_now`` is
+    asked at each event, so that a message carries the simulated time at which it arrived.
     """
 
     def __init__(self) -> None:
@@ -42,7 +41,9 @@ class Recorder:
         self._name = ""
         self._inputs: Mapping[str, Any] = {}
         self._start = time.monotonic()
+        self._number = 0
         self.simulated_now: float | None = None
+        self.began_at = time.time()
 
     def begin(self, name: str, inputs: Mapping[str, Any]) -> None:
         """Start a new part; forget the events of the one before."""
@@ -52,12 +53,31 @@ class Recorder:
             self._name = name
             self._inputs = dict(inputs)
             self._start = time.monotonic()
+            self._number += 1
             self.simulated_now = None
+            self.began_at = time.time()
+
+    def in_this_part(self) -> Callable[..., None]:
+        """:meth:`record` for as long as the part lasts that goes on now: what comes later is dropped.
+
+        For threads that may still be reading what a run has said when the next one begins.
+        """
+        number = self._number
+
+        def record(kind: str, name: str, **data: Any) -> None:
+            self._record(kind, name, data, number)
+
+        return record
 
     def record(self, kind: str, name: str, **data: Any) -> None:
         """Write down one event and wake everyone who waits for it."""
+        self._record(kind, name, data, None)
+
+    def _record(self, kind: str, name: str, data: Mapping[str, Any], part: int | None) -> None:
         kept, size = _kept(data, MAX_TEXT if self._size < MAX_TEXTS else BEGINNING)
         with self._changed:
+            if part is not None and part != self._number:
+                return
             self._count += 1
             self._size += size
             if kind in _SPEECH:

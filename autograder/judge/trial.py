@@ -54,16 +54,31 @@ def check(
         and (seen.doubtful or not verdict.passed)
         and not _is_certain(exercise, seen.evidence)
     ):
-        again = look(exercise, subject, reference, Look.REAL_TIME, seed=seed, domain_id=domain_id)
+        again = look(
+            exercise,
+            subject,
+            reference,
+            Look.REAL_TIME,
+            seed=seed,
+            domain_id=domain_id,
+            before=seen.evidence,
+        )
         verdict = judge(exercise, replace(again.evidence, before=seen.evidence), seed)
     return replace(verdict, seconds=round(time.monotonic() - began, 3))
 
 
 def look(
-    exercise: Exercise, subject: Subject, reference: Reference, how: Look, *, seed: str, domain_id: int
+    exercise: Exercise,
+    subject: Subject,
+    reference: Reference,
+    how: Look,
+    *,
+    seed: str,
+    domain_id: int,
+    before: Evidence | None = None,
 ) -> Seen:
-    """Run the scenario once and hand over what was seen."""
-    bench = TestBench(subject, domain_id, reference, how, Random(seed))
+    """Run the scenario once and hand over what was seen; ``before`` is what the first look brought."""
+    bench = TestBench(subject, domain_id, reference, how, Random(seed), before)
     try:
         exercise.scenario(bench)
     finally:

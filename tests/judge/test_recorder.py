@@ -80,3 +80,14 @@ def test_what_is_no_text_can_be_written_down_all_the_same() -> None:
     book.record("output", "notebook", text="Grüße \ud800")
     (event,) = book.part().events
     assert event.data["text"].encode() == "Grüße ?".encode()
+
+
+def test_what_a_run_said_is_not_taken_for_the_next_ones() -> None:
+    recorder = Recorder()
+    recorder.begin("first", {})
+    slow_reader = recorder.in_this_part()
+    slow_reader("output", "stdout", text="now")
+    assert [event.data["text"] for event in recorder.part().of("output")] == ["now"]
+    recorder.begin("second", {})
+    slow_reader("output", "stdout", text="late")
+    assert not recorder.part().events
