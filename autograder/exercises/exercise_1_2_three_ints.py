@@ -26,6 +26,7 @@ from autograder.exercises.service_clients import (
     fields_never_filled,
     gave_up_too_early,
     gives_up_in_time,
+    hidden_bias,
     how_it_went,
     only_if_called,
     pair,
@@ -50,7 +51,7 @@ def scenario(bench: Bench) -> None:
     random = bench.random
     for name, numbers, bias in (
         (LATE, ordinary(random), 0),
-        (BIASED, negative(random), random.randint(10**5, 10**6)),
+        (BIASED, negative(random), hidden_bias(random)),
         (EXTREME, extreme(random), 0),
     ):
         if not called(bench, name, numbers, bias, calls=2):

@@ -24,6 +24,7 @@ from autograder.exercises.service_clients import (
     fields_never_filled,
     gave_up_too_early,
     gives_up_in_time,
+    hidden_bias,
     how_it_went,
     pair,
     reports,
@@ -47,7 +48,7 @@ def scenario(bench: Bench) -> None:
     random = bench.random
     for name, numbers, bias in (
         (LATE, ordinary(random), 0),
-        (BIASED, (-random.randint(1001, 99_999), 0), random.randint(10**5, 10**6)),
+        (BIASED, (-random.randint(1001, 99_999), 0), hidden_bias(random)),
         (EXTREME, (2**63 - 1 - random.randint(0, 999), -(2**62) + random.randint(0, 999)), 0),
     ):
         if not called(bench, name, numbers, bias, calls=1):

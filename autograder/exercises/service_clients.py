@@ -15,6 +15,7 @@ from autograder.exercises.model import Advice, Bench, Finding
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+    from random import Random
 
     from autograder.exercises.evidence import Event, Evidence, Part
 
@@ -90,6 +91,11 @@ def unserved(bench: Bench, numbers: Sequence[int]) -> None:
     bench.stop()
 
 
+def hidden_bias(random: Random) -> int:
+    """What a surprising service adds: one of so many that nobody can say them all."""
+    return random.randint(10**9, 10**12)
+
+
 def adder(bias: int) -> Callable[[Mapping[str, Any]], Mapping[str, Any]]:
     """A service that adds two numbers, and a bias."""
     return lambda request: {"sum": _as_int64(request["a"] + request["b"] + bias)}
@@ -162,9 +168,13 @@ def gives_up_in_time(evidence: Evidence) -> Finding:
     # then.
     asked = any(p.endpoints("client") or requests(p) for p in evidence)
     told = bool(part.said()) or bool(part.traceback) or bool(part.ending and part.ending.name == "raised")
-    passed = asked and part.ending is not None and told
+    # Who names the sum has not given up, but added up by itself.
+    claimed = bool(part.inputs) and mentions(part.said(), sum(part.inputs["numbers"]))
+    passed = asked and part.ending is not None and told and not claimed
     if passed:
         seen = "it did"
+    elif claimed:
+        seen = "named a sum that no service gave"
     elif part.ending is not None:
         seen = "ended without a word" if asked else "never made a client"
     else:
