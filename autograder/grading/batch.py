@@ -294,6 +294,10 @@ class _Batch:
 
         try:
             with self._timings.measure("gradebook"):
+                if self._fingerprints.of(work.submission) != work.fingerprint:
+                    # Its tasks may have been made of other bytes than those that the record would stand for.
+                    name = f"{work.submission.student}/{work.submission.assignment}"
+                    raise NotWritten(f"{name} was changed while it was graded: grade it again")
                 self._writer.write(work.submission, work.fingerprint, work.pairs, rows)
         except NotWritten as error:
             if is_disk_full(error):

@@ -62,6 +62,33 @@ class DiskFull(GradingError):
         )
 
 
+class GradebookTrouble(GradingError):
+    """The gradebook cannot be read or written.
+
+    Args:
+        path: The class.
+        said: What the database says.
+    """
+
+    def __init__(self, path: Path, said: str) -> None:
+        advice = next(
+            (words for sign, words in _GRADEBOOK_ADVICE.items() if sign in said),
+            "Look whether it is there and whole; nbgrader keeps no copy of it, your backup does.",
+        )
+        super().__init__(
+            f"The gradebook of {path} cannot be read or written ({said}). {advice} What was graded so far is "
+            "kept; nobody has been given points that were not earned."
+        )
+
+
+_GRADEBOOK_ADVICE = {
+    "locked": "Another program has it open for writing: close that, and run the same command again.",
+    "readonly": "Look at its owner and its mode, and at those of its folder; then run the same command again.",
+    "not a database": "Put back a copy of it; the next run enters all grades anew.",
+    "malformed": "Put back a copy of it; the next run enters all grades anew.",
+}
+
+
 def is_disk_full(error: BaseException | None) -> bool:
     """Whether a full disk (or an exhausted quota) is at the bottom of ``error``."""
     while error is not None:
@@ -82,6 +109,7 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
 
     Raises:
         DiskFull: There is no room left, whoever noticed it.
+        GradebookTrouble: The gradebook is locked, read-only or damaged.
         GradingError: Something may not be read or written.
     """
     try:
@@ -91,8 +119,20 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
     except Exception as error:
         if is_disk_full(error):
             raise DiskFull(path) from error
+        said = _said_by_database(error)
+        if said:
+            raise GradebookTrouble(path, said) from error
         if isinstance(error, PermissionError):
             raise GradingError(
                 f"{error.filename or path} may not be read or written by you. Look at its owner and its mode."
             ) from error
         raise
+
+
+def _said_by_database(error: BaseException | None) -> str:
+    """What a database said that is at the bottom of ``error``; empty where none is."""
+    while error is not None:
+        if type(error).__module__.startswith(("sqlite3", "sqlalchemy")):
+            return " ".join(str(getattr(error, "orig", None) or error).split())[:200]
+        error = error.__cause__ or error.__context__
+    return ""

@@ -1,0 +1,223 @@
+"""Whatever fails, nobody gets points for it and nobody loses any for good."""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import os
+import shutil
+import sqlite3
+import subprocess
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+from conftest import LISTENER, TALKER, FakeEngine, TinyClass
+
+from autograder.grading.errors import DiskFull, GradebookTrouble
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+
+
+def points(tiny: TinyClass) -> dict[str, float | None]:
+    """The talker's points of everybody, read without nbgrader."""
+    with sqlite3.connect(tiny.path / "gradebook.db") as book:
+        rows = book.execute(
+            "SELECT submitted_assignment.student_id, grade.auto_score FROM grade"
+            " JOIN base_cell ON base_cell.id = grade.cell_id AND base_cell.name = ?"
+            " JOIN submitted_notebook ON submitted_notebook.id = grade.notebook_id"
+            " JOIN submitted_assignment ON submitted_assignment.id = submitted_notebook.assignment_id",
+            (TALKER,),
+        ).fetchall()
+    book.close()
+    return dict(rows)
+
+
+# -- the gradebook
+# ---------------------------------------------------------------------------------------------------------
+
+
+def test_a_gradebook_that_may_only_be_read(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada", 4)
+    tiny.grade()
+    config = tiny.path / "nbgrader_config.py"
+    usual = config.read_text()
+    url = f"sqlite:///file:{tiny.path / 'gradebook.db'}?mode=ro&uri=true"
+    config.write_text(f"{usual}\nc.CourseDirectory.db_url = {url!r}\n")
+    tiny.submit("ada", 9)
+    fake_engine.ran.clear()
+    with pytest.raises(GradebookTrouble, match=r"readonly database.*Look at its owner"):
+        tiny.grade()
+    assert fake_engine.ran == [], "what cannot be taken back is not run"
+    config.write_text(usual)
+    assert tiny.grade().exit_code == 0
+    assert points(tiny) == {"ada": 9}
+
+
+@pytest.mark.slow
+def test_a_gradebook_that_another_program_holds(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    for student in ("ada", "ben"):
+        tiny.submit(student, 4)
+    tiny.grade()
+    for student in ("ada", "ben"):
+        tiny.submit(student, 9)
+    other = sqlite3.connect(tiny.path / "gradebook.db", isolation_level=None)
+
+    def hold(_: object) -> None:
+        if not other.in_transaction:
+            other.execute("BEGIN EXCLUSIVE")
+
+    fake_engine.before = hold
+    with pytest.raises(GradebookTrouble, match=r"locked.*Another program has it open"):
+        tiny.grade()
+    other.execute("ROLLBACK")
+    other.close()
+    assert points(tiny) == {"ada": 0, "ben": 0}
+    fake_engine.before = lambda _: None
+    fake_engine.ran.clear()
+    assert tiny.grade().exit_code == 0
+    assert "ada" not in fake_engine.ran, "it was graded, only not written down"
+    assert points(tiny) == {"ada": 9, "ben": 9}
+
+
+def test_a_gradebook_that_is_damaged(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada", 4)
+    tiny.grade()
+    book = tiny.path / "gradebook.db"
+    good = book.read_bytes()
+    book.write_bytes(b"no more" * 1000)
+    with pytest.raises(GradebookTrouble, match=r"not a database.*Put back a copy"):
+        tiny.grade()
+    book.write_bytes(good)
+    assert tiny.grade().exit_code == 0
+    assert points(tiny) == {"ada": 4}
+
+
+# -- the disk
+# --------------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def small_disk(tmp_path: Path) -> Iterator[Path]:
+    """A disk of four megabytes."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=4m", "tmpfs", str(folder)]
+    if subprocess.run(mount, capture_output=True, check=False).returncode:
+        pytest.skip("only root can make a small disk")
+    try:
+        yield folder
+    finally:
+        subprocess.run(["umount", "--lazy", str(folder)], check=True)
+
+
+def fill(disk: Path, but: int) -> Path:
+    """A file that leaves so many bytes."""
+    filler = disk / "filler"
+    free = os.statvfs(disk)
+    filler.write_bytes(bytes(max(0, free.f_bavail * free.f_frsize - but)))
+    return filler
+
+
+@pytest.mark.parametrize("when", ["before the run", "in its middle"])
+@pytest.mark.parametrize("free", [0, 4, 8, 12, 20, 32, 64, 200, 400])
+def test_a_disk_that_is_full_at_any_moment(
+    tiny: TinyClass, fake_engine: FakeEngine, small_disk: Path, free: int, when: str
+) -> None:
+    """Free kilobytes; at some of them what is written first fits, and what comes then does not."""
+    small = TinyClass(Path(shutil.copytree(tiny.path, small_disk / "class")))
+    right: dict[str, float | None] = {f"student-{number}": number + 1 for number in range(4)}
+    for student in right:
+        small.submit(student, 10)
+    small.grade(feedback=when == "in its middle")
+    for student, worth in right.items():
+        small.submit(student, worth)
+    before = (small.path / "grades.csv").read_text()
+    fillers = []
+    if when == "before the run":
+        fillers.append(fill(small_disk, free * 1024))
+    else:
+        fake_engine.before = lambda _: None if fillers else fillers.append(fill(small_disk, free * 1024))
+    with contextlib.suppress(DiskFull):
+        small.grade(feedback=True)
+        pytest.fail("it was not full")
+    untouched = all(score == 10 for score in points(small).values())
+    assert untouched or all(score in (0, None, right[who]) for who, score in points(small).items())
+    assert (small.path / "grades.csv").read_text() == before
+    fillers[0].unlink()
+    fake_engine.before = lambda _: None
+    assert small.grade(feedback=True).exit_code == 0
+    assert points(small) == right
+    with (small.path / "grades.csv").open(newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["exercise"] == "lab_1_2.talker"]
+    assert {row["student"]: float(row["score"]) for row in rows} == right
+    for student in right:
+        page = small.path / "feedback" / student / "lab_1_2" / "lab_1_2.html"
+        assert page.stat().st_size > 1000
+
+
+# -- a submission that is not there any more
+# ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("what", ["notebook", "assignment", "student", "everything"])
+def test_a_submission_that_vanishes_while_it_runs(
+    tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path, what: str
+) -> None:
+    path = tiny.submit("ada", 7, 8)
+    tiny.submit("zoe", 3, 4)
+    gone = {
+        "notebook": path,
+        "assignment": path.parent,
+        "student": path.parents[1],
+        "everything": path.parents[2],
+    }[what]
+    aside = tmp_path / "aside"
+    fake_engine.before = lambda _: gone.rename(aside) if gone.exists() else None
+    report = tiny.grade()
+    assert report.exit_code == 2
+    assert any("ada/lab_1_2" in problem for problem in report.problems)
+    assert not points(tiny).get("ada")
+    if what != "everything":
+        assert points(tiny)["zoe"] == 3
+    fake_engine.before = lambda _: None
+    aside.rename(gone)
+    assert tiny.grade().exit_code == 0
+    assert tiny.scores("ada") == {TALKER: 7, LISTENER: 8}
+    assert tiny.scores("zoe") == {TALKER: 3, LISTENER: 4}
+
+
+def test_a_submission_that_is_replaced_while_it_runs(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    """Neither the points of the old one nor of one that nobody has run."""
+    tiny.submit("ada", 10, 10)
+
+    def replace(_: object) -> None:
+        tiny.submit("ada", 2, 2)
+
+    fake_engine.before = replace
+    report = tiny.grade()
+    assert report.exit_code == 2
+    assert not points(tiny).get("ada")
+    fake_engine.before = lambda _: None
+    tiny.grade()
+    assert tiny.scores("ada") == {TALKER: 2, LISTENER: 2}
+
+
+def test_nothing_is_run_before_all_old_grades_are_gone(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    for student in ("ada", "ben", "cleo"):
+        tiny.submit(student, 10)
+    tiny.grade()
+    for student in ("ada", "ben", "cleo"):
+        tiny.submit(student, 3)
+    seen: list[dict[str, float | None]] = []
+
+    def look(_: object) -> None:
+        seen.append(points(tiny))
+
+    fake_engine.before = look
+    tiny.grade()
+    assert seen[0] == {"ada": 0, "ben": 0, "cleo": 0}
+    assert all(score in (0, 3) for scores in seen for score in scores.values())
