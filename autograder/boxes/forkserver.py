@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 KEEPER_MODULE = "autograder.boxes.keeper"
 KERNEL_MODULE = "autograder.boxes.kernel_process"
+_NO_THREADS = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+"""numpy's libraries start threads when they are loaded, and a fork has none of them."""
 _GOODBYE_SECONDS = 3.0
 
 
@@ -54,7 +56,12 @@ class WarmProcess:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL if log is None else log,
-                env={**base_environment(), **(extra or {})},
+                env={
+                    **base_environment(),
+                    **_NO_THREADS,
+                    "PYDEVD_DISABLE_FILE_VALIDATION": "1",
+                    **(extra or {}),
+                },
                 cwd="/",
                 pass_fds=(listener.fileno(),),
                 # Ctrl-C goes to the grader, which then ends its boxes in good order.

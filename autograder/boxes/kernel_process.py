@@ -14,6 +14,7 @@ import importlib
 import os
 import random
 import sys
+import tempfile
 from typing import TYPE_CHECKING, Any
 
 import zmq
@@ -27,12 +28,8 @@ if TYPE_CHECKING:
 
 
 _PRELOADED = (
-    "asyncio",
     "IPython.core.completer",
-    "IPython.core.magics",
     "IPython.display",
-    "ipykernel.ipkernel",
-    "ipykernel.zmqshell",
     "matplotlib_inline",
     "numpy",
     "rclpy",
@@ -62,8 +59,8 @@ _MIDDLEWARE = "librmw_fastrtps_cpp.so"
 
 def prepare() -> None:
     """Import what nearly every notebook of the course does; what is not there is left to the notebook to miss."""
-    for name in _PRELOADED:
-        with contextlib.suppress(ImportError):
+    for name in (*_PRELOADED, *_rehearsed()):
+        with contextlib.suppress(Exception):
             importlib.import_module(name)
     for name in _INTERFACES:
         with contextlib.suppress(ImportError):
@@ -74,6 +71,37 @@ def prepare() -> None:
     with contextlib.suppress(OSError):
         # rclpy.init loads it, and finds it here already.
         ctypes.CDLL(_MIDDLEWARE)
+
+
+def _rehearsed() -> list[str]:
+    """The modules that a kernel imports until its first cell has run, as a child finds out that is one for a moment."""
+    before = set(sys.modules)
+    reading, writing = os.pipe()
+    pid = os.fork()
+    if pid == 0:
+        os.close(reading)
+        with contextlib.suppress(BaseException):
+            _rehearse()
+        names = [name for name in sys.modules if name not in before and name != "__main__"]
+        with os.fdopen(writing, "w") as told:
+            told.write("\n".join(names))
+        os._exit(0)
+    os.close(writing)
+    with os.fdopen(reading) as told:
+        found = told.read().split()
+    os.waitpid(pid, 0)
+    return found
+
+
+def _rehearse() -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ["IPYTHONDIR"] = folder
+        app = _kernel_app(b"rehearsal", f"{folder}/k", {})
+        app.initialize([])
+        assert app.shell is not None
+        app.shell.run_cell("import asyncio\n%time 1 + 1\nassert asyncio")
+        # Before the folder goes; the standard streams are those of the kernel by now, and nobody listens.
+        sys.stdout, sys.stderr = sys.__stdout__, sys.__stderr__
 
 
 def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
