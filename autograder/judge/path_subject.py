@@ -7,6 +7,7 @@ side (:mod:`autograder.workspaces.service`); from there come the reports, and wh
 from __future__ import annotations
 
 import threading
+import time
 from typing import TYPE_CHECKING, Any
 
 from autograder.exercises.evidence import REPORTS
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
 
 STOP_LIMIT = 15.0
 """Seconds of wall time in which the grader's side must have ended a run."""
+PATIENCE = 60.0
+"""Seconds of wall time after which a scenario that has given up on a build had waited for it. One that gives up earlier
+has seen enough."""
 MAX_TEXT = 4_000
 """Characters that are kept of one line."""
 
@@ -52,6 +56,8 @@ class PathSubject:
         self._ended = threading.Event()
         self._stopped = threading.Event()
         self._ready = threading.Event()
+        self._built = threading.Event()
+        self._began = 0.0
         self.trouble = ""
 
     def begin(self, domain_id: int) -> None:
@@ -94,6 +100,8 @@ class PathSubject:
         self._recorder = recorder
         self._ended.clear()
         self._stopped.clear()
+        self._built.clear()
+        self._began = time.monotonic()
         self._say("start")
 
     def release(self) -> None:
@@ -117,10 +125,13 @@ class PathSubject:
         if self._recorder is None:
             return
         self._recorder = None
+        waited = not self._built.is_set() and not self.ended and time.monotonic() - self._began > PATIENCE
         if not self.trouble:
             self._say("stop")
             if not self._stopped.wait(STOP_LIMIT):
                 raise JudgeFailed("the grader's side did not end what it ran")
+        if waited:
+            raise JudgeFailed("the build did not end in time; is the machine too busy?")
         self._check()
 
     def _check(self) -> None:
@@ -170,6 +181,8 @@ class PathSubject:
             return  # of an earlier run
         elif say == "stopped":
             self._stopped.set()
+        elif say == "built":
+            self._built.set()
         elif recorder is None:
             return
         elif say == "report":

@@ -99,10 +99,10 @@ class BoxedJobs:
                     output_bytes=MAX_LOG_BYTES,
                 ) as running:  # fmt: skip
                     guard.watch(running.pid)
-                    returncode = _wait(running, BUILD_SECONDS, lambda: cancelled() or bool(guard.exceeded()))
+                    returncode, late = _wait(running, lambda: cancelled() or bool(guard.exceeded()))
                     output = running.said
                 if returncode != 0:
-                    return Built(returncode, output)
+                    return Built(returncode, output, late=late)
                 packing = f"exec tar -cf - -C {shlex.quote(str(place / 'install'))} . 2>/dev/null"
                 packed = enclosure.run(
                     ["/bin/sh", "-c", packing], limit=60.0, cwd=Path("/"), output_bytes=MAX_ARCHIVE_BYTES
@@ -179,13 +179,15 @@ class BoxedProgram:
         self._running.end()
 
 
-def _wait(running: Running, limit: float, over: Callable[[], bool]) -> int | None:
-    """The exit code; None where it was ended."""
-    deadline = time.monotonic() + limit
+def _wait(running: Running, over: Callable[[], bool]) -> tuple[int | None, bool]:
+    """The exit code, None where it was ended; and whether that was because of the time."""
+    deadline = time.monotonic() + BUILD_SECONDS
     while running.read(LOOK_EVERY):
-        if time.monotonic() > deadline or over():
-            return None
-    return running.wait(limit).returncode
+        if over():
+            return None, False
+        if time.monotonic() > deadline:
+            return None, True
+    return running.wait(_ITS_TIME).returncode, False
 
 
 def _covers(hidden: Sequence[Path], folder: Path) -> list[Bind]:

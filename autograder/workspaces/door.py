@@ -97,6 +97,7 @@ def serve_builds(lines: Lines, builds: TrustedBuilds, folder: Path, cancelled: C
         Hangup: The notebook is gone.
     """
     from autograder.workspaces.building import look
+    from autograder.workspaces.trusted_build import BuildTookTooLong
 
     wish = lines.hear()
     tree = folder / _TREE
@@ -114,12 +115,15 @@ def serve_builds(lines: Lines, builds: TrustedBuilds, folder: Path, cancelled: C
     found = look(tree / top)
     made = found
     if not found.trouble:
-        made = builds.build(
-            found,
-            lambda f: [p.name for p in f.packages if p.name in only],
-            name=WORKSPACE,
-            cancelled=cancelled,
-        )
+        try:
+            made = builds.build(
+                found,
+                lambda f: [p.name for p in f.packages if p.name in only],
+                name=WORKSPACE,
+                cancelled=cancelled,
+            )
+        except BuildTookTooLong as error:
+            made = replace(found, trouble="build", line=str(error), log=str(error))
     if not made.ok or made.install is None:
         told = {
             name: getattr(made, name).replace(f"{tree}/", "")

@@ -66,8 +66,8 @@ class PlainJobs:
         try:
             while (data := program.read(0.5)) != b"":
                 output += (data or b"")[: MAX_LOG_BYTES - len(output)]
-                if time.monotonic() > deadline or cancelled():
-                    return Built(None, bytes(output))
+                if (late := time.monotonic() > deadline) or cancelled():
+                    return Built(None, bytes(output), late=late)
         finally:
             program.end()
         if program.exit_code() != 0:

@@ -8,8 +8,8 @@ It lives in the grader's worker, outside of all boxes, and has two doors, each a
   words travel as different words, so that no program can say a report.
 * The **notebook's** door, for builds alone: what `colcon build` would make in the box, made outside of it once.
 
-Words of the judge: ``check``, ``source``…, ``start``, ``stop``. Words to it: ``ready``, ``report``, ``output``,
-``exited``, ``stopped``, ``trouble``.
+Words of the judge: ``check``, ``source``…, ``start``, ``stop``. Words to it: ``ready``, ``built``, ``report``,
+``output``, ``exited``, ``stopped``, ``trouble``.
 """
 
 from __future__ import annotations

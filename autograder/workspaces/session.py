@@ -170,6 +170,7 @@ class _Run(threading.Thread):
         if not found.trouble:
             made = self._builds.build(found, plan.targets, name=WORKSPACE, cancelled=self._cancelled.is_set)
         missing = plan.missing(made) if made.ok else ""
+        self._say("built")
         self._report(built_line(made, missing))
         if not made.ok or missing:
             self._say("exited", code=1)
@@ -188,6 +189,7 @@ class _Run(threading.Thread):
             made = self._builds.build(
                 look(workspace), launch_targets(file), name=WORKSPACE, cancelled=self._cancelled.is_set
             )
+            self._say("built")
             self._report(built_line(made))
             if not made.ok:
                 self._say("exited", code=1)

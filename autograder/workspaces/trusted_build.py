@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 from autograder.workspaces import artefacts, cache
 from autograder.workspaces.building import Build, choose, command, failed
 from autograder.workspaces.interface_packages import DEFINITIONS, holds_only_interfaces, simplify
+from autograder.workspaces.jobs import BUILD_SECONDS
 from autograder.workspaces.packages import BadPackage, Package, key
 from autograder.workspaces.plans import course_interfaces
 
@@ -44,6 +45,10 @@ ONLY_PYTHON = (
 )
 """For interface packages: 6 instead of 10 s of processor time, and what a Python node loads is all there."""
 ONLY_FAST_DDS = {"STATIC_ROSIDL_TYPESUPPORT_C": "rosidl_typesupport_fastrtps_c"}
+
+
+class BuildTookTooLong(RuntimeError):
+    """Nothing can be said about sources whose build did not end in time."""
 
 
 @dataclass(frozen=True)
@@ -95,6 +100,9 @@ class TrustedBuilds:
 
         Returns:
             The build; its ``install`` is where this process sees it.
+
+        Raises:
+            BuildTookTooLong: It was ended for that.
         """
         began = time.monotonic()
         chosen, found = choose(found, targets)
@@ -139,6 +147,10 @@ class TrustedBuilds:
             if entry.complete:
                 return made
             built = self._run(staged, entry.folder, name, cancelled)
+            if built.late:
+                raise BuildTookTooLong(
+                    f"a build did not end within {BUILD_SECONDS:g} s; is the machine too busy?"
+                )
             log = self._log(built, name, entry.folder)
             if built.returncode != 0 or built.archive is None:
                 return failed(found, log)
@@ -199,7 +211,7 @@ class TrustedBuilds:
         """The output as text, cut to what can be looked at in no time whatever it is."""
         text = built.output.decode("utf-8", "replace").replace(f"{self._jobs.place(name, entry)}/", "")
         if built.returncode is None:
-            text += "\nerror: the build did not end in time, or took more than a build may take"
+            text += "\nerror: the build took more memory, processes or processor time than a build may take"
         return "\n".join(line[:MAX_LINE] for line in text.splitlines())
 
 

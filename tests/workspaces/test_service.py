@@ -422,3 +422,14 @@ def test_what_fails_in_nobody_s_words_is_told_in_the_student_s(
         judge.run()
         judge.lines.close()
     assert ["by" in text for text in jobs.sources] == [True, False, True]
+
+
+def test_a_build_that_takes_too_long_says_nothing_about_the_sources(
+    doors: Doors, jobs: FakeJobs, lab: Path
+) -> None:
+    jobs.built = Built(None, b"", late=True)
+    judge = FakeJudge(doors)
+    judge.check(lab)
+    heard = judge.run()
+    assert heard[-1]["say"] == "trouble"
+    assert "too busy" in heard[-1]["why"]
