@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from autograder.grading.report import NOT_SUBMITTED
+from autograder.grading.task import UNREADABLE
 from autograder.verdict import State
 
 if TYPE_CHECKING:
@@ -40,6 +41,8 @@ def show(report: GradeReport, console: Console | None = None) -> None:
         console.print(_diagnoses(report.rows))
     for refused in report.refused:
         _line(console, f"refused      {printable(str(refused.path))}: {refused.reason}", "yellow")
+    for where, reason in _unreadable(report):
+        _line(console, f"unreadable   {printable(where)}: {printable(reason)}", "yellow")
     for problem in report.problems:
         _line(console, f"problem      {printable(problem)}", "red")
     if report.note:
@@ -91,6 +94,17 @@ def _diagnoses(rows: Sequence[Row]) -> Table:
         if row.diagnosis:
             shown.add_row(Text(printable(row.student)), row.exercise, row.diagnosis)
     return shown
+
+
+def _unreadable(report: GradeReport) -> list[tuple[str, str]]:
+    """What was handed in and is no notebook, with the reason; what was refused has its line already."""
+    refused = {(entry.path.parent.parent.name, entry.path.parent.name) for entry in report.refused}
+    reasons = {
+        f"{row.student}/{row.assignment}": row.reason
+        for row in report.rows
+        if row.diagnosis == UNREADABLE and (row.student, row.assignment) not in refused
+    }
+    return list(reasons.items())
 
 
 def printable(text: str) -> str:

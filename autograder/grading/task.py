@@ -12,6 +12,9 @@ from autograder.boxes.execution import Cell, Execution
 from autograder.boxes.limits import Limits
 from autograder.boxes.zero import zero
 
+UNREADABLE = "unreadable"
+"""The diagnosis of what was handed in and is no notebook."""
+
 
 @dataclass(frozen=True)
 class Task:
@@ -54,9 +57,7 @@ class Task:
     def without_execution(self) -> Execution:
         """The result of a task with a problem: no cell runs, every check is zero with the reason."""
         verdicts = {
-            index: zero(
-                cell.check, "unreadable", self.problem, "Hand in the notebook as JupyterLab saves it."
-            )
+            index: zero(cell.check, UNREADABLE, self.problem, "Hand in the notebook as JupyterLab saves it.")
             for index, cell in enumerate(self.cells)
             if cell.check is not None
         }

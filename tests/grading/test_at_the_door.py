@@ -83,7 +83,7 @@ ODD: dict[str, tuple[Callable[[Path, TinyClass], None], str]] = {
     "link": (a_link_to_a_neighbour, "is a link"),
     "link to itself": (a_link_to_itself, "is a link"),
     "link to nothing": (a_link_to_nothing, "is a link"),
-    "hard link": (a_second_name_of_a_neighbours, "has a second name on the disk"),
+    "hard link": (a_second_name_of_a_neighbours, "under a second name"),
 }
 
 
@@ -313,6 +313,18 @@ def test_what_is_no_notebook_is_said_in_one_line(data: bytes) -> None:
         parse(data)
     assert str(caught.value).isprintable()
     assert len(str(caught.value)) < 300
+
+
+def test_a_file_that_is_no_notebook_has_its_line(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada")
+    tiny.hand_in("eve", "hello")
+    tiny.hand_in("mallory", "[" * 200_000)
+    report = tiny.grade()
+    lines = [line for line in said(report).splitlines() if line.startswith("unreadable")]
+    assert [line.partition(":")[0].split()[1] for line in lines] == ["eve/lab_1_2", "mallory/lab_1_2"]
+    assert "not JSON" in lines[0]
+    assert "nested too deeply" in lines[1]
+    assert report.exit_code == 0, "it is graded: with zero"
 
 
 def test_a_cell_that_is_too_long_is_left_out_with_a_word() -> None:
