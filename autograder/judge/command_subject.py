@@ -10,13 +10,13 @@ import subprocess
 import threading
 import time
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any, Protocol
 
 from autograder.judge.settings import subject_environment
 from autograder.judge.subjects import CannotStart
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from autograder.judge.recorder import Recorder
 
@@ -36,6 +36,37 @@ _PR_SET_PDEATHSIG = 1
 _PR_SET_CHILD_SUBREAPER = 36
 
 
+class Process(Protocol):
+    """What is used of ``subprocess.Popen``."""
+
+    @property
+    def pid(self) -> int:
+        """The process and, as it leads a group, its group."""
+        ...
+
+    @property
+    def stdout(self) -> IO[bytes] | None:
+        """What it prints."""
+        ...
+
+    @property
+    def stderr(self) -> IO[bytes] | None:
+        """What it prints as errors."""
+        ...
+
+    def poll(self) -> int | None:
+        """Its exit code, or None while it runs."""
+        ...
+
+    def wait(self) -> int:
+        """Wait for its end; its exit code."""
+        ...
+
+    def send_signal(self, sig: int, /) -> None:
+        """Send a signal."""
+        ...
+
+
 class CommandSubject:
     """Runs a command in a session of its own, reads all it prints and ends it with everything it started."""
 
@@ -46,7 +77,7 @@ class CommandSubject:
         self._command = list(command)
         self._cwd = cwd
         self._domain_id = 0
-        self._process: subprocess.Popen[bytes] | None = None
+        self._process: Process | None = None
         self._done = threading.Event()
         self._dying = threading.Event()
         self._last_words: list[str] = []
@@ -69,21 +100,24 @@ class CommandSubject:
         del options  # only a notebook's function takes keyword arguments
         command = [*self._command, *map(str, arguments)]
         try:
-            self._process = subprocess.Popen(
-                command,
-                cwd=self._cwd,
-                env=subject_environment(self._domain_id),
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                start_new_session=True,
-                preexec_fn=_die_with_the_judge,
-            )
+            self._process = self._spawn(command, subject_environment(self._domain_id))
         except (OSError, ValueError) as error:
             raise CannotStart(f"cannot start {self._command[0]!r}: {error}") from error
         self._done, self._dying, self._last_words = threading.Event(), threading.Event(), []
         follow = (recorder.in_this_part(), self._process, self._done)
         threading.Thread(target=self._follow, args=follow, daemon=True).start()
+
+    def _spawn(self, command: Sequence[str], environment: Mapping[str, str]) -> Process:
+        return subprocess.Popen(
+            command,
+            cwd=self._cwd,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            start_new_session=True,
+            preexec_fn=_die_with_the_judge,
+        )
 
     def release(self) -> None:
         """A command runs from its start."""
@@ -111,11 +145,16 @@ class CommandSubject:
             _signal_group(self._process.pid, signal.SIGINT)
             self._done.wait(POLITE)
         _signal_group(self._process.pid, signal.SIGKILL)
-        kill_leftovers()
+        kill_leftovers(spare=self._helpers)
         self._process.wait()
         self._process = None
 
-    def _follow(self, record: Record, process: subprocess.Popen[bytes], done: threading.Event) -> None:
+    @property
+    def _helpers(self) -> Sequence[int]:
+        """Children of this process that are no part of the subject."""
+        return ()
+
+    def _follow(self, record: Record, process: Process, done: threading.Event) -> None:
         budget = _Budget(MAX_OUTPUT)
         readers = [
             threading.Thread(target=self._read, args=(record, stream, name, budget), daemon=True)
@@ -162,11 +201,17 @@ def _signal_group(group: int, number: int) -> None:
         os.killpg(group, number)
 
 
-def kill_leftovers(limit: float = 1.0) -> None:
-    """Kill every child of this process and wait for it, until none is left or ``limit`` seconds are over."""
+def kill_leftovers(limit: float = 1.0, *, spare: Sequence[int] = ()) -> None:
+    """Kill every child of this process and wait for it, until none is left or ``limit`` seconds are over.
+
+    Args:
+        limit: Seconds of wall time.
+        spare: Process ids of children that are left alone.
+    """
     deadline = time.monotonic() + limit
     while time.monotonic() < deadline:
-        children = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
+        listed = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
+        children = [child for child in listed if int(child) not in spare]
         if not children:
             return
         for child in children:

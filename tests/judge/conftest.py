@@ -15,8 +15,8 @@ import pytest
 
 from autograder.verdict import Verdict, from_json
 
-JOBS = 4
-"""Answers that are judged at once while other tests run."""
+JOBS = 8
+"""Answers that are judged at once while other tests run: most of them wait most of the time."""
 
 
 class BankRun(NamedTuple):
@@ -47,7 +47,7 @@ def pytest_collection_finish(session: pytest.Session) -> None:
     output = tempfile.TemporaryFile("w+", encoding="utf-8")  # noqa: SIM115  (read at the end of the session)
     program = Path(__file__).with_name("bank.py")
     process = subprocess.Popen(
-        [sys.executable, str(program), "--lines", "--jobs", str(JOBS), *names],
+        [sys.executable, str(program), "--lines", "--warm", "--jobs", str(JOBS), *names],
         stdout=output,
         text=True,
         start_new_session=True,
