@@ -115,11 +115,32 @@ def _check(path: Path, status: os.stat_result) -> None:
             raise NotAFile(f"{_shown(path.name)} is {name}; hand in the notebook itself.")
     if not stat.S_ISREG(status.st_mode):
         raise NotAFile(f"{_shown(path.name)} is not a file; hand in the notebook itself.")
-    if status.st_nlink > 1:
-        # It could be a neighbour's work, or be changed from elsewhere at any time.
+    if status.st_nlink > 1 and _is_somebody_elses(path, status):
         raise NotAFile(
-            f"{_shown(path.name)} has a second name on the disk (a hard link); hand in a copy of it."
+            f"{_shown(path.name)} is somebody else's file under a second name (a hard link); hand in your own."
         )
+
+
+def _is_somebody_elses(path: Path, status: os.stat_result) -> bool:
+    """Whether a file of several names was in another place of the class first.
+
+    Only the one who was first keeps it: nobody can have a neighbour refused by giving the neighbour's file a second
+    name. A folder's time of change is set by the system when a name is made in it, and by nobody else. Names outside of
+    the class are a backup's.
+    """
+    submitted = next((folder for folder in path.parents if folder.name == "submitted"), path.parent)
+    places = [*submitted.rglob(f"*{path.suffix}"), *(submitted.parent / "source").rglob(f"*{path.suffix}")]
+    names = [place for place in places if place != path and _same_file(place, status)]
+    first = min((name.parent.stat().st_ctime_ns for name in names), default=None)
+    in_source = any("source" in name.relative_to(submitted.parent).parts[:1] for name in names)
+    return in_source or (first is not None and first < path.parent.stat().st_ctime_ns)
+
+
+def _same_file(place: Path, status: os.stat_result) -> bool:
+    with contextlib.suppress(OSError):
+        other = place.lstat()
+        return (other.st_dev, other.st_ino) == (status.st_dev, status.st_ino)
+    return False
 
 
 def _found_instead(folder: Path) -> str:

@@ -12,12 +12,17 @@ and, where they differ from the usual:
     # assignment = "lab_1_3"                 which notebook it hands in; lab_1_2 otherwise
     # earned = { "lab_1_2.talker" = 3 }      points that are honestly earned; none otherwise
     # boxed_only = true                      it would harm this machine without a box
-    # refused = true                         it is to be turned away at the door; exit code 2 is right
+    # refused = true                         the instructor is to be told of it; `grade` ends with code 2 then
 
-In a file of `bank/*/*.py` cells follow: `# %% solution NAME` is what stands in the solution cell of that name,
-`# %% extra` a cell of the student's own in front of the next solution cell (or at the end), `# %% behind NAME` one right
-behind a solution cell, `# %% right NAME` the master's own solution. What is not mentioned stays as it was handed out.
-Words in double angle brackets are things that an attacker might know, filled in by `attack_class.py`.
+In a file of `bank/*/*.py` cells follow:
+
+    # %% solution NAME      what stands in the solution cell of that name
+    # %% right NAME         the master's own solution in it
+    # %% behind NAME        a cell of the student's own, right behind that solution cell
+    # %% extra              a cell of the student's own in front of the next solution cell (or at the end)
+
+What is not mentioned stays as it was handed out. Words in double angle brackets are things that an attacker might know,
+filled in by `attack_class.py`.
 
 A file of `doors/` is a program of the tests' own that makes a submission which no notebook file could hold: its
 function `hand_in(folder, notebook)` writes into the submission's folder.
@@ -64,7 +69,8 @@ class Attack:
         assignment: The notebook that it hands in.
         earned: Points honestly earned, by exercise.
         boxed_only: Not to be run without a box.
-        refused: The door turns it away.
+        refused: What lies there is no file, and the instructor is told.
+
     """
 
     name: str

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 CELL_SECONDS = 8.0
 NOTEBOOK_SECONDS = 100.0
+LIMITS = {"memory_bytes": 800_000_000, "scratch_bytes": 200_000_000, "processes": 200, "cpu_seconds": 60}
+"""Small, so that filling them takes seconds."""
 GRADING_LIMIT = 900.0
 """Seconds after which the batch is taken to hang: it has limits of its own, far below this."""
 MARK = "attack_canary"
@@ -139,6 +141,8 @@ class AttackClass:
         self.path = folder / "class"
         self._traps = traps
         new_class(self.path, HERE / "course", cell_seconds=CELL_SECONDS, notebook_seconds=NOTEBOOK_SECONDS)
+        with (self.path / "nbgrader_config.py").open("a") as config:
+            config.writelines(f"c.WireExecute.{name} = {value}\n" for name, value in LIMITS.items())
         self._hand_in_honest_work()
 
     def hand_in(self, attack: Attack) -> None:

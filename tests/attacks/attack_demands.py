@@ -14,7 +14,7 @@ from attack_class import HONEST, MARK
 from autograder import course
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from attack_bank import Attack
     from attack_class import Graded, Traps
@@ -39,15 +39,22 @@ def objections(attack: Attack, graded: Graded, traps: Traps) -> list[str]:
     ]
 
 
-def general_objections(graded: Graded, traps: Traps) -> list[str]:
+def general_objections(chosen: Iterable[Attack], graded: Graded, traps: Traps) -> list[str]:
     """What went wrong about the batch as a whole."""
+    turned_away = {attack.name for attack in chosen if attack.refused}
+    named = {
+        Path(word).parents[1].name for word in re.findall(r"^refused +(\S+): ", graded.output, re.MULTILINE)
+    }
     changed = sorted(
         {name for name in graded.before | graded.after if graded.before.get(name) != graded.after.get(name)}
     )
+    right_code = 2 if turned_away else 0
     return [
-        *([f"autograder grade ended with code {graded.exit_code}"] if graded.exit_code else []),
-        *(f"{student} has {graded.points(student)}, not {points}" for student, points in HONEST.items()
-          if graded.points(student) != points),
+        *([f"autograder grade ended with code {graded.exit_code}"] if graded.exit_code != right_code else []),
+        *([f"refused were {sorted(named)}, not {sorted(turned_away)}"] if named != turned_away else []),
+        *(line for line in graded.output.splitlines() if line.startswith("problem")),
+        *(f"{student} has {graded.points(student)}, not {points}: {list(graded.rows.get(student, {}).values())}"
+          for student, points in HONEST.items() if graded.points(student) != points),
         *(f"{name} was changed" for name in changed),
         *(f"{name} was left behind" for name in traces()),
         *(f"a datagram came out: {data[:50]!r}" for data in traps.datagrams()),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parent))
+sys.path.append(str(Path(__file__).parent))  # not first: other folders have a conftest, too
 
 from attack_bank import attacks
 from attack_class import AttackClass, Traps

@@ -69,7 +69,7 @@ def _run(chosen: list[Attack], extra: list[str], show: bool, keep: Path | None) 
             )
             for objection in found[:6]:
                 print(f"        {objection}")
-        found = general_objections(graded, traps)
+        found = general_objections(chosen, graded, traps)
         for objection in found[:40]:
             print(f"        the batch: {objection}")
         for name in traces():

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parent))
+sys.path.append(str(Path(__file__).parent))  # not first: other folders have a conftest, too
 
 from attack_bank import Attack, attacks
 from attack_class import HONEST
@@ -33,4 +33,4 @@ def test_an_honest_student_has_what_was_earned(student: str, graded: Graded) -> 
 
 
 def test_the_batch_came_to_its_end_and_left_nothing_behind(graded: Graded, traps: Traps) -> None:
-    assert not general_objections(graded, traps), graded.output[-2000:]
+    assert not general_objections(BANK, graded, traps), graded.output[-2000:]

@@ -109,11 +109,33 @@ def test_does_not_follow_a_link_to_a_neighbours_work(tmp_path: Path) -> None:
         read_bytes(tmp_path / "mine.ipynb")
 
 
-def test_does_not_take_a_neighbours_work_under_a_second_name(tmp_path: Path) -> None:
-    (tmp_path / "theirs.ipynb").write_text("{}")
-    (tmp_path / "lab.ipynb").hardlink_to(tmp_path / "theirs.ipynb")
+def a_notebook_with_two_names(tmp_path: Path, first: str, second: str) -> tuple[Path, Path]:
+    theirs, mine = tmp_path / "class" / first, tmp_path / "class" / second
+    for name in (theirs, mine):
+        name.parent.mkdir(parents=True, exist_ok=True)
+    theirs.write_text("{}")
+    mine.hardlink_to(theirs)
+    return theirs, mine
+
+
+def test_a_neighbours_work_under_a_second_name_is_refused_and_the_neighbours_is_not(tmp_path: Path) -> None:
+    theirs, mine = a_notebook_with_two_names(
+        tmp_path, "submitted/ada/lab/lab.ipynb", "submitted/eve/lab/lab.ipynb"
+    )
     with pytest.raises(UnreadableSubmission, match="hard link"):
-        read_bytes(tmp_path / "lab.ipynb")
+        read_bytes(mine)
+    assert read_bytes(theirs) == b"{}"
+
+
+def test_the_master_under_a_second_name_is_refused(tmp_path: Path) -> None:
+    _, mine = a_notebook_with_two_names(tmp_path, "source/lab/lab.ipynb", "submitted/eve/lab/lab.ipynb")
+    with pytest.raises(UnreadableSubmission, match="hard link"):
+        read_bytes(mine)
+
+
+def test_the_second_name_that_a_backup_has_made_is_nobodys_business(tmp_path: Path) -> None:
+    mine, _ = a_notebook_with_two_names(tmp_path, "submitted/eve/lab/lab.ipynb", "../backup/lab.ipynb")
+    assert read_bytes(mine) == b"{}"
 
 
 def test_a_pipe_does_not_make_the_grader_wait(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 # family = "doors"
 # tries = "The notebook is a folder of that name, with the notebook in it."
 # could_earn = "A batch that ends over it."
+# refused = true
 
 from __future__ import annotations
 

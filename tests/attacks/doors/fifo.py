@@ -1,6 +1,7 @@
 # family = "doors"
 # tries = "The notebook is a named pipe into which nobody writes, and another one lies beside it."
 # could_earn = "A grader that waits for ever."
+# refused = true
 
 from __future__ import annotations
 

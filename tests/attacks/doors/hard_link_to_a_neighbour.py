@@ -1,6 +1,7 @@
 # family = "doors"
 # tries = "The notebook is the neighbour's file under a second name."
 # could_earn = "The neighbour's points."
+# refused = true
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 # family = "doors"
 # tries = "The notebook is a symbolic link to the neighbour's."
 # could_earn = "The neighbour's points."
+# refused = true
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ class NoPath:
         self.context = rclpy.Context()
         rclpy.init(context=self.context, domain_id=self.domain)
         self.node = rclpy.create_node("simple_node", context=self.context)
-        for line in ("Hello, ROS 2!", "Hello from simple_node", "Hello, ROS 2 world!", "Hello from my first node!"):
+        for line in ("Hello, ROS 2! From SimpleNode.",):
             self.node.get_logger().info(line)
             self.tell("output", run=self.number, text=line)
 

@@ -9,7 +9,8 @@ import os
 for process in filter(str.isdigit, os.listdir("/proc")):
     try:
         words = open(f"/proc/{process}/cmdline").read().split("\0")
-        if any("judge" in word or "grading" in word or word == "grade" for word in words):
+        others = {"grade", "autograder.judge", "autograder.grading.worker", "autograder.judge.attached"}
+        if others & set(words) or "<<class>>" in " ".join(words) + os.readlink(f"/proc/{process}/cwd"):
             print("LEAK:", process, words, os.readlink(f"/proc/{process}/cwd"))
     except OSError:
         pass

@@ -9,6 +9,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 
 SHIM = r"""
 #define _GNU_SOURCE
@@ -52,3 +53,6 @@ class TalkerNode(Node):
         super().__init__("starter", start_parameter_services=False)
         environment = {**os.environ, "LD_PRELOAD": os.path.abspath("shim.so")}
         self.fast = subprocess.Popen([sys.executable, "-c", FAST], env=environment)
+        until = time.monotonic() + 8.0
+        while self.count_publishers("chatter") == 0 and time.monotonic() < until:
+            time.sleep(0.05)
