@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import warnings
 from typing import TYPE_CHECKING, Any
 
@@ -25,13 +26,15 @@ def patiently(service: Service) -> Callable[[Any, Any], None]:
 
     def send(response: Any, header: Any) -> None:
         for _ in range(ATTEMPTS):
-            with warnings.catch_warnings():
-                warnings.simplefilter("error", RuntimeWarning)
-                try:
-                    return usual(response, header)
-                except RuntimeWarning:
-                    continue
-        return None  # nobody is there any more
+            # Taken down and not made an error: an error that a warning makes in compiled code comes out as another one.
+            with _warnings_belong_to_all_threads, warnings.catch_warnings(record=True) as complaints:
+                warnings.simplefilter("always", RuntimeWarning)
+                usual(response, header)
+            if not any(issubclass(complaint.category, RuntimeWarning) for complaint in complaints):
+                return
 
     service.send_response = send  # type: ignore[method-assign]
     return send
+
+
+_warnings_belong_to_all_threads = threading.Lock()
