@@ -11,7 +11,6 @@ import sys
 import traceback
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
 from typing import Any
 
 from autograder.boxes import linux
@@ -64,8 +63,9 @@ def enter(channel: Channel, run: Run) -> None:
     linux.die_with_parent(0)
     message, descriptors = channel.receive()
     entrance = Entrance(**message)
-    for procs in entrance.cgroups:
-        Path(procs).write_text("0")  # cgroups(7): 0 stands for whoever writes
+    # Opened here, where they can be seen; but only the child goes in, so that a box without memory costs nobody who
+    # watches over it.
+    groups = [os.open(procs, os.O_WRONLY | os.O_CLOEXEC) for procs in entrance.cgroups]
     if entrance.boxed:
         linux.setns(descriptors[0], _ALL_NAMESPACES)
     else:
@@ -74,8 +74,11 @@ def enter(channel: Channel, run: Run) -> None:
     pid = os.fork()
     if pid == 0:
         channel.close()
+        for group in groups:
+            os.write(group, b"0")  # cgroups(7): 0 stands for whoever writes
+        close_all(groups)
         _begin(entrance, descriptors, run)
-    close_all(descriptors)
+    close_all([*descriptors, *groups])
     with contextlib.suppress(ChannelClosed):
         channel.send({"pid": pid})
     status = _end_of(pid, channel)
