@@ -12,6 +12,7 @@ from autograder.boxes.limits import Limits
 from autograder.grading import sandboxing
 from autograder.grading.class_directory import SUFFIX, ClassDirectory, Submission
 from autograder.grading.course_version import course_version
+from autograder.grading.demonstrations import are_run, is_demonstration
 from autograder.grading.harmless import make_harmless
 from autograder.grading.master import check_of
 from autograder.grading.rebuild import Rebuilt, grade_id, rebuild, rebuild_unreadable
@@ -92,9 +93,19 @@ def limits_of(directory: ClassDirectory) -> Limits:
     )
 
 
-def cells_of(notebook: NotebookNode) -> tuple[Cell, ...]:
-    """The cells of a rebuilt notebook as they are executed."""
+def cells_of(notebook: NotebookNode, *, demonstrations: bool = True) -> tuple[Cell, ...]:
+    """The cells of a rebuilt notebook as they are executed.
+
+    Args:
+        notebook: The notebook.
+        demonstrations: Also run the cells that only show something.
+    """
     return tuple(
-        Cell(source=cell.source, kind=Kind(cell.cell_type), check=check_of(cell), name=grade_id(cell))
+        Cell(
+            source=cell.source if demonstrations or not is_demonstration(cell) else "",
+            kind=Kind(cell.cell_type),
+            check=check_of(cell),
+            name=grade_id(cell),
+        )
         for cell in notebook.cells
     )

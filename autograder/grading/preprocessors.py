@@ -17,6 +17,7 @@ from autograder.boxes.limits import Limits
 from autograder.cards.bundle import mimebundle
 from autograder.grading import engine, nodes, sandboxing
 from autograder.grading.class_directory import ClassDirectory
+from autograder.grading.demonstrations import LEFT_OUT
 from autograder.grading.exporter import SubmissionExporter
 from autograder.grading.journal import Journal
 from autograder.grading.points import points
@@ -48,6 +49,10 @@ class WireExecute(NbGraderPreprocessor):
         False,
         help="Run submissions with all rights of whoever grades, without a sandbox. Anything can then be changed, "
         "grades included; reports and feedback say that it was so.",
+    ).tag(config=True)
+
+    demonstrations = Bool(
+        False, help="Also run the given cells that only show something, which no grade depends on."
     ).tag(config=True)
 
     def preprocess(self, nb: NotebookNode, resources: dict[str, Any]) -> tuple[NotebookNode, dict[str, Any]]:
@@ -97,7 +102,7 @@ def with_results(nb: NotebookNode, task: Task, execution: Execution) -> Notebook
             node.outputs = _graded_outputs(cell.check, execution.verdicts[index])
         else:
             node.outputs = [nodes.output(**output) for output in run.outputs]
-            node.outputs += _remark(cell, run.ended, task.limits) if execution.cells else []
+            node.outputs += _remark(node, cell, run.ended, task.limits) if execution.cells else []
     if not task.boxed:
         nb.cells.insert(0, nodes.cell(Kind.MARKDOWN, f"**{sandboxing.NOTE}**"))
     return nb
@@ -114,7 +119,7 @@ def _graded_outputs(check: Check, verdict: Verdict) -> list[NotebookNode]:
     ]
 
 
-def _remark(cell: Cell, ended: Ended, limits: Limits) -> list[NotebookNode]:
+def _remark(node: NotebookNode, cell: Cell, ended: Ended, limits: Limits) -> list[NotebookNode]:
     words = {
         Ended.TIMED_OUT: f"[stopped: the cell ran for more than {limits.cell_seconds:g} s]",
         Ended.KERNEL_DIED: "[the kernel ended in this cell]",
@@ -124,9 +129,5 @@ def _remark(cell: Cell, ended: Ended, limits: Limits) -> list[NotebookNode]:
         Ended.TOO_MUCH_OUTPUT: f"[stopped: more than {limits.flood_bytes / 1e6:g} MB of output]",
         Ended.NOT_RUN: "[this cell was not run]",
     }
-    text = words.get(ended)
-    return (
-        [nodes.output(output_type="stream", name="stdout", text=f"{text}\n")]
-        if text and cell.source.strip()
-        else []
-    )
+    text = words.get(ended) if cell.source.strip() else LEFT_OUT if node.source.strip() else None
+    return [nodes.output(output_type="stream", name="stdout", text=f"{text}\n")] if text else []
