@@ -12,30 +12,44 @@ from typing import Any
 
 from nbgrader.converters import Autograde, BaseConverter, GenerateFeedback, NbGraderException
 
-from autograder.grading.class_directory import ClassDirectory
+from autograder.grading.class_directory import ClassDirectory, reason_against_name
 from autograder.grading.errors import GradingError
 from autograder.grading.timestamps import TIMESTAMP, handed_in_at, read_timestamp
 
 
 class _AloneInTheClass(BaseConverter):
-    """A conversion that keeps other batches out while it runs."""
+    """A conversion that keeps other batches out while it runs, and folders whose names no student can have."""
 
     def convert_notebooks(self) -> None:
-        """Convert everything.
+        """Convert everything that can be.
 
         Raises:
-            NbGraderException: Somebody else is at work; the log has the same words.
+            NbGraderException: Somebody else is at work, or something was left out; the log has the same words.
         """
+        refused = self._refuse_names()
         try:
             with ClassDirectory(Path(self.coursedir.root)).lock():
                 super().convert_notebooks()
         except GradingError as error:
             self.log.error("%s", error)
             raise NbGraderException(str(error)) from error
+        if refused:
+            raise NbGraderException("; ".join(refused))
+
+    def _refuse_names(self) -> list[str]:
+        """Leave out the folders with names that nbgrader stumbles over, or that it would write into its pages."""
+        refused = []
+        for folder in list(self.assignments):
+            reason = reason_against_name(Path(folder).parent.name)
+            if reason:
+                refused.append(f"{folder!a}: {reason}; rename the folder")
+                self.log.error("%s", refused[-1])
+                del self.assignments[folder]
+        return refused
 
 
 class _CopiesNothing(BaseConverter):
-    """A conversion that takes nothing along but the time at which the work was handed in."""
+    """A conversion that believes no name and takes nothing along but the time at which the work was handed in."""
 
     def init_destination(self, assignment_id: str, student_id: str) -> bool:
         """Whether there is something to do, found out without trusting what lies in the submission."""

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from conftest import LISTENER, TALKER, FakeEngine, TinyClass
+from nbgrader.api import Gradebook
+from nbgrader.converters import NbGraderException
 from rich.console import Console
 from test_doors import nbgrader_autograde
 
@@ -229,6 +231,22 @@ def test_a_name_that_misleads_is_refused_in_one_line(
     assert tiny.scores("ada")[TALKER] == 10
     (line,) = [line for line in said(report).splitlines() if line.startswith("refused")]
     assert line.isprintable()
+
+
+@pytest.mark.parametrize("name", ["<b>", '";fired()//', "a\u202eb", "a\nb", "x" * 101])
+def test_plain_nbgrader_makes_no_student_of_such_a_name(
+    tiny: TinyClass, fake_engine: FakeEngine, name: str
+) -> None:
+    """Formgrader writes a student's name into a script of its page."""
+    tiny.submit("ada")
+    (tiny.path / "submitted" / name).mkdir()
+    (tiny.path / "submitted" / "ada" / "lab_1_2").rename(tiny.path / "submitted" / name / "lab_1_2")
+    tiny.submit("ada")
+    with pytest.raises(NbGraderException):
+        nbgrader_autograde(tiny)
+    with Gradebook(f"sqlite:///{tiny.path / 'gradebook.db'}") as book:
+        assert [student.id for student in book.students] == ["ada"]
+    assert tiny.scores("ada")[TALKER] == 10
 
 
 def test_a_name_that_is_no_text_is_refused(tiny: TinyClass, fake_engine: FakeEngine) -> None:
