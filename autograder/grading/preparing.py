@@ -47,7 +47,7 @@ def task_of(
     problem: str,
 ) -> Task:
     """The task that executes a rebuilt notebook under the class's limits."""
-    cells = cells_of(rebuilt)
+    cells = cells_of(rebuilt, demonstrations=are_run(directory))
     work = hashlib.sha256(msgspec.json.encode(cells)).hexdigest()
     return Task(
         student=student,
