@@ -99,7 +99,11 @@ def builds(evidence: Evidence) -> Finding:
         return Finding(False, expected, seen)
     if not report.built:
         return Finding(False, expected, workspace.seen_of_build(report))
-    return Finding(not report.missing, expected, f"built; no {report.missing}" if report.missing else "built")
+    if report.missing:
+        return Finding(False, expected, f"built; no {report.missing}")
+    # A file of the right name is soon made; what a program can serve was generated.
+    served = evidence.main.first("type", SERVICE) is not None
+    return Finding(served, expected, "built" if served else "built, but no program can use what came of it")
 
 
 def is_on_the_wire(evidence: Evidence) -> Finding:
