@@ -17,10 +17,11 @@ if TYPE_CHECKING:
 
 _SCHEDULER = """
 import asyncio
+import sys
 from distributed import Scheduler
 
 async def main():
-    async with Scheduler(host="127.0.0.1", port=0, dashboard=False) as scheduler:
+    async with Scheduler(protocol=sys.argv[1], host="127.0.0.1", port=0, dashboard=False) as scheduler:
         print(scheduler.address, flush=True)
         await scheduler.finished()
 
@@ -32,13 +33,19 @@ import sys
 from autograder.grading.cluster import offer, start_worker
 
 address, name, slots, version, obstacle = sys.argv[1:6]
-if version:
-    # Agreed upon, also while somebody edits the course.
-    offer.version = start_worker.version = lambda: version
-if obstacle:
-    offer.why_impossible = lambda: obstacle
+# Agreed upon, also while somebody edits the course.
+offer.version = start_worker.version = lambda: version
+offer.why_impossible = lambda: obstacle
 exec(sys.argv[6])
 start_worker.start_worker(address, jobs=int(slots), name=name, sandbox=False, tell=lambda line: print(line, flush=True))
+"""
+
+# What `dask worker` executes first, so that it has the same to offer.
+_PRELOAD = """
+from autograder.grading.cluster import offer
+
+offer.version = lambda: {version!r}
+offer.why_impossible = lambda: {obstacle!r}
 """
 
 VERSION = "test"
@@ -46,12 +53,19 @@ UNBOXED = "this test has no boxes"
 
 
 class DaskCluster:
-    """A scheduler; workers are added."""
+    """A scheduler; workers are added.
+
+    Args:
+        protocol: ``tcp``, or ``tls`` where Dask's own settings name certificates.
+    """
+
+    def __init__(self, protocol: str = "tcp") -> None:
+        self._protocol = protocol
 
     def __enter__(self) -> Self:
         self._processes: list[subprocess.Popen[str]] = []
         self.said = ""
-        self.address = self._started([sys.executable, "-c", _SCHEDULER]).strip()
+        self.address = self._started([sys.executable, "-c", _SCHEDULER, self._protocol]).strip()
         self.scheduler = self._processes[0]
         return self
 
@@ -84,15 +98,28 @@ class DaskCluster:
         finally:
             end(process)
 
-    def _started(self, command: list[str], until: str = "") -> str:
-        here = str(Path(__file__).parent)  # for the fake judge
-        process = subprocess.Popen(
-            command,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            text=True,
-            env={**os.environ, "PYTHONPATH": here},
-        )
+    @contextlib.contextmanager
+    def plain_worker(self, name: str, folder: Path) -> Iterator[subprocess.Popen[str]]:
+        """A worker as Dask's own command makes it, under a nanny.
+
+        Args:
+            name: What it is called.
+            folder: For its files.
+        """
+        preload = folder / "preload.py"
+        preload.write_text(_PRELOAD.format(version=VERSION, obstacle=UNBOXED))
+        command = [sys.executable, "-m", "distributed.cli.dask_worker", self.address, "--name", name]
+        command += ["--nthreads", "2", "--no-dashboard", "--local-directory", str(folder)]
+        command += ["--preload", str(preload)]
+        self._started(command, "Registered to", log=subprocess.STDOUT)
+        process = self._processes.pop()
+        try:
+            yield process
+        finally:
+            end(process)
+
+    def _started(self, command: list[str], until: str = "", log: int = subprocess.DEVNULL) -> str:
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True, env=_environment())
         self._processes.append(process)
         assert process.stdout
         for line in process.stdout:
@@ -102,6 +129,10 @@ class DaskCluster:
         raise AssertionError(f"{command[-6:]} ended with {process.wait()}")
 
 
+def _environment() -> dict[str, str]:
+    return {**os.environ, "PYTHONPATH": str(Path(__file__).parent)}  # for the fake judge
+
+
 def end(process: subprocess.Popen[str]) -> None:
     """Kill a worker as a power cut does, and wait until nothing of it is left."""
     children = psutil.Process(process.pid).children(recursive=True) if process.poll() is None else []
@@ -109,11 +140,11 @@ def end(process: subprocess.Popen[str]) -> None:
     process.wait()
     assert process.stdout
     process.stdout.close()
-    _, alive = psutil.wait_procs(children, timeout=10)
+    _, alive = psutil.wait_procs(children, timeout=30)
     assert alive == []
 
 
-def until(condition: object, within: float = 20.0) -> None:
+def until(condition: object, within: float = 60.0) -> None:
     """Wait for something that another process does."""
     deadline = time.monotonic() + within
     while not condition():  # type: ignore[operator]

@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 import importlib.util
+import shutil
 import signal
+import subprocess
 
 import pytest
 from click.testing import CliRunner
-from dask_cluster import DaskCluster
+from dask_cluster import VERSION, DaskCluster
 
 pytest.importorskip("distributed", reason="./course setup --with cluster installs it")
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from autograder.cli import cli
 from autograder.grading.cluster import offer as offer_module
+from autograder.grading.cluster import pool
+from autograder.grading.cluster.connection import connected
+from autograder.grading.cluster.pool import SchedulerGone
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from conftest import TinyClass
 
 
@@ -79,6 +86,41 @@ def test_it_says_what_it_offers_and_ends_when_it_is_told(tmp_path_factory: pytes
         process.send_signal(signal.SIGTERM)
         assert process.wait(timeout=20) == 0
     assert "w offers 3 notebooks at once, in boxes, with course version v1." in cluster.said
+
+
+@pytest.fixture
+def certificates(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """One certificate for all, where Dask looks for its settings."""
+    if shutil.which("openssl") is None:
+        pytest.skip("there is no openssl to make a certificate with")
+    key, certificate = tmp_path / "key.pem", tmp_path / "certificate.pem"
+    subject = ["-subj", "/CN=localhost", "-days", "1", "-keyout", str(key), "-out", str(certificate)]
+    subprocess.run(
+        ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", *subject],
+        check=True,
+        capture_output=True,
+    )
+    monkeypatch.setenv("DASK_DISTRIBUTED__COMM__TLS__CA_FILE", str(certificate))
+    for part in ("SCHEDULER", "WORKER", "CLIENT"):
+        monkeypatch.setenv(f"DASK_DISTRIBUTED__COMM__TLS__{part}__CERT", str(certificate))
+        monkeypatch.setenv(f"DASK_DISTRIBUTED__COMM__TLS__{part}__KEY", str(key))
+
+
+@pytest.mark.usefixtures("certificates")
+def test_with_certificates_all_speak_tls_and_who_has_none_stays_outside(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(pool, "version", lambda: VERSION)
+    options: dict[str, Any] = {"judge": "a:B", "boxed": False}
+    with DaskCluster("tls") as cluster, cluster.worker("w"):
+        assert cluster.address.startswith("tls://")
+        with connected(cluster.address, **options) as workers:
+            assert [worker.name for worker in workers._workers.values()] == ["w"]
+        with pytest.raises(SchedulerGone), connected(cluster.address.replace("tls", "tcp"), **options):
+            pass
+        monkeypatch.delenv("DASK_DISTRIBUTED__COMM__TLS__CLIENT__CERT")
+        with pytest.raises(SchedulerGone), connected(cluster.address, **options):
+            pass
 
 
 def test_it_ends_when_the_scheduler_does() -> None:

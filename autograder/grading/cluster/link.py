@@ -46,7 +46,9 @@ class Link:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the courier. The scheduler then takes back whatever it was given."""
+        """End the courier, at once where something went wrong. The scheduler takes back whatever it was given."""
+        if kind is not None:
+            self._courier.kill()
         with contextlib.suppress(OSError):
             self._stdin.close()
         try:

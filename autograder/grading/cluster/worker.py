@@ -105,7 +105,7 @@ class _Watch(WorkerPlugin):
 
     def transition(self, key: Any, start: str, finish: str, **_: Any) -> None:
         """Called by Dask when a task of the worker changes its state."""
-        if start == "executing" and finish == "cancelled":
+        if start == "executing" and finish == "released":  # not "memory": nobody wants the result any more
             _lanes.cancel(key)
 
     def teardown(self, worker: Worker) -> None:  # noqa: ARG002  (Dask's signature)
