@@ -97,15 +97,24 @@ def _without_tracebacks(events: Sequence[Event]) -> Iterator[Event]:
 
 REPORTS = ("@workspace ", "@process ")
 """How a line begins that a runner reports: of a build, of a launched process. These are not the subject's words."""
-_PREFIX = re.compile(r"^\[\w+\] \[[\d.]+\] \[[^\]]*\]: ")
+_PREFIX = re.compile(r"^\[\w+\] \[[\d.]+\] \[(?P<logger>[^\]]*)\]: ")
 """What rcutils puts before a line on a terminal: level, time stamp, logger. These are nobody's words."""
 
 
+_LIBRARIES = re.compile(r"\.action_(client|server)$|^(rcl|rclpy|rcutils|rmw\w*)(\.|$)")
+"""Loggers that speak for ROS itself, such as "Ignoring unexpected result response" (rclpy/action/client.py)."""
+_MIDDLEWARE = re.compile(r"^\S*\d{4}-\d\d-\d\d [\d:.]+ .*\[\w+ (Error|Warning)\]")
+"""How a line of Fast DDS begins; on a busy machine it may complain beside the best of programs."""
+
+
 def _spoken(event: Event) -> str | None:
-    if event.kind == "output" and str(event.data["text"]).startswith(REPORTS):
-        return None
     if event.kind in ("log", "output"):
-        return _PREFIX.sub("", str(event.data["text"]))
+        text = str(event.data["text"])
+        prefix = _PREFIX.match(text)
+        logger = event.name if event.kind == "log" else prefix["logger"] if prefix else ""
+        if text.startswith(REPORTS) or _LIBRARIES.search(logger) or _MIDDLEWARE.match(text):
+            return None
+        return _PREFIX.sub("", text)
     if event.kind == "subject" and event.name == "returned" and event.data.get("value") is not None:
         return str(event.data["value"])
     return None

@@ -1,0 +1,33 @@
+"""Which lines are the subject's own words: no ROS is started."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.exercises.evidence import Event, Part
+
+
+def output(text: str) -> Event:
+    return Event(0.0, "output", "stdout", {"text": text})
+
+
+@pytest.mark.parametrize(
+    ("event", "words"),
+    [
+        (output("hello"), ["hello"]),
+        (output("[INFO] [1763632000.5] [client]: 7"), ["7"]),
+        (Event(0.0, "log", "client", {"text": "7"}), ["7"]),
+        (Event(0.0, "log", "rclpy_student", {"text": "7"}), ["7"]),
+        (output("2026-11-20: the goal was aborted"), ["2026-11-20: the goal was aborted"]),
+        (Event(0.0, "log", "client.action_client", {"text": "Ignoring unexpected result response."}), []),
+        (output("[WARN] [1763632000.5] [client.action_client]: Ignoring unexpected result response."), []),
+        (output("[ERROR] [1763632000.5] [rcl]: Failed to publish log message to rosout"), []),
+        (
+            output("\x1b[37;1m2026-11-20 10:41:00.123 \x1b[31;1m[RTPS_HISTORY Error] \x1b[0mChange is full"),
+            [],
+        ),
+        (output("@process left"), []),
+    ],
+)
+def test_what_ros_itself_says_is_not_the_subjects_word(event: Event, words: list[str]) -> None:
+    assert Part("part", {}, [event]).said() == words
