@@ -140,7 +140,7 @@ def test_no_variable_of_the_host(ask: Ask) -> None:
         "PATH", "LANG", "LANGUAGE", "TZ", "HOME", "USER", "TMPDIR", "PWD", "IPYTHONDIR", "JUPYTER_", "LD_LIBRARY_PATH",
         "VIRTUAL_ENV", "PYTHON", "LC_", "ROS_", "RMW_", "RCUTILS_", "AMENT_", "CMAKE_PREFIX", "COLCON_PREFIX", "CONDA_",
         "FASTDDS_", "JUDGE", "_", "CLICOLOR", "FORCE_COLOR", "GIT_PAGER", "PAGER", "TERM", "MPLBACKEND", "PYDEVD",
-        "SHLVL", "KERNEL_", "JPY",
+        "SHLVL", "KERNEL_", "JPY", "OPENBLAS_", "OMP_", "MKL_",
     )  # fmt: skip
     for code in ("answer = sorted(os.environ)", "answer = open('/proc/self/environ').read().split(chr(0))"):
         assert [name for name in ask(code) if name and not name.startswith(known)] == []
@@ -151,6 +151,22 @@ def test_no_other_process(ask: Ask, tmp_path: Path) -> None:
     lines = ask(code)
     assert 1 <= len(lines) <= 4
     assert not [line for line in lines if str(tmp_path) in line]
+
+
+def test_no_open_file_of_the_host(ask: Ask) -> None:
+    code = """
+answer = []
+for name in os.listdir("/proc/self/fd"):
+    try:
+        answer.append(os.readlink("/proc/self/fd/" + name))
+    except OSError:
+        pass
+"""
+    mine = ("socket:", "pipe:", "anon_inode:", "/dev/null", "/dev/urandom", "/proc/", "/dev/shm/")
+    links = ask(code)
+    assert [link for link in links if not link.startswith(mine)] == []
+    # A pidfd would be a way out of the box.
+    assert [link for link in links if "pidfd" in link] == []
 
 
 def test_no_network_but_its_own_loopback(ask: Ask) -> None:

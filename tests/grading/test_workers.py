@@ -34,14 +34,24 @@ grade(Path(sys.argv[1]), jobs=2, judge=sys.argv[2], feedback=False, console=Cons
 
 
 def leftovers(tiny: TinyClass) -> list[psutil.Process]:
-    """Workers and boxes of this class: each has the class's scratch folder in its command."""
+    """Workers of this class, which have its scratch folder in their command, and keepers, which have mounted one there."""
     scratch = str(ClassDirectory(tiny.path).scratch())
     found = []
     for process in psutil.process_iter(["cmdline", "status"]):
+        if process.info["status"] == psutil.STATUS_ZOMBIE:
+            continue
         words = process.info["cmdline"] or []
-        if process.info["status"] != psutil.STATUS_ZOMBIE and any(scratch in word for word in words):
+        if any(scratch in word for word in words) or scratch in mounts(process.pid):
             found.append(process)
     return found
+
+
+def mounts(pid: int) -> str:
+    """What a process sees mounted where."""
+    try:
+        return Path(f"/proc/{pid}/mountinfo").read_text()
+    except OSError:
+        return ""
 
 
 def test_points_come_from_the_judge_and_nothing_is_left(tiny: TinyClass, with_fake_judge: str) -> None:
@@ -140,7 +150,7 @@ def test_a_killed_batch_does_not_wait_for_the_notebook_that_is_running(
 ) -> None:
     tiny.submit("ada", "__import__('time').sleep(3600)")
     batch = subprocess.Popen([sys.executable, "-W", "ignore", "-c", GRADE, str(tiny.path), with_fake_judge])
-    while len(leftovers(tiny)) < 2:  # the worker and its box
+    while len(leftovers(tiny)) < 2:  # the worker and the keeper of its boxes
         assert batch.poll() is None
     orphans = psutil.Process(batch.pid).children(recursive=True)
     batch.kill()
@@ -179,3 +189,18 @@ def test_the_worker_says_why_it_could_not_begin(tiny: TinyClass, monkeypatch: py
     assert report.rows[0].state == "not_checked"
     assert tiny.scores("ada") == {TALKER: 0, LISTENER: 0}
     assert Path(tiny.path / "grades.csv").exists()
+
+
+def test_warm_processes_that_die_are_started_anew(tiny: TinyClass, with_fake_judge: str) -> None:
+    tiny.submit("ada", "__import__('time').sleep(1) or 10", 9)
+    batch = subprocess.Popen(
+        [sys.executable, "-W", "ignore", "-c", GRADE, str(tiny.path), with_fake_judge], stderr=subprocess.PIPE
+    )
+    while len(leftovers(tiny)) < 2:
+        assert batch.poll() is None
+    for process in psutil.Process(batch.pid).children():
+        if "autograder.boxes.warm" in process.cmdline():
+            process.kill()
+    _, said = batch.communicate(timeout=60)
+    assert batch.returncode == 0, said.decode()
+    assert tiny.scores("ada") == {TALKER: 10, LISTENER: 9}
