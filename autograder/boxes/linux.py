@@ -87,9 +87,12 @@ def filter_system_calls(program: bytes) -> None:
     """Let a seccomp filter decide on every later system call of this process and its children.
 
     Args:
-        program: Instructions of 8 bytes each (linux/filter.h, struct sock_filter).
+        program: Instructions of 8 bytes each (linux/filter.h, struct sock_filter). Without one, only what is executed
+            can bring no new right (no_new_privs).
     """
     prctl(PR_SET_NO_NEW_PRIVS, 1)
+    if not program:
+        return
     code = ctypes.create_string_buffer(program, len(program))
     head = struct.pack("@HxxxxxxP", len(program) // 8, ctypes.addressof(code))
     result = _libc.prctl(PR_SET_SECCOMP, _SECCOMP_MODE_FILTER, ctypes.c_char_p(head), 0, 0)

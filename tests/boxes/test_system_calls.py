@@ -1,0 +1,124 @@
+"""The filter of system calls, run by a little interpreter: also for machines that this one is not."""
+
+from __future__ import annotations
+
+import errno
+import re
+import socket
+import struct
+from pathlib import Path
+
+import pytest
+
+from autograder.boxes.linux import CLONE_NEWNET, CLONE_NEWUSER
+from autograder.boxes.system_calls import ARCHITECTURES, filter_for_boxes
+
+ALLOW, KILL, ERRNO = 0x7FFF0000, 0x80000000, 0x00050000
+HEADERS = {
+    "x86_64": (Path("/usr/include/x86_64-linux-gnu/asm/unistd_64.h"), r"#define __NR_(\w+) (\d+)"),
+    "aarch64": (Path("/usr/include/asm-generic/unistd.h"), r"#define __NR(?:3264)?_(\w+) (\d+)"),
+}
+
+
+def decide(machine: str, name: str | int, *arguments: int, audit: int = 0, hidden_memory: bool = True) -> int:
+    """What the filter says to a call (linux/seccomp.h, struct seccomp_data)."""
+    known = ARCHITECTURES[machine]
+    number = name if isinstance(name, int) else known.calls[name]
+    data = struct.pack("=IIQ6Q", number, audit or known.audit, 0, *(*arguments, *[0] * 6)[:6])
+    program = list(
+        struct.iter_unpack("=HBBI", filter_for_boxes(machine=machine, hidden_memory=hidden_memory))
+    )
+    register = position = 0
+    while True:
+        code, yes, no, value = program[position]
+        position += 1
+        match code:
+            case 0x20:
+                (register,) = struct.unpack_from("=I", data, value)
+            case 0x06:
+                return int(value)
+            case 0x15:
+                position += yes if register == value else no
+            case 0x35:
+                position += yes if register >= value else no
+            case 0x45:
+                position += yes if register & value else no
+            case _:
+                raise AssertionError(f"not an instruction of these filters: {code:#x}")
+
+
+machines = pytest.mark.parametrize("machine", sorted(ARCHITECTURES))
+
+
+@machines
+def test_what_needs_no_answer_is_refused(machine: str) -> None:
+    for name in (
+        "ptrace",
+        "mount",
+        "unshare",
+        "setns",
+        "bpf",
+        "keyctl",
+        "io_uring_setup",
+        "userfaultfd",
+        "kexec_load",
+    ):
+        assert decide(machine, name) == ERRNO | errno.EPERM, name
+
+
+@machines
+def test_everything_else_is_allowed(machine: str) -> None:
+    refused = set(ARCHITECTURES[machine].calls.values())
+    for number in (n for n in range(470) if n not in refused):
+        assert decide(machine, number) == ALLOW, number
+
+
+@machines
+def test_clone_makes_threads_and_processes_and_no_namespaces(machine: str) -> None:
+    thread, process = 0x3D0F00, 17
+    assert decide(machine, "clone", thread) == decide(machine, "clone", process) == ALLOW
+    for flag in (CLONE_NEWUSER, CLONE_NEWNET):
+        assert decide(machine, "clone", process | flag) == ERRNO | errno.EPERM
+    assert decide(machine, "clone3") == ERRNO | errno.ENOSYS
+
+
+@machines
+def test_sockets_of_the_network_and_of_unix_only(machine: str) -> None:
+    for family in (socket.AF_UNIX, socket.AF_INET, socket.AF_INET6, 16):
+        assert decide(machine, "socket", family) == ALLOW
+    for family in (17, 38, 40):
+        assert decide(machine, "socket", family) == ERRNO | errno.EAFNOSUPPORT
+    assert decide(machine, "socketpair", socket.AF_UNIX) == ALLOW
+    assert decide(machine, "ioctl", 0, 0x5412) == ERRNO | errno.EPERM
+    assert decide(machine, "ioctl", 0, 0x5413) == ALLOW
+
+
+@machines
+def test_hidden_memory_only_where_it_is_counted(machine: str) -> None:
+    for name in ("memfd_create", "shmget"):
+        assert decide(machine, name) == ALLOW
+        assert decide(machine, name, hidden_memory=False) == ERRNO | errno.EPERM
+
+
+@machines
+def test_another_machines_calls_end_the_process(machine: str) -> None:
+    assert decide(machine, 0, audit=0x40000003) == KILL  # 32-bit x86
+    if ARCHITECTURES[machine].x32:
+        assert decide(machine, 0x40000000 | 1) == ERRNO | errno.ENOSYS
+
+
+@machines
+def test_the_numbers_are_the_kernels(machine: str) -> None:
+    header, pattern = HEADERS[machine]
+    if not header.exists():
+        pytest.skip(f"{header} is not installed")
+    official = {name: int(number) for name, number in re.findall(pattern, header.read_text())}
+    ours = ARCHITECTURES[machine].calls
+    assert {name: official[name] for name in ours if name in official} == {
+        name: number for name, number in ours.items() if name in official
+    }
+    assert len([name for name in ours if name in official]) > 40
+
+
+def test_a_machine_that_is_not_known_has_no_filter() -> None:
+    assert filter_for_boxes(machine="riscv64") == b""
