@@ -8,9 +8,13 @@ from typing import Any
 
 from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 
 from autograder.ros_participant import receivers_wait
+
+InvalidHandle = rclpy_implementation.InvalidHandle
+"""What rclpy raises about an entity that was destroyed meanwhile."""
 
 
 class JudgeFailed(RuntimeError):
@@ -45,12 +49,16 @@ class Wire:
         self._thread.start()
 
     def _spin(self) -> None:
-        try:
-            self.executor.spin()
-        except ExternalShutdownException:
-            pass
-        except BaseException as error:  # a callback of the judge's own: nothing after it can be trusted
-            self.failure = error
+        while True:
+            try:
+                self.executor.spin()
+            except InvalidHandle:
+                continue  # a part has ended and taken something away that was just being used
+            except ExternalShutdownException:
+                return
+            except BaseException as error:  # a callback of the judge's own: nothing after it can be trusted
+                self.failure = error
+            return
 
     def close(self) -> None:
         """Stop spinning, join the thread and leave the domain. An unjoined thread aborts the interpreter."""

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.verdict import Verdict, from_json
+from autograder.verdict import State, Verdict, from_json
 
 sys.path.insert(0, str(Path(__file__).parent))
 from workspace_answers import unpack
@@ -117,6 +117,7 @@ def judge_all(
 
     # Those that may take long come first, so that none of them is waited for alone at the end.
     waiting = sorted(wanted, key=lambda answer: -exercises.get(answer.exercise).limit)
+    again: list[Answer] = []
     running: dict[int, tuple[Answer, Child]] = {}
     while waiting or running:
         while waiting and len(running) < jobs:
@@ -127,9 +128,15 @@ def judge_all(
         for descriptor in ready:
             answer, child = running.pop(descriptor)
             outcome = child.result()
-            if outcome.data is None:
+            verdict = from_json(outcome.data) if outcome.data is not None else None
+            if verdict is not None and (verdict.state != State.NOT_CHECKED or answer in again):
+                done(answer, verdict)
+            elif answer in again:
                 raise RuntimeError(f"{answer.name}: {outcome.trouble}")
-            done(answer, from_json(outcome.data))
+            else:
+                # Without a verdict nothing is known. It is asked for once more, when less is going on.
+                again.append(answer)
+                waiting.append(answer)
 
 
 def _judged(answer: Answer, seed: str, warm: bool) -> bytes:
@@ -153,10 +160,15 @@ def _judged_warm(exercise: Exercise, command: Sequence[str], seed: str) -> Verdi
     from warm_python import WarmPython, WarmScript
 
     from autograder.judge import domain, reference, trial
+    from autograder.judge.wire import JudgeFailed
+    from autograder.verdict import not_checked
 
     subject = WarmScript(WarmPython(), command)
-    with domain.lease() as domain_id:
-        return trial.check(exercise, subject, reference.load(exercise.id), seed=seed, domain_id=domain_id)
+    try:
+        with domain.lease() as domain_id:
+            return trial.check(exercise, subject, reference.load(exercise.id), seed=seed, domain_id=domain_id)
+    except JudgeFailed as error:
+        return not_checked(exercise.id, exercise.title, exercise.points, str(error))
 
 
 def warm_up() -> None:

@@ -13,9 +13,7 @@ def service(lost: int, sent: list[int]) -> Any:
     def send_response(response: Any, header: Any) -> None:
         sent.append(1)
         if len(sent) <= lost:
-            warnings.warn(
-                "failed to send response (timeout): client will not receive response", RuntimeWarning
-            )  # noqa: B028
+            warnings.warn("failed to send response (timeout)", RuntimeWarning, stacklevel=2)
 
     return SimpleNamespace(send_response=send_response)
 
