@@ -1,0 +1,60 @@
+"""What a box costs: one empty notebook after the other, in a box and out of it by turns."""
+
+from __future__ import annotations
+
+import contextlib
+import statistics
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from autograder.boxes.execution import Cell
+from autograder.grading import engine
+from autograder.grading.task import Task
+
+
+@dataclass(frozen=True)
+class BoxStart:
+    """Medians over some turns.
+
+    Attributes:
+        boxed: Wall seconds from the task to its result, in a box.
+        unboxed: The same without one.
+        turns: How many of each.
+    """
+
+    boxed: float
+    unboxed: float
+    turns: int
+
+    @property
+    def extra(self) -> float:
+        """What the box adds, in seconds."""
+        return self.boxed - self.unboxed
+
+
+def measure_box_start(turns: int) -> BoxStart:
+    """Measure with warm processes, as in the middle of a batch.
+
+    Args:
+        turns: How many notebooks of each kind.
+    """
+    spent: dict[bool, list[float]] = {True: [], False: []}
+    with contextlib.ExitStack() as stack:
+        lanes = {}
+        for boxed in spent:
+            scratch = stack.enter_context(tempfile.TemporaryDirectory(prefix="bench-"))
+            lanes[boxed] = engine.KeptLane(Path(scratch) / "0", boxed=boxed)
+            stack.callback(lanes[boxed].end)
+        for turn in range(turns + 1):
+            for boxed, lane in lanes.items():
+                execution = lane.execute(_empty(boxed))
+                if execution.trouble:
+                    raise RuntimeError(f"an empty notebook could not be run: {execution.trouble}")
+                if turn:  # the first one starts the warm processes
+                    spent[boxed].append(execution.seconds)
+    return BoxStart(statistics.median(spent[True]), statistics.median(spent[False]), turns)
+
+
+def _empty(boxed: bool) -> Task:
+    return Task("nobody", "benchmark", "empty", (Cell("1"),), seed="0", course="benchmark", boxed=boxed)

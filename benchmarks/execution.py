@@ -1,0 +1,48 @@
+"""``autograder execute`` against the longest notebook in it."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+
+_LINE = re.compile(r"executed \d+ of \d+: (?P<name>.+?) \((?P<seconds>[\d.]+) s\)")
+
+
+@dataclass(frozen=True)
+class ExecuteRun:
+    """One run of the command.
+
+    Attributes:
+        seconds: Wall time.
+        longest: Wall time of the longest notebook.
+        name: Which that was.
+        notebooks: How many there were.
+        failed: Whether the command found something wrong.
+    """
+
+    seconds: float
+    longest: float
+    name: str
+    notebooks: int
+    failed: bool
+
+
+def measure_execute(only: tuple[str, ...] = ()) -> ExecuteRun:
+    """Run the command.
+
+    Args:
+        only: Names of notebooks; all where empty.
+    """
+    began = time.monotonic()
+    done = subprocess.run(
+        [sys.executable, "-m", "autograder", "execute", *only], capture_output=True, text=True, check=False
+    )
+    seconds = time.monotonic() - began
+    times = {match["name"]: float(match["seconds"]) for match in _LINE.finditer(done.stderr)}
+    if not times:
+        raise RuntimeError(f"autograder execute said nothing of its notebooks: {done.stderr[-400:]}")
+    name = max(times, key=lambda key: times[key])
+    return ExecuteRun(seconds, times[name], name, len(times), done.returncode != 0)

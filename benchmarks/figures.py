@@ -1,0 +1,181 @@
+"""From measurements to figures with their aims."""
+
+from __future__ import annotations
+
+import statistics
+from typing import TYPE_CHECKING
+
+from benchmarks.results import Figure
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from benchmarks.box_start import BoxStart
+    from benchmarks.execution import ExecuteRun
+    from benchmarks.floor import Floor
+    from benchmarks.machine import Usage
+    from benchmarks.ours import OurRun
+    from benchmarks.stock import StockRun
+
+MB = 1e6
+THROUGHPUT, CPU, BUSY, BOX_MB, BOX_MS = 30.0, 1.5, 0.85, 150.0, 150.0
+CHECK_MEDIAN, CHECK_P95, REGRADE, EXECUTE_BEYOND = 0.5, 1.0, 2.0, 5.0
+
+
+def load_of(usage: Usage) -> str:
+    """The machine while something was measured, in words."""
+    others = "" if usage.others is None else f", others took {usage.others:.0%}"
+    return f"load {usage.load:.1f}{others}"
+
+
+def throughput(stock: Sequence[StockRun], ours: OurRun, students: int) -> Figure:
+    """Our pace against stock nbgrader's."""
+    slow = statistics.fmean(run.for_class(students) for run in stock)
+    fast = ours.usage.seconds
+    ratio = slow / fast
+    sampled = sum(len(run.students) for run in stock)
+    return Figure(
+        f"class of {students} students, {ours.notebooks} notebooks, boxes on, against `nbgrader autograde`",
+        f"{THROUGHPUT:g} times",
+        f"{ratio:.1f} times: {fast:.0f} s ({fast / ours.notebooks:.2f} s a notebook, feedback included) against "
+        f"{slow:.0f} s ({statistics.fmean(run.per_notebook for run in stock):.1f} s a notebook, without feedback; "
+        f"extrapolated per student from {sampled})",
+        ratio >= THROUGHPUT,
+        f"{load_of(ours.usage)}; stock: {load_of(stock[0].usage)}",
+    )
+
+
+def cpu(floor: Sequence[Floor], ours: OurRun, load: str) -> Figure:
+    """CPU time of a notebook against the floor."""
+    name, aim = "CPU spent per notebook against the floor", f"{CPU:g} times"
+    costs = [one.cpu for one in floor if one.cpu is not None]
+    if not costs or ours.usage.own_cpu is None:
+        return Figure(name, aim, "not counted on this system", None, load)
+    spent, least = ours.usage.own_cpu / ours.notebooks, statistics.fmean(costs)
+    return Figure(
+        name,
+        aim,
+        f"{spent / least:.2f} times: {spent:.2f} s against {least:.2f} s",
+        spent / least <= CPU,
+        load,
+    )
+
+
+def busy(ours: OurRun) -> Figure:
+    """How busy the cores were."""
+    return Figure(
+        "cores busy from the first to the last notebook",
+        f"at least {BUSY:.0%}",
+        f"{ours.busy_working:.0%}",
+        ours.busy_working >= BUSY,
+        load_of(ours.usage),
+    )
+
+
+def memory(ours: OurRun) -> list[Figure]:
+    """Memory of the grader over time, and of a box."""
+    load = load_of(ours.usage)
+    if len(ours.memory) < 4:
+        return []
+    quarter = max(1, len(ours.memory) // 4)
+    early = statistics.median(sample.grader for sample in ours.memory[quarter : 2 * quarter]) / MB
+    late = statistics.median(sample.grader for sample in ours.memory[-quarter:]) / MB
+    boxes = [size / MB for sample in ours.memory for size in sample.boxes]
+    figures = [
+        Figure(
+            "memory of the grader's process, second quarter of the run and last quarter",
+            "flat",
+            f"{early:.0f} MB and {late:.0f} MB; all processes together at most "
+            f"{max(sample.together for sample in ours.memory) / MB:.0f} MB",
+            late <= 1.1 * early,
+            load,
+        )
+    ]
+    if boxes:
+        figures.append(
+            Figure(
+                "a box's own memory (PSS)",
+                f"under {BOX_MB:g} MB",
+                f"median {statistics.median(boxes):.0f} MB, 95th percentile {_percentile(boxes, 0.95):.0f} MB, "
+                f"at most {max(boxes):.0f} MB",
+                _percentile(boxes, 0.95) < BOX_MB,
+                load,
+            )
+        )
+    return figures
+
+
+def checks(floor: Sequence[Floor], load: str) -> Figure:
+    """Time of a check cell in an open notebook."""
+    spent = [seconds for one in floor for seconds in one.checks]
+    median, high = statistics.median(spent), _percentile(spent, 0.95)
+    return Figure(
+        "a check cell in an open notebook",
+        f"median under {CHECK_MEDIAN:g} s, 95th percentile under {CHECK_P95:g} s",
+        f"median {median:.2f} s, 95th percentile {high:.2f} s, of {len(spent)} checks",
+        median < CHECK_MEDIAN and high < CHECK_P95,
+        load,
+    )
+
+
+def execute(run: ExecuteRun, load: str) -> Figure:
+    """All notebooks of the course against the longest of them."""
+    beyond = run.seconds - run.longest
+    return Figure(
+        f"`autograder execute` of {run.notebooks} notebooks",
+        "a few seconds beyond the longest one",
+        f"{run.seconds:.0f} s, {beyond:.0f} s beyond {run.name} ({run.longest:.0f} s)"
+        + (", and something failed" if run.failed else ""),
+        beyond <= EXECUTE_BEYOND and not run.failed,
+        load,
+    )
+
+
+def regrade(spent: Sequence[float], students: int, load: str) -> Figure:
+    """Grading again what has not changed."""
+    return Figure(
+        f"regrading an unchanged class of {students}",
+        f"under {REGRADE:g} s",
+        f"{min(spent):.2f} s (best of {len(spent)}; worst {max(spent):.2f} s)",
+        min(spent) < REGRADE,
+        load,
+    )
+
+
+def box_start(measured: BoxStart, load: str) -> Figure:
+    """What a box adds to the start of a notebook."""
+    return Figure(
+        "what a box adds to an empty notebook",
+        f"under {BOX_MS:g} ms",
+        f"{1000 * measured.extra:.0f} ms: {1000 * measured.boxed:.0f} ms against {1000 * measured.unboxed:.0f} ms "
+        f"(medians of {measured.turns})",
+        1000 * measured.extra < BOX_MS,
+        load,
+    )
+
+
+def overload(wrong: Sequence[str], verdicts: int, load: str) -> Figure:
+    """Verdicts under overload."""
+    return Figure(
+        "verdicts with four times as many boxes as cores and two busy loops",
+        "the same",
+        f"{verdicts - len(wrong)} of {verdicts} the same",
+        not wrong,
+        load,
+    )
+
+
+def points(differences: Sequence[str], honest: int) -> Figure:
+    """Points in both gradebooks."""
+    return Figure(
+        "points for honest submissions, here and in stock nbgrader",
+        "identical",
+        f"{honest - len(differences)} of {honest} notebooks identical",
+        not differences,
+        "–",
+    )
+
+
+def _percentile(values: Sequence[float], share: float) -> float:
+    ordered = sorted(values)
+    return ordered[min(len(ordered) - 1, round(share * (len(ordered) - 1)))]

@@ -1,0 +1,70 @@
+"""The floor: the same cells and the judge's work, in processes that are warm already and nothing around them."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder.grading.class_directory import ClassDirectory
+from autograder.grading.preparing import tasks_of
+from autograder.grading.task import encode
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from benchmarks.classes import BenchmarkClass
+
+Cell = tuple[str, float, float, float | None]
+"""The cell's first words, wall seconds, CPU seconds, and the score that a check gave."""
+
+
+@dataclass(frozen=True)
+class Floor:
+    """What one notebook costs by itself.
+
+    Attributes:
+        notebook: Its name.
+        seconds: Wall time of all cells.
+        cpu: CPU seconds of cells and judge; None where this system does not count them.
+        cells: The code cells.
+    """
+
+    notebook: str
+    seconds: float
+    cpu: float | None
+    cells: tuple[Cell, ...]
+
+    @property
+    def checks(self) -> list[float]:
+        """Wall seconds of each check cell."""
+        return [seconds for _, seconds, _, score in self.cells if score is not None]
+
+
+def measure_floor(made: BenchmarkClass, students: Sequence[str]) -> list[Floor]:
+    """Run the notebooks of some students, one after the other, exactly as they are graded.
+
+    Args:
+        made: The class; nothing is written into it.
+        students: Whose notebooks.
+    """
+    directory = ClassDirectory(made.path)
+    tasks = [
+        task
+        for submission in directory.submissions()[0]
+        if submission.student in students
+        for task in tasks_of(directory, submission)
+    ]
+    done = subprocess.run(
+        [sys.executable, "-m", "benchmarks.warm_notebook"],
+        input=b"".join(encode(task) + b"\n" for task in tasks),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        env=dict(os.environ),
+        check=True,
+    )
+    return [msgspec.json.decode(line, type=Floor) for line in done.stdout.splitlines()]

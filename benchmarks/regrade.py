@@ -1,0 +1,84 @@
+"""Grading a class again in which nothing has changed."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+from unittest import mock
+
+from rich.console import Console
+
+from autograder.boxes.execution import CellRun, Ended, Execution
+from autograder.grading import batch, places
+from autograder.grading.engine import Done
+from autograder.verdict import State, Verdict
+from benchmarks.ours import GRADE
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator, Iterable, Iterator
+
+    from autograder.grading.task import Task
+    from benchmarks.classes import BenchmarkClass
+
+
+def measure_regrade(made: BenchmarkClass, turns: int) -> list[float]:
+    """Wall seconds of ``autograder grade`` on a class that is graded already, the start of the command included.
+
+    How it was graded does not matter here: every check is taken to be passed, and no notebook is run for it.
+
+    Args:
+        made: The class.
+        turns: How often.
+
+    Raises:
+        RuntimeError: Something was executed or written after all.
+    """
+    # In a process of its own: this one has read the course's code a while ago, and would know an older one.
+    subprocess.run([sys.executable, "-m", "benchmarks.regrade", str(made.path)], check=True)
+    spent = []
+    for _ in range(turns):
+        began = time.monotonic()
+        done = subprocess.run([*GRADE, str(made.path)], capture_output=True, text=True, check=False)
+        spent.append(time.monotonic() - began)
+        if "0 notebooks run" not in done.stdout or "0 submissions entered" not in done.stdout:
+            raise RuntimeError(f"the class was not unchanged: {done.stdout[-400:]}{done.stderr[-400:]}")
+    return spent
+
+
+def _fill(path: Path) -> None:
+    with mock.patch.object(places, "here", _nobody):
+        batch.grade(path, console=Console(file=io.StringIO()))
+
+
+@contextlib.contextmanager
+def _nobody(*_: object) -> Iterator[places.Execute]:
+    def execute(tasks: Iterable[Task], on_start: Callable[[Task], None]) -> Generator[Done, None, None]:
+        for task in tasks:
+            on_start(task)
+            yield Done(task, _passed(task))
+
+    yield execute
+
+
+def _passed(task: Task) -> Execution:
+    verdicts = {
+        index: Verdict(
+            exercise=cell.check.exercise,
+            title=cell.check.title,
+            state=State.PASSED,
+            score=cell.check.points,
+            max_score=cell.check.points,
+        )
+        for index, cell in enumerate(task.cells)
+        if cell.check
+    }
+    return Execution(tuple(CellRun(Ended.DONE) for _ in task.cells), verdicts)
+
+
+if __name__ == "__main__":
+    _fill(Path(sys.argv[1]))

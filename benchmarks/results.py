@@ -1,0 +1,107 @@
+"""The figures of one run, as they are kept in ``benchmarks/results.json`` and shown in ``docs/performance.md``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from benchmarks.machine import Machine  # noqa: TC001  (msgspec reads the annotations)
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+BEGIN, END = "<!-- figures: written by the benchmark -->", "<!-- end of figures -->"
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One figure.
+
+    Attributes:
+        name: What was measured.
+        aim: What is wanted, in words.
+        measured: What came out, in words.
+        reached: Whether the aim is reached; None where the figure is only told.
+        load: The machine meanwhile: its load average, and the share of it that others took where that is known.
+    """
+
+    name: str
+    aim: str
+    measured: str
+    reached: bool | None
+    load: str
+
+
+@dataclass(frozen=True)
+class Results:
+    """All figures of one run.
+
+    Attributes:
+        machine: What they were measured on.
+        when: The day.
+        form: ``"full"`` or ``"short"``.
+        minutes: How long the run took.
+        figures: In the order in which they are shown.
+        notes: Sentences about what was measured.
+        differences: Points that are not the same in stock nbgrader and here, and verdicts that changed under load.
+    """
+
+    machine: Machine
+    when: str
+    form: str
+    minutes: float
+    figures: tuple[Figure, ...] = ()
+    notes: tuple[str, ...] = ()
+    differences: tuple[str, ...] = field(default_factory=tuple)
+
+
+def markdown(results: Results) -> str:
+    """The figures as a piece of Markdown."""
+    machine = results.machine
+    lines = [
+        f"Measured on {results.when} in {results.minutes:.0f} minutes, {results.form} form, on {machine.cores} cores "
+        f"with {machine.memory_gib:g} GiB, {machine.system}, CPython {machine.python}.",
+        "",
+        "| what | aim | measured | reached | load while measuring |",
+        "| --- | --- | --- | --- | --- |",
+    ]
+    words = {True: "yes", False: "**no**", None: "–"}
+    lines += [
+        f"| {figure.name} | {figure.aim} | {figure.measured} | {words[figure.reached]} | {figure.load} |"
+        for figure in results.figures
+    ]
+    lines += ["", *(f"- {note}" for note in results.notes)]
+    if results.differences:
+        lines += ["", "Differences:", "", *(f"- {difference}" for difference in results.differences)]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def write(results: Results, path: Path) -> None:
+    """Keep the figures as JSON."""
+    path.write_bytes(msgspec.json.format(msgspec.json.encode(results), indent=2) + b"\n")
+
+
+def read(path: Path) -> Results:
+    """Read kept figures.
+
+    Raises:
+        OSError: They cannot be read.
+        msgspec.DecodeError: They are none.
+    """
+    return msgspec.json.decode(path.read_bytes(), type=Results)
+
+
+def put_into(page: Path, results: Results) -> None:
+    """Replace the figures that a page quotes.
+
+    Raises:
+        ValueError: The page has no place for them.
+    """
+    text = page.read_text(encoding="utf-8")
+    before, begin, rest = text.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not begin or not end:
+        raise ValueError(f"{page} has no place for the figures: {BEGIN} … {END}")
+    page.write_text(f"{before}{BEGIN}\n\n{markdown(results)}\n{END}{after}", encoding="utf-8")
