@@ -39,14 +39,11 @@ HOME = Path("/home") / USER
 WORK = HOME / "notebook"
 """Where a notebook, its files and what it writes are."""
 
-_PROC_READ_ONLY = ("sys", "irq", "bus", "fs", "sysrq-trigger", "driver", "acpi", "scsi", "pressure", "tty")
-"""Settings of the whole machine. Where the grader is root, so is the owner of a box's files to the kernel, and in a
-fresh /proc root may write to these, capability or not."""
-_PROC_HIDDEN = (
+_PROC_HIDDEN = {
     "kcore", "kmsg", "keys", "key-users", "timer_list", "kallsyms", "config.gz", "kpagecount", "kpageflags",
-    "kpagecgroup", "mtrr",
-    "pagetypeinfo", "slabinfo", "vmallocinfo",
-)  # fmt: skip
+    "kpagecgroup", "pagetypeinfo", "slabinfo", "vmallocinfo", "sched_debug", "latency_stats",
+}  # fmt: skip
+"""What says more about the machine than a program needs to know."""
 
 ETC = "etc"
 """The folder of the scratch that no box can write to."""
@@ -121,15 +118,22 @@ def _etc(scratch: Path) -> list[str]:
     return words
 
 
-def _proc_covers() -> list[str]:
+@functools.cache
+def _proc_covers() -> tuple[str, ...]:
+    """Cover what in ``/proc`` belongs to the whole machine and can be written to by its owner.
+
+    Where the grader is root, so is the owner of a box's files to the kernel, and in a fresh ``/proc`` root may write to
+    settings of the machine (``/proc/sys``), capability or not.
+    """
     words: list[str] = []
-    for name in _PROC_READ_ONLY:
-        if (path := Path("/proc") / name).exists():
+    for path in sorted(Path("/proc").iterdir()):
+        if path.name.isdecimal() or path.is_symlink():
+            continue
+        if path.is_dir():
             words += ["--ro-bind", str(path), str(path)]
-    for name in _PROC_HIDDEN:
-        if (path := Path("/proc") / name).exists():
+        elif path.name in _PROC_HIDDEN or path.stat().st_mode & 0o222:
             words += ["--ro-bind", "/dev/null", str(path)]
-    return words
+    return tuple(words)
 
 
 def _system() -> list[str]:
@@ -144,18 +148,21 @@ def _system() -> list[str]:
 
 
 @functools.cache
-def installation(environment: Mapping[str, str] | None = None) -> tuple[Path, ...]:
+def installation() -> tuple[Path, ...]:
     """The folders of Python, of ROS and of the course's package that lie outside of the system's own.
 
     An environment has its own prefix and that of the Python it was made with; a sourced ROS has what its search
-    paths name. Of a search path only what is an installation is taken: a folder below the prefix of another one, of
-    ROS (``share/ament_index``) or of conda.
+    paths name. Of a search path only what is an installation is taken: a folder below the prefix of ROS
+    (``share/ament_index``) or of conda.
     """
+    return _installation(os.environ)
+
+
+def _installation(variables: Mapping[str, str]) -> tuple[Path, ...]:
     wanted = {Path(sys.prefix), Path(sys.base_prefix), Path(sys.base_prefix).resolve(), _PACKAGE}
     helper = _PACKAGE.parent / "environment"
     if (helper / "ros2_command").is_dir():
         wanted.add(helper)
-    variables = os.environ if environment is None else environment
     for name in _SEARCH_PATHS:
         for entry in variables.get(name, "").split(os.pathsep):
             prefix = _ros_prefix(Path(entry)) if entry.startswith("/") else None

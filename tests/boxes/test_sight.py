@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from autograder import course
+from autograder.boxes import view
 from autograder.boxes.execution import Cell
 from autograder.boxes.limits import Limits
 from autograder.boxes.place import BoxedPlace, JudgeSetting
@@ -258,6 +259,20 @@ results.append(open("/dev/urandom", "rb").read(1) != b"")
 answer = results
 """
     assert ask(code) == [1, 3, 0, True, [1, 2], True, True]
+
+
+def test_a_sourced_ros_is_part_of_the_installation_and_a_workspace_is_not(tmp_path: Path) -> None:
+    ros, workspace = tmp_path / "opt" / "jazzy", tmp_path / "home" / "ros2_ws" / "install"
+    (ros / "share" / "ament_index").mkdir(parents=True)
+    (ros / "lib" / "x86_64-linux-gnu").mkdir(parents=True)
+    workspace.mkdir(parents=True)
+    variables = {
+        "AMENT_PREFIX_PATH": f"{workspace}:{ros}",
+        "LD_LIBRARY_PATH": f"{ros}/lib/x86_64-linux-gnu:{workspace}/lib",
+        "PATH": f"/usr/bin:{tmp_path}/home/bin:.",
+    }
+    found = [path for path in view._installation(variables) if path.is_relative_to(tmp_path)]
+    assert found == [ros]
 
 
 @pytest.fixture
