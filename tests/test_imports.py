@@ -75,6 +75,16 @@ def test_the_environment_never_imports_the_package() -> None:
     assert not wrong
 
 
+def test_dask_is_imported_where_it_is_shut_in_and_where_it_executes() -> None:
+    """The courier reads no pickle; the other two run on workers. The grader itself never imports Dask."""
+    found = {
+        str(path.relative_to(PACKAGE))
+        for path, _, name in imports(PACKAGE)
+        if name.split(".")[0] in {"dask", "distributed"}
+    }
+    assert found == {f"grading/cluster/{name}.py" for name in ("courier", "start_worker", "worker")}
+
+
 def test_every_part_has_its_line_in_the_architecture() -> None:
     text = (ROOT / "docs/architecture.md").read_text()
     table = text.partition("## The package")[2].partition("###")[0]
