@@ -77,6 +77,14 @@ def execute(server: str, *statements: str, database: str = "postgres") -> None:
             connection.execute(statement.encode())
 
 
+def move(path: Path, server: str) -> str:
+    """Have a class keep its gradebook in PostgreSQL; the gradebook's URL."""
+    url = f"postgresql+psycopg://postgres@/ros2?host={server}"
+    with (path / "nbgrader_config.py").open("a") as config:
+        config.write(f'c.CourseDirectory.db_url = "{url}"\nc.CourseDirectory.course_id = "ros2"\n')
+    return url
+
+
 @dataclass(frozen=True)
 class Moved:
     """The tiny class with its gradebook in PostgreSQL."""
@@ -89,9 +97,7 @@ class Moved:
 def _released(server: str, tmp_path_factory: pytest.TempPathFactory) -> Moved:
     """What docs/scale.md says: two lines in the configuration, then the assignments are entered."""
     path = make_tiny_class(tmp_path_factory.mktemp("moved"))
-    url = f"postgresql+psycopg://postgres@/ros2?host={server}"
-    with (path / "nbgrader_config.py").open("a") as config:
-        config.write(f'c.CourseDirectory.db_url = "{url}"\nc.CourseDirectory.course_id = "ros2"\n')
+    url = move(path, server)
     (path / "gradebook.db").unlink()
     execute(server, "CREATE DATABASE ros2")
     release(ClassDirectory(path))
@@ -132,6 +138,19 @@ def test_it_has_the_same_grades(tiny: TinyClass, moved: Moved, fake_engine: Fake
     assert reports[0].rows == reports[1].rows
     assert gradebook.scores(moved.url, "lab_1_2")["ada"] == {"lab_1_2": found["ada"]}
     assert not (moved.tiny.path / "gradebook.db").exists()
+
+
+def test_a_class_that_moves_is_entered_anew_and_not_executed(
+    tiny: TinyClass, moved: Moved, server: str, fake_engine: FakeEngine
+) -> None:
+    hand_in(tiny)
+    before = tiny.grade()
+    fake_engine.ran.clear()
+    url = move(tiny.path, server)
+    after = tiny.grade()
+    assert fake_engine.ran == ["cleo"]  # could not be checked, so it is tried again
+    assert after.rows == before.rows
+    assert scores(url) == scores(f"sqlite:///{tiny.path / 'gradebook.db'}")
 
 
 def test_a_second_run_executes_nothing_and_a_changed_notebook_is_graded_anew(
