@@ -147,9 +147,10 @@ def given_up(evidence: Evidence) -> str:
         return "not reached"
     if part.ending is None:
         return f"still waiting after {GIVE_UP_LIMIT:g} s"
-    # A client that gives up quickly may be gone before the graph has shown it; the other parts have seen it.
-    if not any(p.endpoints("action_client") or asked_for(p) for p in evidence):
-        return "never made an action client"
+    # Who ends at once whether there is a server or not has not given up. But one that looks under another name has.
+    named = {name for p in evidence for name in p.endpoints("action_client")}
+    if not (any(map(asked_for, evidence)) or named - {evidence.reference.only("action_client")[0]}):
+        return "never sent a goal to anybody"
     if not (part.said() or part.traceback or part.ending.name == "raised"):
         return "ended without a word"
     return ""

@@ -164,9 +164,9 @@ def reports_the_sum(evidence: Evidence) -> Finding:
 def gives_up_in_time(evidence: Evidence) -> Finding:
     """Without a service it ends by itself and says so."""
     part = evidence.part(ABSENT)
-    # A client that gives up quickly may be gone before the graph has shown it; the other parts have seen it
-    # then.
-    asked = any(p.endpoints("client") or requests(p) for p in evidence)
+    # Who ends at once whether there is a service or not has not given up. But one that looks under another name has.
+    named = {name for p in evidence for name in p.endpoints("client")}
+    asked = any(map(requests, evidence)) or bool(named - {evidence.reference.only("client")[0]})
     told = bool(part.said()) or bool(part.traceback) or bool(part.ending and part.ending.name == "raised")
     # Who names the sum has not given up, but added up by itself.
     claimed = bool(part.inputs) and mentions(part.said(), sum(part.inputs["numbers"]))
@@ -176,7 +176,7 @@ def gives_up_in_time(evidence: Evidence) -> Finding:
     elif claimed:
         seen = "named a sum that no service gave"
     elif part.ending is not None:
-        seen = "ended without a word" if asked else "never made a client"
+        seen = "ended without a word" if asked else "never called a service"
     else:
         seen = f"still waiting after {GIVE_UP_LIMIT:g} s" if part.events else how_it_went(part)
     return Finding(passed, "says so and ends by itself", seen)
