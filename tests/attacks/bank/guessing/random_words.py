@@ -1,9 +1,9 @@
 # family = "guessing"
 # assignment = "lab_1_4"
 # tries = "The client never looks whether its goal was accepted or how it ended; after each it says words drawn at random, which it has not said of the goal that succeeded."
-# could_earn = "The two points for telling a refusal and an abort."
+# could_earn = "The two points for telling a refusal and an abort. It does earn them: docs/security.md says so, under words of any language."
 # undefended = "Two points: a refusal and an abort count as told where the client says anything new, in whatever language."
-# earned = { "lab_1_4.client" = 8 }
+# earned = { "lab_1_4.client" = 10 }
 
 # %% solution fibonacci
 import secrets

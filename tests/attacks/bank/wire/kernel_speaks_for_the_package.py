@@ -3,7 +3,7 @@
 # tries = "The package builds, and its program prints a word and sleeps. While the judge looks for its node, the kernel joins every ROS domain of its network and says the line from a node of the right name."
 # could_earn = "The points for a node and a line that the package does not have."
 # earned = { "lab_1_1.hello" = 3 }
-# undefended = "Full marks, as long as the kernel goes on running while its package is looked at."
+# undefended = "Kernel and package are on one network; what keeps them apart is that the kernel stands still meanwhile."
 
 # %% solution files
 import threading
@@ -18,7 +18,7 @@ folder = Path("ros2_ws/src/my_robot_pkg")
 (folder / "resource").mkdir()
 (folder / "resource/my_robot_pkg").write_text("")
 (folder / "my_robot_pkg/__init__.py").write_text("")
-(folder / "my_robot_pkg/simple_node.py").write_text("import time\n\n\ndef main():\n    print('.', flush=True)\n    time.sleep(60)\n")
+(folder / "my_robot_pkg/simple_node.py").write_text("import time\n\n\ndef main():\n    print('.', flush=True)\n    time.sleep(3)\n")
 (folder / "setup.cfg").write_text("[develop]\nscript_dir=$base/lib/my_robot_pkg\n[install]\ninstall_scripts=$base/lib/my_robot_pkg\n")
 (folder / "setup.py").write_text("""
 from setuptools import find_packages, setup
