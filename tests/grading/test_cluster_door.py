@@ -63,6 +63,9 @@ def test_an_honest_answer_comes_through_as_it_is(task: Task, execution: Executio
 def test_trouble_without_cells_comes_through(task: Task, execution: Execution) -> None:
     said = replace(execution, cells=(), trouble="the worker process ended")
     assert admitted(encode(said), task) == said
+    said = replace(said, trouble="it\x1b[2J\nended" + "!" * 100_000)
+    assert admitted(encode(said), task).trouble.startswith("it [2J ended!!!")
+    assert len(admitted(encode(said), task).trouble) == 1_000
 
 
 FORGERIES: dict[str, tuple[str, Callable[[Execution], Execution]]] = {

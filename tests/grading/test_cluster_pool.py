@@ -201,6 +201,33 @@ def test_what_a_worker_cannot_run_does_not_come_back_to_it(tasks: list[Task]) ->
     assert students(list(pool.execute_all(tasks))) == [task.student for task in tasks]
 
 
+def troubled(give: Give, task: Task) -> News:
+    return Answered(give.number, encode(replace(FakeEngine().execute(task), trouble="no space left")))
+
+
+def test_a_worker_that_is_sick_does_not_swallow_the_class(tasks: list[Task]) -> None:
+    told: list[str] = []
+    link = FakeLink(joined("sick"), joined("good"), Asked())
+    link.answer = lambda give, task: (troubled if give.worker == "sick" else honest)(give, task)
+    pool = make_pool(link, told)
+    pool.await_workers()
+    assert students(list(pool.execute_all(tasks))) == [task.student for task in tasks]
+    assert "name-sick (sick) gets no work: it had trouble with 3 notebooks: no space left." in told[0]
+    assert sum(give.worker == "sick" for give in link.given) <= 2 * HERE.slots
+
+
+def test_trouble_that_is_the_notebooks_own_is_told_and_turns_nobody_out(tasks: list[Task]) -> None:
+    told: list[str] = []
+    link = FakeLink(joined("a"), Asked())
+    link.answer = troubled
+    pool = make_pool(link, told)
+    pool.await_workers()
+    done = list(pool.execute_all(tasks))
+    assert [one.execution.trouble for one in done] == ["no space left"] * len(tasks)
+    assert len(link.given) == len(tasks)
+    assert told == []
+
+
 def test_what_no_worker_can_run_is_given_up(tasks: list[Task]) -> None:
     link = FakeLink(joined("a"), joined("b"), Asked())
     link.answer = lambda give, task: Failed(give.number, "no room")
@@ -265,6 +292,16 @@ def test_without_boxes_asked_for_a_worker_without_a_sandbox_will_do(tasks: list[
     pool = make_pool(link, boxed=False)
     pool.await_workers()
     assert len(list(pool.execute_all(tasks))) == len(tasks)
+
+
+def test_a_worker_cannot_write_on_the_terminal(tasks: list[Task]) -> None:
+    told: list[str] = []
+    offer = Offer("other\x1b[2J", 1, sandbox=True)
+    link = FakeLink(Joined("a\x1b[31m", "b\nTotal: 100", msgspec.json.encode(offer)), Asked())
+    with pytest.raises(NoWorkers):
+        make_pool(link, told).await_workers()
+    assert "another version" in told[0]
+    assert all(letter.isprintable() for letter in told[0])
 
 
 def test_a_worker_without_the_package_is_refused_with_what_to_do() -> None:

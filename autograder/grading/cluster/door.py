@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 LARGEST_OFFER = 4_000
 _MOST_SLOTS = 1_000
+_LONGEST_WORDS = 1_000
 _CLOSING_LINE = 200
 """Bytes: what a box itself adds to an output that it had to cut."""
 
@@ -69,7 +70,13 @@ def admitted(data: bytes, task: Task) -> Execution:
         raise Forged("its verdicts are not those of the notebook's checks")
     for index, check in checks.items():
         _look_at(execution.verdicts[index], check)
-    return replace(execution, cells=_harmless(execution.cells, task.limits))
+    cells = _harmless(execution.cells, task.limits)
+    return replace(execution, cells=cells, trouble=printable(execution.trouble))
+
+
+def printable(text: str) -> str:
+    """A worker's words as a terminal may show them: one line, without control characters, of bounded length."""
+    return "".join(letter if letter.isprintable() else " " for letter in text[:_LONGEST_WORDS])
 
 
 def _look_at(verdict: Verdict, check: Check) -> None:

@@ -12,7 +12,7 @@ import msgspec
 
 from autograder.boxes.execution import Execution
 from autograder.boxes.zero import grader_trouble
-from autograder.grading.cluster.door import Forged, admitted, admitted_offer
+from autograder.grading.cluster.door import Forged, admitted, admitted_offer, printable
 from autograder.grading.cluster.messages import (
     Answered,
     Asked,
@@ -45,6 +45,7 @@ _RETURN_SECONDS = 60.0
 _EXTRA_SECONDS = 90.0
 """On top of a task's own limits, before its worker counts as gone."""
 _MOST_IN_FLIGHT = 2_000
+_MOST_TROUBLES = 3
 
 
 class NoWorkers(GradingError):
@@ -61,6 +62,8 @@ class _Worker:
 
     name: str
     slots: int
+    troubles: int = 0
+    """Notebooks in a row that it had trouble with."""
     flights: set[int] = field(default_factory=set)
 
 
@@ -249,7 +252,8 @@ class Pool:
             self._workers[address] = _Worker(name, offer.slots)
 
     def _refuse(self, address: str, name: str, reason: str) -> None:
-        called = address if name == address else f"{name} ({address})"
+        called = printable(address if name == address else f"{name[:100]} ({address})")
+        reason = printable(reason)
         self._refused[address] = f"{called}: {reason}"
         self._tell(f"The worker {called} gets no work: {reason}.")
 
@@ -266,8 +270,21 @@ class Pool:
         except Forged as error:
             self._turn_out(flight.worker, _cannot_be(str(error)))
             return
+        worker = self._workers[flight.worker]
         self._land(number)
-        self._done.append(Done(flight.job.task, execution))
+        worker.troubles = worker.troubles + 1 if execution.trouble else 0
+        if execution.trouble and self._others_may_do(flight.job):
+            self._again.append(flight.job)
+        else:
+            self._done.append(Done(flight.job.task, execution))
+        if worker.troubles >= _MOST_TROUBLES and len(self._workers) > 1:
+            # A full disk, say: it would be done with every notebook at once, and get the next ones.
+            self._turn_out(
+                flight.worker, f"it had trouble with {worker.troubles} notebooks: {execution.trouble}"
+            )
+
+    def _others_may_do(self, job: _Job) -> bool:
+        return job.attempts < ATTEMPTS and not job.tried >= self._workers.keys()
 
     def _turn_out(self, address: str, reason: str) -> None:
         """No more work for a worker that was accepted; what it has is done by others."""
