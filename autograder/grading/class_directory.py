@@ -113,6 +113,13 @@ class ClassDirectory:
                 f"{self.path / CONFIG_NAME} does not grade with the judge. Make a class with "
                 f"`autograder new-class` and copy the lines on Autograde from its {CONFIG_NAME}."
             )
+        url = str(config.CourseDirectory.get("db_url") or "sqlite:")
+        if not url.startswith("sqlite:") and not config.CourseDirectory.get("course_id"):
+            # nbgrader refers to a course of that name, and only SQLite does not look whether there is one.
+            raise ClassIncomplete(
+                f"A gradebook in a database server needs the name of the course. Add a line to "
+                f'{self.path / CONFIG_NAME}: c.CourseDirectory.course_id = "ros2"'
+            )
         config.CourseDirectory.root = str(self.path)
         return config
 

@@ -86,6 +86,7 @@ _GRADEBOOK_ADVICE = {
     "readonly": "Look at its owner and its mode, and at those of its folder; then run the same command again.",
     "not a database": "Put back a copy of it; the next run enters all grades anew.",
     "malformed": "Put back a copy of it; the next run enters all grades anew.",
+    "connection": "Look whether the database server runs, and whether its address and your right to it are right.",
 }
 
 
@@ -109,7 +110,7 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
 
     Raises:
         DiskFull: There is no room left, whoever noticed it.
-        GradebookTrouble: The gradebook is locked, read-only or damaged.
+        GradebookTrouble: The gradebook is locked, read-only, damaged or out of reach.
         GradingError: Something may not be read or written.
     """
     try:
@@ -119,6 +120,11 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
     except Exception as error:
         if is_disk_full(error):
             raise DiskFull(path) from error
+        if isinstance(error, ModuleNotFoundError) and str(error.name).startswith("psycopg"):
+            raise GradingError(
+                f"The gradebook of {path} is in PostgreSQL, and there is nothing here to speak with it. "
+                "Type: ./course setup --with postgresql"
+            ) from error
         said = _said_by_database(error)
         if said:
             raise GradebookTrouble(path, said) from error

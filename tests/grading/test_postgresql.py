@@ -7,6 +7,7 @@ import os
 import pwd
 import shutil
 import subprocess
+import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +19,7 @@ from nbgrader.api import Gradebook
 
 from autograder.grading import gradebook
 from autograder.grading.class_directory import ClassDirectory
+from autograder.grading.errors import ClassIncomplete, GradingError
 from autograder.grading.new_class import release
 
 if TYPE_CHECKING:
@@ -138,6 +140,24 @@ def test_it_has_the_same_grades(tiny: TinyClass, moved: Moved, fake_engine: Fake
     assert reports[0].rows == reports[1].rows
     assert gradebook.scores(moved.url, "lab_1_2")["ada"] == {"lab_1_2": found["ada"]}
     assert not (moved.tiny.path / "gradebook.db").exists()
+
+
+def test_what_is_missing_is_said(
+    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("psycopg", reason="./course setup --with postgresql installs psycopg")
+    tiny.submit("ada", 3)
+    config = tiny.path / "nbgrader_config.py"
+    usual = config.read_text()
+    config.write_text(f'{usual}c.CourseDirectory.db_url = "postgresql+psycopg://nobody@127.0.0.1:1/none"\n')
+    with pytest.raises(ClassIncomplete, match=r"needs the name of the course.*course_id"):
+        tiny.grade()
+    config.write_text(f'{config.read_text()}c.CourseDirectory.course_id = "ros2"\n')
+    with pytest.raises(GradingError, match="Look whether the database server runs"):
+        tiny.grade()
+    monkeypatch.setitem(sys.modules, "psycopg", None)
+    with pytest.raises(GradingError, match=r"\./course setup --with postgresql"):
+        tiny.grade()
 
 
 def test_a_class_that_moves_is_entered_anew_and_not_executed(
