@@ -22,10 +22,12 @@ class Outcome:
     Attributes:
         data: What it returned; None where it returned nothing.
         trouble: Why there is no data, in words; empty otherwise.
+        hurried: It was killed although its own time was not over.
     """
 
     data: bytes | None
     trouble: str = ""
+    hurried: bool = False
 
 
 class Child:
@@ -57,6 +59,7 @@ class Child:
         Args:
             within: A shorter limit, in seconds from now.
         """
+        hurried = within is not None and time.monotonic() + within < self._deadline
         if within is not None:
             self._deadline = min(self._deadline, time.monotonic() + within)
         while True:
@@ -64,7 +67,7 @@ class Child:
             ready, _, _ = select.select([self.reading], [], [], max(0.0, remaining))
             if not ready:
                 self.kill()
-                return Outcome(None, "the judge did not finish in time")
+                return Outcome(None, "the judge did not finish in time", hurried)
             chunk = os.read(self.reading, 65536)
             if not chunk:
                 break

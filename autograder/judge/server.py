@@ -106,6 +106,9 @@ class JudgeServer:
         if child is None:
             return Report()
         outcome = child.result(within=CLOSE_LIMIT)
+        if outcome.hurried:
+            # The cell had ended and its check had not: no judge's trouble, but a notebook that did not see it through.
+            return Report()
         if outcome.data is None:
             return Report(trouble=outcome.trouble)
         return msgspec.json.decode(outcome.data, type=Report)

@@ -53,3 +53,12 @@ def test_a_child_that_is_done_is_noticed_without_waiting() -> None:
     assert not child.done()
     child.kill()
     assert not Path(f"/proc/{child.pid}").exists()
+
+
+def test_a_child_that_is_ended_before_its_time_is_told_from_one_that_had_it() -> None:
+    def sleep() -> bytes:
+        time.sleep(60.0)
+        return b""
+
+    assert Child(sleep, limit=30.0).result(within=0.05).hurried
+    assert not Child(sleep, limit=0.05).result(within=30.0).hurried
