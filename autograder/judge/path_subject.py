@@ -157,7 +157,7 @@ class PathSubject:
                     size += len(sources[-1].data or b"")
             except BadSources as error:
                 return [], str(error)
-        wrong = str(words.get("trouble") or "")[:500]
+        wrong = "".join(c for c in str(words.get("trouble") or "")[:500] if c.isprintable())
         try:
             self._path = checked([Source(str(words.get("path")))])[0].path
             return checked(sources), wrong
