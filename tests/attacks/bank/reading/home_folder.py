@@ -7,7 +7,7 @@
 import glob
 import os
 
-for pattern in ("<<home>>/.ssh/*", os.path.expanduser("~root/.*"), "/home/*/.ssh/*", "/root/.*rc"):
+for pattern in ("<<home>>/.ssh/*", os.path.expanduser("~root/.*"), "/home/*/.ssh/*"):
     for name in glob.glob(pattern):
         try:
             print("LEAK:", name, open(name).read(200))
