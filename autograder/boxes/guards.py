@@ -34,7 +34,7 @@ class Guard(Protocol):
         ...
 
     def reason(self) -> Ended | None:
-        """The limit that may have cost a process its life."""
+        """The limit that may have cost a process its life, or kept it from going on."""
         ...
 
 
@@ -98,11 +98,11 @@ class BoxGuard:
         return self._seen
 
     def reason(self) -> Ended | None:
-        """The limit that was exceeded, or that the operating system has ended a process for."""
+        """The limit that was exceeded, or that the operating system has refused or ended a process for."""
         if self._seen is None and self._group.ran_out_of_memory:
-            self._seen = Ended.OUT_OF_MEMORY
+            return Ended.OUT_OF_MEMORY
         if self._seen is None and self._group.ran_out_of_processes:
-            self._seen = Ended.TOO_MANY_PROCESSES
+            return Ended.TOO_MANY_PROCESSES
         return self._seen
 
     def close(self) -> None:
@@ -196,11 +196,17 @@ def guards() -> Mapping[str, str]:
     watched = "looked at four times a second (no cgroup can be made here)"
     return {
         "memory": _cgroup("memory") or watched,
-        "processes": _cgroup("pids") or watched,
+        "processes": _cgroup("pids") or _processes_without(watched),
         "processor time": "looked at four times a second, and a limit on each process",
         "disk": "a file system in memory, with a size and a number of files",
         "open files": "a limit on each process",
     }
+
+
+def _processes_without(watched: str) -> str:
+    if os.geteuid() == 0:
+        return f"{watched}; a bomb of forks may be faster: grade as another user than root"
+    return f"{watched}, and a limit on the user in the box"
 
 
 def _cgroup(kind: str) -> str:

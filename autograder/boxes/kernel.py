@@ -189,7 +189,7 @@ class Kernel:
         ended = self._await_reply(message["header"]["msg_id"], deadline)
         if ended is not None:
             return ended
-        stopped_for = Ended.TOO_MUCH_OUTPUT if self._floods else Ended.TIMED_OUT
+        stopped_for = Ended.TOO_MUCH_OUTPUT if self._floods else self._guard.reason() or Ended.TIMED_OUT
         self._sent = 0
         self.interrupt()
         grace = self._limits.interrupt_grace

@@ -154,14 +154,10 @@ def _out_of_time(check: Check, before: list[tuple[str, CellRun]]) -> Verdict:
 def _stopped_by_error(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:
     """The cell raised, mostly because what it names was never defined: the cause is in an earlier cell."""
     title, cause = next(
-        (
-            (title, cell)
-            for title, cell in before
-            if cell.ended in (Ended.RAISED, Ended.TIMED_OUT, Ended.TOO_MUCH_OUTPUT)
-        ),
+        ((title, cell) for title, cell in before if cell.ended in (Ended.RAISED, Ended.TIMED_OUT, *_LIMITS)),
         ("", None),
     )
-    if cause is not None and cause.ended is Ended.TOO_MUCH_OUTPUT:
+    if cause is not None and cause.ended in _LIMITS:
         return _limit_exceeded(check, cause.ended, f"the cell that begins with “{title}”")
     if cause is not None and cause.ended is Ended.TIMED_OUT:
         return zero(
