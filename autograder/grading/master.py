@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 def read_master(source: Path, config: Config) -> NotebookNode:
     """The notebook as ``nbgrader generate_assignment`` enters it into the gradebook.
 
-    It is derived from the source, not read from ``release/``: hidden tests are in it, solutions are not.
+    It is derived from the source, not read from ``release/``: hidden tests are in it, solutions are not. It is
+    shared by all who ask for it, because a copy for each submission would take as long as reading it: copy what you
+    change.
 
     Args:
         source: The notebook in the class's ``source`` folder.
@@ -38,7 +40,7 @@ def read_master(source: Path, config: Config) -> NotebookNode:
         data = source.read_bytes()
     except OSError as error:
         raise MasterUnusable(f"{source} cannot be read: {error.strerror}.") from error
-    return nodes.copied(_master(source, data, _steps(config)))
+    return _master(source, data, _steps(config))
 
 
 @functools.lru_cache(maxsize=32)

@@ -15,11 +15,15 @@ _nbformat: Any = nbformat
 _v4: Any = v4
 
 
-def notebook(cells: list[NotebookNode], metadata: dict[str, Any]) -> NotebookNode:
-    """A notebook of format 4.5."""
-    made: NotebookNode = _v4.new_notebook(cells=cells, metadata=metadata)
-    made.nbformat_minor = 5
+def from_dict(fields: dict[str, Any]) -> NotebookNode:
+    """A dictionary, and all that are in it, as nodes."""
+    made: NotebookNode = _nbformat.from_dict(fields)
     return made
+
+
+def notebook(cells: list[NotebookNode], metadata: dict[str, Any]) -> NotebookNode:
+    """A notebook of format 4.5, not validated: its cells come from the master, or from :func:`cell`."""
+    return NotebookNode(metadata=from_dict(metadata), nbformat=4, nbformat_minor=5, cells=cells)
 
 
 def cell(kind: Kind, source: str) -> NotebookNode:
