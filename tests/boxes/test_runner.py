@@ -228,3 +228,39 @@ def test_a_kernel_that_cannot_start_is_the_graders_trouble(tmp_path: Path) -> No
     )
     assert "could not be started" in execution.trouble
     assert execution.verdicts[0].state is State.NOT_CHECKED
+
+
+def test_two_kernels_of_one_warm_process_have_nothing_in_common(run: Run) -> None:
+    draw = (
+        "import os, random, secrets, tempfile, uuid, numpy\n"
+        "print(random.random(), numpy.random.random(), uuid.uuid4(), secrets.token_hex(8), tempfile.mktemp())"
+    )
+    first, second = (run([draw]).cells[0].outputs[0]["text"].split() for _ in range(2))
+    assert len(first) == 5
+    assert [a for a, b in zip(first, second, strict=True) if a == b] == []
+
+
+def test_a_kernel_begins_as_a_fresh_one_does(run: Run) -> None:
+    look = (
+        "import os, signal, sys, threading\n"
+        "print(len(In), [m for m in ('rehearsal', 'tests') if m in sys.modules], sys.argv, __name__,\n"
+        "      signal.getsignal(signal.SIGCHLD), [t.name for t in threading.enumerate() if 'Dummy' in t.name])"
+    )
+    text = run([look]).cells[0].outputs[0]["text"].strip()
+    assert text == "2 [] ['ipykernel_launcher'] __main__ 0 []"
+
+
+def test_a_crash_leaves_no_core(run: Run) -> None:
+    crash = "import os, subprocess\nsubprocess.run(['sh', '-c', 'kill -SEGV $$'])\nprint(os.listdir('.'))"
+    assert run([crash]).cells[0].outputs[0]["text"] == "[]\n"
+
+
+def test_ros_works_in_a_kernel_and_among_its_children(run: Run) -> None:
+    talk = (
+        "import rclpy\nfrom std_msgs.msg import String\nrclpy.init()\nnode = rclpy.create_node('n')\n"
+        "heard = []\nnode.create_subscription(String, 't', heard.append, 10)\n"
+        "publisher = node.create_publisher(String, 't', 10)\n"
+        "while not heard:\n    publisher.publish(String(data='x'))\n    rclpy.spin_once(node, timeout_sec=0.05)\n"
+        "print(heard[0].data)\nnode.destroy_node()\nrclpy.shutdown()"
+    )
+    assert run([talk]).cells[0].outputs[0]["text"] == "x\n"
