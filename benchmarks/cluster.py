@@ -13,6 +13,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 KEPT = Path(__file__).with_name("cluster.json")
 PAGE = course.root() / "docs" / "scale.md"
 BEGIN, END = "<!-- costs: written by benchmarks.cluster -->", "<!-- end of costs -->"
-STUDENTS = (2, 6)
+STUDENTS = (1, 4)
 SUBMISSIONS = (100, 1_000, 100_000)
 CORES = (2, 16, 128, 1_024)
 BUSY = 0.85
@@ -84,8 +85,8 @@ def markdown(costs: Costs) -> str:
     """The costs and what follows, as a piece of Markdown."""
     on = costs.machine
     lines = [
-        f"Measured on {costs.when} on {on.cores} cores ({on.system}, CPython {on.python}) at a load of {costs.load:.1f}, "
-        f"as the mean over {costs.notebooks} notebooks of the whole chapter:",
+        f"Measured on {costs.when} on {on.cores} cores ({on.system}, CPython {on.python}), at a load average of "
+        f"{costs.load:.1f}, as the mean over {costs.notebooks} notebooks of the whole chapter:",
         "",
         "| one notebook costs | |",
         "| --- | --- |",
@@ -110,10 +111,10 @@ def markdown(costs: Costs) -> str:
     most = costs.worker / (BUSY * costs.grader)
     lines += [
         "",
-        f"The first term is the workers', the second one that of the grader, which is one process and writes alone: beyond "
-        f"about {_rounded(most)} cores more of them do not help. Add a few seconds for starting, and for what runs "
-        "longest. Where students wait in their code instead of computing, cores are shared by more notebooks at once, "
-        "which `--jobs` of a worker allows.",
+        "The first term is the workers', the second one that of the grader, which is one process and writes alone: "
+        f"beyond about {_rounded(most)} cores more of them do not help. Add a few seconds for starting, and for what "
+        "runs longest. The model takes for granted that workers have enough notebooks at once (`--jobs`) to keep their "
+        "cores busy while some of them wait.",
     ]
     return "\n".join(lines) + "\n"
 
@@ -204,10 +205,12 @@ def _running(command: list[str], folder: Path, ready: str) -> Iterator[Watch]:
         try:
             if not any(ready in line for line in process.stdout):
                 raise RuntimeError(f"{command} did not start")
+            # A pipe that nobody reads would fill up with its log, and stop it.
+            threading.Thread(target=process.stdout.read, daemon=True).start()
             yield watch
         finally:
             process.terminate()
-            process.communicate(timeout=30)
+            process.wait(timeout=30)
 
 
 def _bytes(path: Path) -> tuple[float, float]:
