@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import resource
 import subprocess
 import sys
 import time
@@ -26,8 +27,8 @@ if TYPE_CHECKING:
     from benchmarks.classes import BenchmarkClass
 
 
-def measure_regrade(made: BenchmarkClass, turns: int) -> list[float]:
-    """Wall seconds of ``autograder grade`` on a class that is graded already, the start of the command included.
+def measure_regrade(made: BenchmarkClass, turns: int) -> list[tuple[float, float]]:
+    """Wall and CPU seconds of ``autograder grade`` on a graded class, the start of the command included.
 
     How it was graded does not matter here: every check is taken to be passed, and no notebook is run for it.
 
@@ -42,12 +43,18 @@ def measure_regrade(made: BenchmarkClass, turns: int) -> list[float]:
     subprocess.run([sys.executable, "-m", "benchmarks.regrade", str(made.path)], check=True)
     spent = []
     for _ in range(turns):
-        began = time.monotonic()
+        began, cpu = time.monotonic(), _cpu()
         done = subprocess.run([*GRADE, str(made.path)], capture_output=True, text=True, check=False)
-        spent.append(time.monotonic() - began)
+        spent.append((time.monotonic() - began, _cpu() - cpu))
         if "0 notebooks run" not in done.stdout or "0 submissions entered" not in done.stdout:
             raise RuntimeError(f"the class was not unchanged: {done.stdout[-400:]}{done.stderr[-400:]}")
     return spent
+
+
+def _cpu() -> float:
+    """CPU seconds of all commands that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def _fill(path: Path) -> None:

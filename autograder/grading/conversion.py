@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from nbformat.v4 import nbjson
+import msgspec
+from nbformat.v4 import rwbase
 from nbgrader.preprocessors import LimitOutput
 from nbgrader.utils import compute_checksum, determine_grade, is_grade, is_solution, is_task
 
@@ -102,8 +103,8 @@ def convert(
     for task, execution in results:
         notebook = _graded(directory, submission, task, execution)
         LimitOutput(config=directory.config).preprocess(notebook, {})
-        _write(folder / f"{task.notebook}{SUFFIX}", f"{nbjson.writes(notebook)}\n".encode())
         entries[task.notebook] = _entry(notebook)
+        _write(folder / f"{task.notebook}{SUFFIX}", _text(notebook))
     return entries
 
 
@@ -119,6 +120,14 @@ def _graded(
         )
     rebuilt.notebook.metadata["autograder"]["problem"] = problem
     return with_results(rebuilt.notebook, task, execution)
+
+
+def _text(notebook: NotebookNode) -> bytes:
+    """The notebook as nbformat writes it, which takes pure Python to indent; ``notebook`` is changed."""
+    split: Any = rwbase.split_lines
+    strip: Any = rwbase.strip_transient
+    encoded = msgspec.json.encode(strip(split(notebook)), order="sorted")
+    return msgspec.json.format(encoded, indent=1) + b"\n"
 
 
 def _entry(notebook: NotebookNode) -> NotebookEntry:
