@@ -11,6 +11,7 @@ and, where they differ from the usual:
 
     # assignment = "lab_1_3"                 which notebook it hands in; lab_1_2 otherwise
     # earned = { "lab_1_2.talker" = 3 }      points that are honestly earned; none otherwise
+    # at_most = true                         it may earn less, where the machine is busy
     # boxed_only = true                      it would harm this machine without a box
     # refused = true                         the instructor is to be told of it; `grade` ends with code 2 then
 
@@ -68,6 +69,7 @@ class Attack:
         undefended: What happened without the defence.
         assignment: The notebook that it hands in.
         earned: Points honestly earned, by exercise.
+        at_most: It may earn less than that.
         boxed_only: Not to be run without a box.
         refused: What lies there is no file, and the instructor is told.
 
@@ -81,6 +83,7 @@ class Attack:
     undefended: str = ""
     assignment: str = USUAL
     earned: Mapping[str, float] = field(default_factory=dict)
+    at_most: bool = False
     boxed_only: bool = False
     refused: bool = False
 

@@ -57,7 +57,9 @@ class Traps:
         self.visitors: list[str] = []
         self._open = contextlib.ExitStack()
         self.tcp_port = self._listen(socket.socket(), ("127.0.0.1", 0))
-        self.abstract = f"{MARK}-{secrets.token_hex(4)}"
+        self.mark = f"{MARK}_{secrets.token_hex(4)}"
+        """In the command line of what an attack starts and in what it sends: of this run alone."""
+        self.abstract = f"{self.mark}_abstract"
         self._listen(socket.socket(socket.AF_UNIX), f"\0{self.abstract}")
         self._udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._udp.bind(("127.0.0.1", 0))
@@ -238,7 +240,7 @@ class AttackClass:
             "<<tcp_port>>": str(self._traps.tcp_port),
             "<<udp_port>>": str(self._traps.udp_port),
             "<<abstract>>": self._traps.abstract,
-            "<<mark>>": MARK,
+            "<<mark>>": self._traps.mark,
         }
         for kind, name, source in cells:
             for word, meaning in words.items():

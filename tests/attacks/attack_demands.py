@@ -57,9 +57,9 @@ def general_objections(chosen: Iterable[Attack], graded: Graded, traps: Traps) -
           for student, points in HONEST.items() if graded.points(student) != points),
         *(f"{name} was changed" for name in changed),
         *(f"{name} was left behind" for name in traces()),
-        *(f"a datagram came out: {data[:50]!r}" for data in traps.datagrams()),
+        *(f"a datagram came out: {data[:50]!r}" for data in traps.datagrams() if traps.mark.encode() in data),
         *(f"the trap outside was reached: {visitor}" for visitor in traps.visitors),
-        *(f"a process lives on: {process}" for process in processes_left(graded.path)),
+        *(f"a process lives on: {process}" for process in processes_left(graded.path, traps.mark)),
     ]  # fmt: skip
 
 
@@ -74,7 +74,7 @@ def traces() -> list[str]:
     return sorted(str(file) for file in found)
 
 
-def processes_left(class_path: Path) -> list[str]:
+def processes_left(class_path: Path, mark: str) -> list[str]:
     """Processes of a submission, or of the grader's, that still live."""
     found = []
     for entry in Path("/proc").iterdir():
@@ -85,7 +85,7 @@ def processes_left(class_path: Path) -> list[str]:
             name = (entry / "comm").read_text()
         except OSError:
             continue
-        if MARK in words + name or str(class_path) in words:
+        if mark in words + name or str(class_path) in words:
             found.append(f"{entry.name} {words[:100]}")
     return found
 
@@ -100,7 +100,7 @@ def _unearned(attack: Attack, graded: Graded) -> Iterator[str]:
         earned = attack.earned.get(exercise, 0.0)
         if row["state"] not in ("passed", "failed"):
             yield f"{exercise} is {row['state']}: {row['reason']}"
-        elif float(row["score"]) != earned:
+        elif float(row["score"]) > earned or (float(row["score"]) < earned and not attack.at_most):
             yield f"{exercise} has {row['score']} points, and {earned:g} are earned ({row['diagnosis']})"
 
 

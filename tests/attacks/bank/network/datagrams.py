@@ -9,6 +9,6 @@ import socket
 sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 for host in ("127.0.0.1", "127.0.0.2", "239.255.0.1"):
     try:
-        sender.sendto(b"datagrams", (host, <<udp_port>>))
+        sender.sendto(b"<<mark>> datagrams", (host, <<udp_port>>))
     except OSError:
         pass

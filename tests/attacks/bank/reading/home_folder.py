@@ -7,9 +7,9 @@
 import glob
 import os
 
-for pattern in ("<<home>>/.ssh/*", os.path.expanduser("~root/.*"), "/home/*/.ssh/*"):
+for pattern in ("<<home>>/.ssh/*", "/home/*/.ssh/*"):
     for name in glob.glob(pattern):
         try:
-            print("LEAK:", name, open(name).read(200))
+            print("LEAK:", name, len(open(name).read()))
         except OSError:
             pass
