@@ -87,6 +87,19 @@ def test_it_is_built_in_a_box_and_run_in_another(
     assert program.exit_code() == 0
 
 
+def test_a_program_sees_nothing_that_the_notebook_has_written(keepers: str, tmp_path: Path) -> None:
+    (tmp_path / "tree").mkdir()
+    with Enclosure(keepers, tmp_path / "submission") as submission:
+        write = "for folder in /home/student /tmp /dev/shm; do touch $folder/of-the-notebook; done; ls /tmp"
+        assert b"of-the-notebook" in submission.run(["/bin/sh", "-c", write], limit=20.0).output
+        jobs = BoxedJobs(keepers, submission, tmp_path, lambda: [])
+        look_for = ["/bin/sh", "-c", "ls -R /home/student /tmp /dev/shm; touch /home/student/notebook/x"]
+        program = jobs.start(look_for, jobs.environment, sources=tmp_path / "tree", entries={}, hidden=())
+        output = said(program)
+    assert "of-the-notebook" not in output
+    assert "Read-only file system" in output
+
+
 def _library() -> str:
     return f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
 

@@ -183,6 +183,14 @@ def test_a_failed_build_is_told_and_not_kept(doors: Doors, jobs: FakeJobs, lab: 
     assert reports(judge.run(2))[-1]["built"]
 
 
+def test_what_a_failed_build_has_left_is_not_taken(doors: Doors, jobs: FakeJobs, lab: Path) -> None:
+    jobs.built = Built(1, b"error: no\n", jobs.built.archive)
+    judge = FakeJudge(doors)
+    judge.check(lab)
+    assert reports(judge.run())[-1]["trouble"] == "build"
+    assert not jobs.commands
+
+
 def test_an_archive_that_leads_out_is_a_failed_build(doors: Doors, jobs: FakeJobs, lab: Path) -> None:
     jobs.built = Built(0, b"", _packed("../../evil"))
     judge = FakeJudge(doors)
