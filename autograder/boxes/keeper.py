@@ -26,6 +26,7 @@ from autograder.boxes import linux
 from autograder.boxes.channel import Channel, ChannelClosed, close_all
 from autograder.boxes.entering import apply_rlimits
 from autograder.boxes.system_calls import filter_for_boxes
+from autograder.boxes.view import ETC, ETC_FOLDERS, etc_files
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -35,7 +36,8 @@ SCRATCH_FOLDERS = ("home", "tmp", "shm", "work")
 
 
 def prepare() -> None:
-    """Everything is imported above."""
+    """Everything is imported above; what every box's ``/etc`` holds is read once."""
+    etc_files()
 
 
 def run(channel: Channel) -> None:
@@ -106,7 +108,7 @@ class _Keeper:
                 if message["name"] in self._started:
                     self._started[message["name"]].kill()
 
-    def _open(self, scratch: str, size: int, inodes: int, files: str, texts: Mapping[str, str]) -> None:
+    def _open(self, scratch: str, size: int, inodes: int, files: str) -> None:
         user, group = os.geteuid(), os.getegid()
         linux.unshare(linux.CLONE_NEWUSER | linux.CLONE_NEWNET | linux.CLONE_NEWNS)
         linux.map_only_user(0, user, group)
@@ -116,9 +118,10 @@ class _Keeper:
         linux.mount_tmpfs(place, size, inodes)
         for name in SCRATCH_FOLDERS:
             (place / name).mkdir()
-        for name, text in texts.items():
-            (place / name).parent.mkdir(exist_ok=True)
-            (place / name).write_text(text)
+        for name in ETC_FOLDERS:
+            (place / ETC / name).mkdir(parents=True)
+        for name, data in etc_files().items():
+            (place / ETC / name).write_bytes(data)
         if files:
             shutil.copytree(files, place / "work", dirs_exist_ok=True)
         self._channel.send({"say": "opened"})
@@ -159,7 +162,7 @@ class _Keeper:
         words = ["bwrap", "--info-fd", str(writing), "--args", str(kept[-1]), "--"]
         try:
             process = subprocess.Popen(
-                [*words, *(command or ("/bin/sh", "-c", "echo; exec cat"))],
+                [*words, *(command or ("/bin/cat",))],
                 stdin=subprocess.PIPE if idle else descriptors[0],
                 stdout=subprocess.PIPE if idle else descriptors[1],
                 stderr=subprocess.STDOUT if idle else descriptors[2],
@@ -179,8 +182,12 @@ class _Keeper:
         if not idle:
             self._tell_started(name, first)
             return
+        assert process.stdin is not None
+        with contextlib.suppress(OSError):
+            process.stdin.write(b"\n")
+            process.stdin.flush()
         assert process.stdout is not None
-        # The empty line comes once the box is complete; anything else is why there is none.
+        # What waits in an empty box says what one says to it: this comes back once the box is complete.
         with process.stdout as said:
             line = said.readline()
             if line != b"\n":

@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from autograder.boxes.channel import Channel, ChannelClosed, close_all
 from autograder.boxes.forkserver import KEEPER_MODULE, WarmProcess
-from autograder.boxes.view import ETC, ETC_FILES, HOME, WORK, Bind, box_arguments
+from autograder.boxes.view import HOME, WORK, Bind, box_arguments
 from autograder.boxes.warm import BESIDE
 
 if TYPE_CHECKING:
@@ -128,7 +128,6 @@ class Enclosure:
                 size=scratch_bytes,
                 inodes=scratch_inodes,
                 files=str(_written(files, folder / "files")) if files else "",
-                texts={f"{ETC}/{name}": text for name, text in ETC_FILES.items()},
             )
         except BaseException:
             self._channel.close()

@@ -8,6 +8,7 @@ scratch, which has a limit and vanishes with the box.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import os
 import sys
@@ -20,16 +21,8 @@ if TYPE_CHECKING:
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 _SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32")
-_ETC_OF_THE_HOST = (
-    "ld.so.cache",
-    "ld.so.conf",
-    "ld.so.conf.d",
-    "alternatives",
-    "localtime",
-    "timezone",
-    "protocols",
-    "services",
-)
+_ETC_OF_THE_HOST = ("ld.so.cache", "ld.so.conf", "localtime", "timezone", "protocols", "services")
+ETC_FOLDERS = ("alternatives", "ld.so.conf.d")
 _SEARCH_PATHS = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH", "PATH")
 
 USER = "student"
@@ -39,15 +32,12 @@ HOME = Path("/home") / USER
 WORK = HOME / "notebook"
 """Where a notebook, its files and what it writes are."""
 
-_PROC_HIDDEN = {
-    "kcore", "kmsg", "keys", "key-users", "timer_list", "kallsyms", "config.gz", "kpagecount", "kpageflags",
-    "kpagecgroup", "pagetypeinfo", "slabinfo", "vmallocinfo", "sched_debug", "latency_stats",
-}  # fmt: skip
-"""What says more about the machine than a program needs to know."""
+_PROC_HIDDEN = {"kcore", "kmsg", "keys", "key-users"}
+"""What says more about the machine and its users than a program needs to know."""
 
 ETC = "etc"
 """The folder of the scratch that no box can write to."""
-ETC_FILES = {
+_ETC_FILES = {
     "passwd": f"{USER}:x:{USER_ID}:{USER_ID}::{HOME}:/bin/sh\n",
     "group": f"{USER}:x:{USER_ID}:\n",
     "hosts": "127.0.0.1 localhost box\n",
@@ -109,13 +99,21 @@ def box_arguments(scratch: Path, binds: Sequence[Bind], *, scratch_visible: bool
 
 
 def _etc(scratch: Path) -> list[str]:
-    """The ``/etc`` of a box: a user, a host, the linker's and the clock's files, no name service."""
-    words: list[str] = []
-    for name in ETC_FILES:
-        words += ["--ro-bind", str(scratch / ETC / name), f"/etc/{name}"]
-    for name in _ETC_OF_THE_HOST:
+    """The ``/etc`` of a box, which the keeper has written, with two folders of the host in it."""
+    words = ["--ro-bind", str(scratch / ETC), "/etc"]
+    for name in ETC_FOLDERS:
         words += ["--ro-bind-try", f"/etc/{name}", f"/etc/{name}"]
     return words
+
+
+@functools.cache
+def etc_files() -> Mapping[str, bytes]:
+    """What is in the ``/etc`` of a box: a user, a host, the linker's and the clock's files, no name service."""
+    files = {name: text.encode() for name, text in _ETC_FILES.items()}
+    for name in _ETC_OF_THE_HOST:
+        with contextlib.suppress(OSError):
+            files[name] = Path("/etc", name).read_bytes()
+    return files
 
 
 @functools.cache
@@ -130,10 +128,20 @@ def _proc_covers() -> tuple[str, ...]:
         if path.name.isdecimal() or path.is_symlink():
             continue
         if path.is_dir():
-            words += ["--ro-bind", str(path), str(path)]
+            # bubblewrap reads the list of mounts anew for each one: no more of them than needed.
+            words += ["--ro-bind", str(path), str(path)] if _can_be_written_below(path) else []
         elif path.name in _PROC_HIDDEN or path.stat().st_mode & 0o222:
             words += ["--ro-bind", "/dev/null", str(path)]
     return tuple(words)
+
+
+def _can_be_written_below(folder: Path) -> bool:
+    return any(
+        Path(place, name).lstat().st_mode & 0o222
+        for place, _, names in os.walk(folder)
+        for name in names
+        if not Path(place, name).is_symlink()
+    )
 
 
 def _system() -> list[str]:
