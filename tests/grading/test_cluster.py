@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import shutil
 import signal
@@ -158,14 +159,19 @@ def test_workers_that_forge_are_turned_out_by_name_and_run_nothing_here(
     for number, student in enumerate(("ada", "ben", "cleo", "dora", "eve")):
         unboxed.submit(student, number, 10)
     said = Said()
-    with (
-        cluster.worker("honest"),
-        cluster.worker("pickler", before=bomb),
-        cluster.worker("large", before=TOO_LARGE),
-        cluster.worker("object", before=NO_BYTES),
-        cluster.worker("forger", before=FORGES),
-    ):
+    bad = {"pickler": bomb, "large": TOO_LARGE, "object": NO_BYTES, "forger": FORGES}
+    with contextlib.ExitStack() as workers:
+        for name, before in bad.items():
+            workers.enter_context(cluster.worker(name, before=before))
+
+        def come_when_they_are_turned_out() -> None:
+            until(lambda: said.getvalue().count("gets no work") == len(bad))
+            workers.enter_context(cluster.worker("honest"))
+
+        rescue = threading.Thread(target=come_when_they_are_turned_out)
+        rescue.start()
         report = graded_on(cluster, unboxed, said)
+        rescue.join()
         assert not there.exists()
         # The bomb is real: a client as Dask has it would have run it.
         address = next(line for line in said.getvalue().splitlines() if "pickler" in line)

@@ -252,6 +252,24 @@ def test_a_worker_that_forges_is_turned_out_by_name(tasks: list[Task]) -> None:
     assert sum(give.worker == "bad" for give in link.given) <= HERE.slots
 
 
+def test_forgers_use_up_no_attempt_of_a_notebook(tasks: list[Task]) -> None:
+    names = [f"bad-{number}" for number in range(ATTEMPTS + 3)]
+    link = FakeLink(*(joined(name, Offer("here", 1, sandbox=True)) for name in names), Asked())
+
+    def answer(give: Give, task: Task) -> News:
+        if len({given.worker for given in link.given}) == len(names):
+            link.news.append(joined("good"))
+        return honest(give, task) if give.worker == "good" else Failed(give.number, "no bytes", forged=True)
+
+    link.answer = answer
+    pool = make_pool(link)
+    pool.await_workers()
+    started: list[str] = []
+    done = list(pool.execute_all(tasks[:1], lambda task: started.append(task.student)))
+    assert students(done) == started == [tasks[0].student]
+    assert len(link.given) == len(names) + 1
+
+
 def test_a_worker_that_falls_silent_is_turned_out(tasks: list[Task], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pool_module, "_most_seconds", lambda _: 0.05)
     link = FakeLink(joined("good"), joined("mute"), Asked())

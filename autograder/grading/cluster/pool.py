@@ -167,7 +167,7 @@ class Pool:
                 job = self._next_for(address, worker, jobs)
                 if job is None:
                     break
-                if not job.attempts:
+                if not job.tried:
                     on_start(job.task)
                 self._send(job, address, worker)
         self._look_ahead(jobs)
@@ -221,7 +221,7 @@ class Pool:
                 self._answered(number, data)
             case Failed(number, reason, forged) if number in self._flights:
                 if forged:
-                    self._turn_out(self._flights[number].worker, _cannot_be(reason))
+                    self._forged(number, reason)
                 else:
                     self._lost(number, f"its worker could not run it: {reason}")
             case Broken(reason):
@@ -268,7 +268,7 @@ class Pool:
         try:
             execution = admitted(data, flight.job.task)
         except Forged as error:
-            self._turn_out(flight.worker, _cannot_be(str(error)))
+            self._forged(number, str(error))
             return
         worker = self._workers[flight.worker]
         self._land(number)
@@ -285,6 +285,12 @@ class Pool:
 
     def _others_may_do(self, job: _Job) -> bool:
         return job.attempts < ATTEMPTS and not job.tried >= self._workers.keys()
+
+    def _forged(self, number: int, reason: str) -> None:
+        address = self._flights[number].worker
+        for held in self._workers[address].flights:
+            self._flights[held].job.attempts -= 1  # the worker's fault, not the notebook's
+        self._turn_out(address, f"what it says cannot be: {reason}. Look at that machine")
 
     def _turn_out(self, address: str, reason: str) -> None:
         """No more work for a worker that was accepted; what it has is done by others."""
@@ -325,10 +331,6 @@ def _most_seconds(task: Task) -> float:
     limits = task.limits
     # A local engine tries a task whose process died once more.
     return 2 * (limits.start_seconds + limits.notebook_seconds + limits.interrupt_grace) + _EXTRA_SECONDS
-
-
-def _cannot_be(reason: str) -> str:
-    return f"what it says cannot be: {reason}. Look at that machine"
 
 
 def _given_up(task: Task, reason: str) -> Execution:
