@@ -16,12 +16,12 @@ import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
 import platformdirs
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 VARIABLE = "AUTOGRADER_WORKSPACE_CACHE"
 """Names another folder for the cache; a grader gives each box its own."""
@@ -29,8 +29,14 @@ LIMIT = 500_000_000
 """Bytes that all entries may have together; one interface package has 1.3 million."""
 IN_USE = 3600.0
 """Seconds after its last use in which an entry is not removed: its programs may still run."""
+ASK_EVERY = 0.1
+"""Seconds between two looks whether an entry is free, for those who may give up."""
 _MARKER = "complete"
 _NAME = "ros2-course-autograder"
+
+
+class GivenUp(RuntimeError):
+    """Whoever wanted an entry does not want it any more."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +94,7 @@ def is_complete(key: str, base: Path) -> bool:
 
 
 @contextlib.contextmanager
-def entry(key: str, base: Path | None = None) -> Iterator[Entry]:
+def entry(key: str, base: Path | None = None, cancelled: Callable[[], bool] | None = None) -> Iterator[Entry]:
     """Hold the entry of a key: nobody else builds it at the same time.
 
     An entry that was not finished is empty when it is handed over, and is removed when it is not finished
@@ -97,10 +103,14 @@ def entry(key: str, base: Path | None = None) -> Iterator[Entry]:
     Args:
         key: Says what is in it.
         base: The cache; the user's own where None.
+        cancelled: Asked now and then, while somebody else has the entry, whether it is still wanted.
+
+    Raises:
+        GivenUp: It is not.
     """
     base = base or root()
     with (base / f"{key}.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+        _await_turn(lock, cancelled)
         folder = base / key
         marker = folder / _MARKER
         complete = marker.is_file() and is_ones_own(folder)
@@ -116,6 +126,22 @@ def entry(key: str, base: Path | None = None) -> Iterator[Entry]:
                 shutil.rmtree(folder, ignore_errors=True)
     if not complete:
         make_room(base)
+
+
+def _await_turn(lock: IO[str], cancelled: Callable[[], bool] | None) -> None:
+    if cancelled is None:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        return
+    while True:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            # A lock has no event that one could wait for together with anything else.
+            if cancelled():
+                raise GivenUp("nobody waits for the entry any more") from None
+            time.sleep(ASK_EVERY)
+        else:
+            return
 
 
 def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[str]:

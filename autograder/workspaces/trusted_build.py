@@ -113,6 +113,8 @@ class TrustedBuilds:
                 made = self._built(found, staged, simple, name, cancelled)
         except BadPackage as error:
             return replace(found, trouble="bad_package", line=str(error))
+        except cache.GivenUp as error:
+            return replace(found, trouble="build", line=str(error))  # which nobody will read
         return replace(made, seconds=time.monotonic() - began)
 
     def _built(
@@ -141,7 +143,7 @@ class TrustedBuilds:
             return replace(found, ok=True, install=entry.folder / "install", reused=True)
 
     def _make(self, found: Build, staged: _Staged, name: str, cancelled: Callable[[], bool]) -> Build:
-        with cache.entry(staged.key, self._folder) as entry:
+        with cache.entry(staged.key, self._folder, cancelled) as entry:
             install = entry.folder / "install"
             made = replace(found, ok=True, install=install, reused=entry.complete)
             if entry.complete:

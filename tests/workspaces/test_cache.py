@@ -7,6 +7,8 @@ import os
 import threading
 from typing import TYPE_CHECKING
 
+import pytest
+
 from autograder.workspaces import cache
 
 if TYPE_CHECKING:
@@ -56,6 +58,16 @@ def test_two_builders_of_one_key_take_turns() -> None:
     waiting.join(timeout=10)
     assert entered.is_set()
     assert built == []
+
+
+def test_who_waits_for_an_entry_can_give_up(empty_cache: Path) -> None:
+    empty_cache.mkdir(mode=0o700)
+    with cache.entry("a") as held:
+        with pytest.raises(cache.GivenUp), cache.entry("a", cancelled=lambda: True):
+            pass
+        held.finish()
+    with cache.entry("a", cancelled=lambda: True) as entry:
+        assert entry.complete
 
 
 def test_a_folder_that_others_may_write_to_is_not_used(empty_cache: Path) -> None:
