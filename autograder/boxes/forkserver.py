@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Self
 
 from autograder.boxes.channel import Channel
 from autograder.boxes.environment import base_environment
-from autograder.boxes.warm import BESIDE, INSIDE
+from autograder.boxes.warm import BESIDE, FOLDER_PREFIX, INSIDE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -125,7 +125,7 @@ class WarmProcesses:
         log: int | None = None,
         environment: Mapping[str, str] | None = None,
     ) -> None:
-        self._folder = Path(tempfile.mkdtemp(prefix="warm-"))
+        self._folder = Path(tempfile.mkdtemp(prefix=FOLDER_PREFIX))
         self._kernels = WarmProcess(INSIDE, KERNEL_MODULE, self._folder / "kernels", log, environment)
         self._judges = WarmProcess(INSIDE, judge_module, self._folder / "judges", log, environment)
         self._keepers = WarmProcess(BESIDE, KEEPER_MODULE, self._folder / "keepers", log) if boxed else None

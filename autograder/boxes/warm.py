@@ -11,6 +11,7 @@ kernel begins with. It ends when its standard input does, and its children with 
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import importlib
 import os
@@ -19,11 +20,13 @@ import signal
 import socket
 import sys
 import traceback
+from pathlib import Path
 from typing import Any
 
 from autograder.boxes.channel import Channel
 
 BESIDE, INSIDE = "beside", "inside"
+FOLDER_PREFIX = "autograder-warm-"
 
 
 def main(arguments: list[str]) -> None:
@@ -44,12 +47,22 @@ def main(arguments: list[str]) -> None:
         watched: list[Any] = [listener, 0]
         ready, _, _ = select.select(watched, [], [])
         if 0 in ready and not os.read(0, 1):
+            _tidy(listener.getsockname())
             return
         if listener in ready:
             connection, _ = listener.accept()
             if os.fork() == 0:
                 _child(mode, module, listener, connection)
             connection.close()
+
+
+def _tidy(address: str) -> None:
+    """Take the socket away, and its folder where that was made for such sockets: its maker may have been killed."""
+    socket_file = Path(address)
+    with contextlib.suppress(OSError):
+        socket_file.unlink(missing_ok=True)
+        if socket_file.parent.name.startswith(FOLDER_PREFIX):
+            socket_file.parent.rmdir()
 
 
 def _child(mode: str, module: Any, listener: socket.socket, connection: socket.socket) -> None:
