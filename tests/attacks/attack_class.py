@@ -31,6 +31,7 @@ LIMITS = {"memory_bytes": 800_000_000, "scratch_bytes": 200_000_000, "processes"
 """Small, so that filling them takes seconds."""
 GRADING_LIMIT = 900.0
 """Seconds after which the batch is taken to hang: it has limits of its own, far below this."""
+_CORES = os.cpu_count() or 1
 MARK = "attack_canary"
 """In the name of every file and process that an attack leaves behind."""
 HONEST = {
@@ -164,7 +165,17 @@ class AttackClass:
         before = self._digests()
         began = os.times().elapsed
         done = subprocess.run(
-            [sys.executable, "-m", "autograder", "grade", str(self.path), *options],
+            # Attackers mostly wait, for a limit or for a second look: two at once keep a processor busy.
+            [
+                sys.executable,
+                "-m",
+                "autograder",
+                "grade",
+                str(self.path),
+                "--jobs",
+                str(2 * _CORES),
+                *options,
+            ],
             env={
                 **os.environ,
                 "HOME": str(self._traps.home),
