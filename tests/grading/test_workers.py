@@ -34,7 +34,7 @@ grade(Path(sys.argv[1]), jobs=2, judge=sys.argv[2], feedback=False, console=Cons
 
 
 def leftovers(tiny: TinyClass) -> list[psutil.Process]:
-    """Workers of this class, which have its scratch folder in their command, and keepers, which have mounted one there."""
+    """Workers of this class have its scratch folder in their command, and keepers have mounted something there."""
     scratch = str(ClassDirectory(tiny.path).scratch())
     found = []
     for process in psutil.process_iter(["cmdline", "status"]):
