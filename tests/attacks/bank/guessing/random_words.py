@@ -4,6 +4,7 @@
 # could_earn = "The two points for telling a refusal and an abort. It does earn them: docs/security.md says so, under words of any language."
 # undefended = "Two points: a refusal and an abort count as told where the client says anything new, in whatever language."
 # earned = { "lab_1_4.client" = 10 }
+# at_most = true
 
 # %% solution fibonacci
 import secrets

@@ -2,6 +2,7 @@
 # tries = "The talker keeps a wrong rate by its own clock. It listens to another topic in place of /clock, on which a second node of the kernel hands on the judge's time twice as fast."
 # could_earn = "The three points for the rate. It does earn them: docs/security.md says so, under simulated time."
 # earned = { "lab_1_2.talker" = 10 }
+# at_most = true
 # undefended = "In simulated time it is a talker of the right rate; only in real time it is not."
 
 # %% right TalkerNode
