@@ -21,7 +21,7 @@ from benchmarks.classes import BenchmarkClass, make_class
 from benchmarks.execution import measure_execute
 from benchmarks.floor import Floor, measure_floor
 from benchmarks.machine import Usage, Watch, machine
-from benchmarks.ours import OurRun, run_ours
+from benchmarks.ours import OurRun, diagnosed, problems_of, run_ours
 from benchmarks.overload import differences, run_overloaded, verdicts_of
 from benchmarks.profiling import profile_grade
 from benchmarks.regrade import measure_regrade
@@ -103,7 +103,7 @@ class _Run:
                 floor += measure_floor(made, sampled)
         load = _load(watch)
         honest, wrong = _compare_points(made, stock, ours)
-        self.differences += wrong
+        self.differences += [*wrong, *(f"graded here: {problem}" for problem in problems_of(ours))]
         self.figures += [
             figures.throughput(stock, ours, form.students),
             figures.points(wrong, honest),
@@ -150,6 +150,7 @@ def _compare_points(made: BenchmarkClass, stock: Sequence[StockRun], ours: OurRu
     both = {key: points for run in stock for key, points in run.points.items() if key in made.honest}
     wrong = [
         f"{student}/{assignment}: {points} in stock nbgrader, {ours.points.get((student, assignment))} here"
+        f" ({diagnosed(ours, student, assignment)})"
         for (student, assignment), points in sorted(both.items())
         if points != ours.points.get((student, assignment))
     ]

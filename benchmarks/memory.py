@@ -56,7 +56,9 @@ class MemoryWatch:
     def _look(self) -> None:
         while not self._stop.wait(_EVERY_SECONDS):
             try:
-                self.samples.append(_sample(self.pid, time.monotonic() - self._began))
+                sample = _sample(self.pid, time.monotonic() - self._began)
+                if sample.grader:  # a process that is ending has no memory any more
+                    self.samples.append(sample)
             except psutil.Error:  # the grader is gone
                 return
 

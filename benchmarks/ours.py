@@ -7,7 +7,7 @@ import statistics
 import subprocess
 import sys
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
@@ -87,3 +87,20 @@ def _while_working(busy: Sequence[float], report: dict[str, object]) -> float:
     first, last = timings["first_started"], timings["last_ended"]
     inside = busy[int(first) : max(int(first) + 1, int(last))]
     return statistics.fmean(inside) if inside else 0.0
+
+
+def problems_of(run: OurRun) -> list[str]:
+    """What the run itself said went wrong."""
+    return msgspec.convert(run.report["problems"], list[str])
+
+
+def diagnosed(run: OurRun, student: str, assignment: str) -> str:
+    """What the judge had to say to a submission, in keys and words."""
+    submissions = msgspec.convert(run.report["submissions"], list[dict[str, Any]])
+    return "; ".join(
+        f"{exercise['exercise']} {exercise['state']} {exercise['diagnosis']}: {exercise['reason']}"
+        for one in submissions
+        if (one["student"], one["assignment"]) == (student, assignment)
+        for exercise in one["exercises"]
+        if exercise["score"] != exercise["max_score"]
+    )

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
+from autograder.boxes.execution import Kind
 from autograder.execution.findings import Finding, findings
 from autograder.execution.plan import Planned, plan
 from autograder.execution.report import write_report
@@ -21,7 +22,7 @@ from autograder.grading.worker import JUDGE
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.boxes.execution import Execution
+    from autograder.boxes.execution import Cell, Execution
 
 REPORTS = "execution-reports"
 """The folder, in the course, of the pages about notebooks that failed."""
@@ -128,8 +129,17 @@ def execute_all(
 
 
 def _longest_first(planned: Sequence[Planned]) -> list[Planned]:
-    """The notebooks with most to check begin, so that no core waits long for the last one."""
-    return sorted(planned, key=lambda item: -sum(cell.check is not None for cell in item.task.cells))
+    """The notebooks with most to do begin, so that no core waits long for the last one."""
+    return sorted(planned, key=lambda item: -sum(_weight(cell) for cell in item.task.cells))
+
+
+def _weight(cell: Cell) -> float:
+    """About how many seconds a cell takes: a build some, a terminal one, a check one, other code little."""
+    if cell.kind is not Kind.CODE:
+        return 0.0
+    if "colcon build" in cell.source:
+        return 5.0
+    return 1.0 if cell.check or cell.source.startswith("%%bash") else 0.1
 
 
 def _remove_reports(folder: Path) -> None:

@@ -1,0 +1,35 @@
+"""The short form of the benchmark, from end to end: nothing about time is asked for but that it ends."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from benchmarks.__main__ import SHORT, measure
+from benchmarks.results import markdown
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+def test_every_figure_is_measured(tmp_path: Path) -> None:
+    found = measure(SHORT, tmp_path)
+    names = " ".join(figure.name for figure in found.figures)
+    for word in (
+        "against `nbgrader autograde`",
+        "points for honest",
+        "CPU",
+        "cores busy",
+        "check cell",
+        "box adds",
+    ):
+        assert word in names
+    for word in ("regrading an unchanged class of 5", "verdicts", "`autograder execute` of 2 notebooks"):
+        assert word in names
+    same = {figure.name: figure for figure in found.figures}
+    assert same["points for honest submissions, here and in stock nbgrader"].reached, found.differences
+    # Gross: graded at the same time, two students cannot take longer than stock nbgrader needs for each alone.
+    assert "0.0 times" not in markdown(found)
