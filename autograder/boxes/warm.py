@@ -5,9 +5,9 @@ and ``run``, called in each child. In the mode ``inside`` the child first enters
 (:mod:`autograder.boxes.entering`); in the mode ``beside`` ``run`` gets the connection itself.
 
 This process starts with a clean environment, makes no thread and no ROS context, so that a fork is safe (LTTng, which
-rclpy loads, has two threads of its own that sleep until there is a tracing daemon), and never reads what it is asked: the
-child does. So nothing of one submission is ever in the memory that the next one's
-kernel begins with. It ends when its standard input does, and its children with it.
+rclpy loads, has two threads of its own that sleep until there is a tracing daemon), and never reads what it is asked:
+the child does. So nothing of one submission is ever in the memory that the next one's kernel begins with. It ends when
+its standard input does, and its children with it.
 """
 
 from __future__ import annotations
