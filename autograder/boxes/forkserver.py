@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
-from autograder.boxes.channel import Channel
 from autograder.boxes.environment import base_environment
 from autograder.boxes.warm import BESIDE, FOLDER_PREFIX, INSIDE
 
@@ -155,12 +154,3 @@ class WarmProcesses:
 
     def _all(self) -> list[WarmProcess]:
         return [*([self._keepers] if self._keepers else []), self._kernels, self._judges]
-
-
-def connect(address: str) -> Channel:
-    """A connection to a child of a warm process, forked for it.
-
-    Raises:
-        ChannelClosed: The warm process is gone.
-    """
-    return Channel.to(address)

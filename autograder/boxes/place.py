@@ -8,12 +8,12 @@ from __future__ import annotations
 import contextlib
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, Self
+from typing import TYPE_CHECKING, Self
 
 from autograder.boxes.entering import Entrance
 from autograder.boxes.environment import box_environment, kernel_environment
 from autograder.boxes.forked import ForkedProcess
-from autograder.boxes.guards import BoxGuard, Guard, NoGuard
+from autograder.boxes.guards import BoxGuard, NoGuard
 from autograder.boxes.sandbox import Enclosure
 from autograder.boxes.view import HOME, WORK, Bind
 
@@ -41,28 +41,6 @@ class JudgeSetting:
 
     environment: Mapping[str, str] = field(default_factory=dict)
     readable: Sequence[Path] = ()
-
-
-class Place(Protocol):
-    """Where one notebook runs."""
-
-    @property
-    def judge_socket(self) -> Path:
-        """Where the judge is to listen."""
-        ...
-
-    @property
-    def guard(self) -> Guard:
-        """Says when a limit is exceeded."""
-        ...
-
-    def start_kernel(self, channels: Channels) -> PlacedProcess:
-        """Start the kernel."""
-        ...
-
-    def start_judge(self, listener: int, orders: int) -> PlacedProcess:
-        """Start the judge on a listening socket and on one for orders."""
-        ...
 
 
 class BoxedPlace:
