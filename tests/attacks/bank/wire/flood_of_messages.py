@@ -2,6 +2,7 @@
 # tries = "Eight publishers fill the judge's queue with messages of eight megabytes, faster than anybody can read them."
 # could_earn = "A host without memory, through the judge, whose box has other limits than the student's."
 # earned = { "lab_1_2.talker" = 3 }
+# at_most = true
 # undefended = "A judge that kept a thousand messages of any size would need eight gigabytes."
 
 # %% solution TalkerNode
