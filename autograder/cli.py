@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 NO = 1
 CANNOT = 2
+INTERRUPTED = 130
+"""What a shell says of a program that Ctrl-C ended: 128 and the signal's number."""
 
 
 def fail(message: str) -> NoReturn:
@@ -220,17 +222,23 @@ def grade(
 
     if scheduler is not None and jobs is not None:
         fail("--jobs is for this machine; each worker of a cluster has its own: autograder worker --jobs")
-    with grading_errors():
-        report = grading.grade(
-            folder,
-            assignments=assignments,
-            students=students,
-            again=again,
-            jobs=jobs,
-            unsafe_no_sandbox=unsafe_no_sandbox,
-            scheduler=scheduler,
-            as_json=as_json,
+    try:
+        with grading_errors():
+            report = grading.grade(
+                folder,
+                assignments=assignments,
+                students=students,
+                again=again,
+                jobs=jobs,
+                unsafe_no_sandbox=unsafe_no_sandbox,
+                scheduler=scheduler,
+                as_json=as_json,
+            )
+    except KeyboardInterrupt:
+        click.echo(
+            "autograder: stopped. What was graded is kept; the same command goes on from there.", err=True
         )
+        sys.exit(INTERRUPTED)
     sys.exit(report.exit_code)
 
 

@@ -1,0 +1,24 @@
+"""Ctrl-C while a class is graded."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from click.testing import CliRunner
+
+from autograder import grading
+from autograder.cli import cli
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def test_it_says_what_was_kept_and_how_to_go_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(grading, "grade", interrupted)
+    result = CliRunner().invoke(cli, ["grade", str(tmp_path)])
+    assert result.exit_code == 130
+    assert "goes on from there" in result.output
