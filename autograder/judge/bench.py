@@ -323,10 +323,11 @@ class TestBench:
 
     def settle(self) -> None:
         """Ask each node of the subject's twice; a node that did not answer once is not asked again in this part."""
+        limit = clock.ANSWER_LIMIT if self.look is Look.FAST else clock.PATIENT_ANSWER
         for node in self._nodes():
             if node.full in self._deaf or self._subject.ended:
                 continue
-            if not all(clock.answers(self.wire, self._recorder, node, clock.ANSWER_LIMIT) for _ in range(2)):
+            if not all(clock.answers(self.wire, self._recorder, node, limit) for _ in range(2)):
                 self._deaf.add(node.full)
 
     def note_whether_it_spins(self) -> None:
