@@ -63,7 +63,7 @@ class Form:
     executed: tuple[str, ...]
 
 
-FULL = Form("full", 24, (), 2, 2, 100, 3, 20, ())
+FULL = Form("full", 24, (), 2, 1, 100, 3, 20, ())
 SHORT = Form("short", 2, ("exercise_1_2",), 1, 1, 5, 1, 3, ("exercise_1_2",))
 
 
@@ -139,7 +139,7 @@ class _Run:
         """The same verdicts on a machine that is asked for far too much."""
         made = make_class(self.folder / "loaded", self.form.overloaded, self.form.assignments)
         with _told("verdicts, calm"):
-            calm = run_ours(made, self.folder / "calm.log", "--jobs", "1")
+            calm = run_ours(made, self.folder / "calm.log", "--jobs", "2")
         with _told("verdicts, overloaded"):
             loaded = run_overloaded(made, self.folder / "loaded.log")
         found = verdicts_of(calm)
