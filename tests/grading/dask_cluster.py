@@ -6,11 +6,14 @@ import contextlib
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 import psutil
+
+from autograder.boxes.scratch import remove_tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -64,6 +67,8 @@ class DaskCluster:
 
     def __enter__(self) -> Self:
         self._processes: list[subprocess.Popen[str]] = []
+        # What a killed worker cannot tidy up goes with this. A short name: sockets are in there.
+        self._temporary = Path(tempfile.mkdtemp(prefix="dc-"))
         self.said = ""
         self.address = self._started([sys.executable, "-c", _SCHEDULER, self._protocol]).strip()
         self.scheduler = self._processes[0]
@@ -76,6 +81,7 @@ class DaskCluster:
             process.wait()
             assert process.stdout
             process.stdout.close()
+        remove_tree(self._temporary)
 
     @contextlib.contextmanager
     def worker(
@@ -118,8 +124,14 @@ class DaskCluster:
         finally:
             end(process)
 
+    def _environment(self) -> dict[str, str]:
+        fake_judge = str(Path(__file__).parent)
+        return {**os.environ, "PYTHONPATH": fake_judge, "TMPDIR": str(self._temporary)}
+
     def _started(self, command: list[str], until: str = "", log: int = subprocess.DEVNULL) -> str:
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True, env=_environment())
+        process = subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=log, text=True, env=self._environment()
+        )
         self._processes.append(process)
         assert process.stdout
         for line in process.stdout:
@@ -127,10 +139,6 @@ class DaskCluster:
             if until in line:
                 return line
         raise AssertionError(f"{command[-6:]} ended with {process.wait()}")
-
-
-def _environment() -> dict[str, str]:
-    return {**os.environ, "PYTHONPATH": str(Path(__file__).parent)}  # for the fake judge
 
 
 def end(process: subprocess.Popen[str]) -> None:
