@@ -175,7 +175,8 @@ def _live(order: Mapping[str, Any], streams: Sequence[int], maker: int) -> NoRet
     for text in (sys.stdout, sys.stderr):
         with contextlib.suppress(BaseException):
             text.flush()
-    _libc.exit(code)
+    _libc.fflush(None)  # ROS logs through C's own buffers
+    # No destructor of a C++ library may meet the threads and nodes that an interpreter would have ended before it.
     os._exit(code)
 
 
