@@ -76,7 +76,8 @@ def test_an_opened_check_counts_and_a_second_one_does_not(judge: JudgeProcess) -
     assert verdict.diagnosis is not None
     assert verdict.diagnosis.key == "crashed"
     assert verdict.seed
-    assert "a seed" not in verdict.seed  # the notebook hears it, and must not learn what the next check draws from
+    # The notebook hears it, and must not learn what the next check draws from.
+    assert "a seed" not in verdict.seed
     assert told["verdict"]["score"] == 0
 
 
