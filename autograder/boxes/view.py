@@ -92,10 +92,18 @@ def box_arguments(scratch: Path, binds: Sequence[Bind], *, scratch_visible: bool
     else:
         for place in (HOME, Path("/tmp"), Path("/dev/shm")):
             words += ["--size", "64000000", "--tmpfs", str(place)]
+    cover = _course_below_the_scratch()
+    words += [word for folder in cover for word in ("--tmpfs", folder)]
     for bind in (*(Bind(path) for path in installation()), *binds):
         words += bind.arguments()
     # What bubblewrap itself put there is a file system in memory without a limit.
-    return [*words, "--remount-ro", "/dev", "--remount-ro", "/"]
+    return [*words, *(word for folder in ("/dev", "/", *cover) for word in ("--remount-ro", folder))]
+
+
+def _course_below_the_scratch() -> tuple[str, ...]:
+    """The course's folder where it lies below ``/tmp``: Python searches it, and in the scratch one could write."""
+    folder = _PACKAGE.parent
+    return (str(folder),) if any(folder.is_relative_to(place) for place in (HOME, Path("/tmp"))) else ()
 
 
 def _etc(scratch: Path) -> list[str]:

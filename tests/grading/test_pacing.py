@@ -59,7 +59,12 @@ def test_a_gate_lets_in_so_many_and_more_when_it_may() -> None:
     gate = Gate(1)
     assert gate.enter()
     inside = threading.Event()
-    thread = threading.Thread(target=lambda: gate.enter() and inside.set())
+
+    def enter() -> None:
+        if gate.enter():
+            inside.set()
+
+    thread = threading.Thread(target=enter)
     thread.start()
     assert not inside.is_set()
     gate.allow(2)
