@@ -90,6 +90,7 @@ def test_nothing_in_the_courier_has_kept_the_real_one() -> None:
 
 INSTALLED = """
 import io, pickle
+from autograder.grading.cluster import inert_pickle
 inert_pickle.install()
 data = b"cos\\nsystem\\n(S'echo ran'\\ntR."
 for made in pickle.loads(data), pickle.load(io.BytesIO(data)), pickle.Unpickler(io.BytesIO(data)).load():
