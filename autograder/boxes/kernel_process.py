@@ -10,7 +10,7 @@ from __future__ import annotations
 import atexit
 import contextlib
 import ctypes
-import importlib
+import importlib.util
 import os
 import random
 import sys
@@ -116,12 +116,19 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
         os.dup2(log, standard)
     os.close(log)
     _forget_the_fork()
-    sys.argv = ["ipykernel_launcher"]
+    sys.argv = _arguments()
     app = _kernel_app(call["key"].encode(), call["address"], {SHELL: shell, IOPUB: iopub})
     app.initialize([])
     app.start()
     # What an interpreter does at its end and a fork does not: hooks, the last outputs among them.
     atexit._run_exitfuncs()
+
+
+def _arguments() -> list[str]:
+    """What a program in a cell finds in ``sys.argv`` in JupyterLab, where some meet the kernel's own arguments."""
+    launcher = importlib.util.find_spec("ipykernel_launcher")
+    name = launcher.origin if launcher is not None and launcher.origin else "ipykernel_launcher.py"
+    return [name, "-f", "kernel.json"]
 
 
 def _forget_the_fork() -> None:

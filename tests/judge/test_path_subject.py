@@ -76,6 +76,7 @@ def test_what_a_notebook_says_besides_its_sources_is_not_heard(judge: JudgeProce
 )
 def test_sources_that_could_do_harm_are_a_failure(judge: JudgeProcess, words: dict[str, Any]) -> None:
     kernel = kernel_of(judge)
+    assert kernel.hear() == {"say": "collect"}
     kernel.say("source", **words)
     kernel.say("sources", path="ros2_ws", trouble="\ud800\0" * 500)
     assert verdict_of(judge).score == 0
