@@ -76,7 +76,11 @@ class Part:
         for event in reversed(self.events):
             if event.kind == "subject" and event.data.get("traceback"):
                 return str(event.data["traceback"])
-        return _traceback_in([e.data["text"] for e in self.of("output")])
+        # Stream by stream: lines of one may come between those of the other.
+        streams: dict[str, list[str]] = {}
+        for event in self.of("output"):
+            streams.setdefault(event.name, []).append(event.data["text"])
+        return next(filter(None, (_traceback_in(streams[name]) for name in sorted(streams))), "")
 
 
 _ENDINGS = ("exited", "returned", "raised")
@@ -84,13 +88,12 @@ _ENDINGS = ("exited", "returned", "raised")
 
 def _without_tracebacks(events: Sequence[Event]) -> Iterator[Event]:
     """All but the output lines of tracebacks: they quote the program, which is not what it says."""
-    inside = False
+    inside: dict[str, bool] = {}
     for event in events:
         if event.kind == "output":
             line = str(event.data["text"])
-            inside = inside or line.startswith("Traceback (most recent call last)")
-            if inside:
-                inside = line.startswith(("Traceback", " ", "\t")) or not line
+            if inside.get(event.name) or line.startswith("Traceback (most recent call last)"):
+                inside[event.name] = line.startswith(("Traceback", " ", "\t")) or not line
                 continue
         yield event
 

@@ -31,3 +31,16 @@ def output(text: str) -> Event:
 )
 def test_what_ros_itself_says_is_not_the_subjects_word(event: Event, words: list[str]) -> None:
     assert Part("part", {}, [event]).said() == words
+
+
+def test_lines_of_one_stream_may_come_between_those_of_the_other() -> None:
+    lines = [
+        ("stderr", "Traceback (most recent call last):"),
+        ("stdout", "before"),
+        ("stderr", '  File "talker.py", line 2, in <module>'),
+        ("stderr", "ValueError: Goal was canceled"),
+    ]
+    events = tuple(Event(float(at), "output", name, {"text": text}) for at, (name, text) in enumerate(lines))
+    part = Part("part", {}, events)
+    assert part.said() == ["before"]
+    assert part.traceback.endswith("ValueError: Goal was canceled")
