@@ -15,6 +15,7 @@ from autograder.boxes.environment import box_environment, kernel_environment
 from autograder.boxes.forked import ForkedProcess
 from autograder.boxes.guards import BoxGuard, NoGuard
 from autograder.boxes.sandbox import Enclosure
+from autograder.boxes.scratch import write_files
 from autograder.boxes.view import HOME, WORK, Bind
 
 if TYPE_CHECKING:
@@ -161,12 +162,7 @@ class UnboxedPlace:
     ) -> None:
         self._addresses, self._folder, self._judge, self._limits = addresses, folder, judge, limits
         self.guard = NoGuard()
-        self._cwd = folder / "work"
-        for name, data in {**files}.items():
-            path = self._cwd / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(data)
-        self._cwd.mkdir(exist_ok=True)
+        self._cwd = write_files(files, folder / "work")
         self._variables = {**variables, socket_variable: str(self.judge_socket)}
 
     @property

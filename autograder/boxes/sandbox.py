@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from autograder.boxes.channel import Channel, ChannelClosed, close_all
 from autograder.boxes.forkserver import KEEPER_MODULE, WarmProcess
+from autograder.boxes.scratch import write_files
 from autograder.boxes.view import HOME, WORK, Bind, box_arguments
 from autograder.boxes.warm import BESIDE
 
@@ -127,7 +128,7 @@ class Enclosure:
                 scratch=str(self._scratch),
                 size=scratch_bytes,
                 inodes=scratch_inodes,
-                files=str(_written(files, folder / "files")) if files else "",
+                files=str(write_files(files, folder / "files")) if files else "",
             )
         except BaseException:
             self._channel.close()
@@ -412,13 +413,3 @@ def _reason(error: str) -> str:
             "--security-opt seccomp=unconfined"
         )
     return "no box could be made here"
-
-
-def _written(files: Mapping[str, bytes], folder: Path) -> Path:
-    """The files on disk, for the keeper to take into the scratch."""
-    folder.mkdir()
-    for name, data in files.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(data)
-    return folder

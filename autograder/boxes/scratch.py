@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Mapping
 
 
 @contextlib.contextmanager
@@ -26,6 +26,16 @@ def scratch_folder(parent: Path) -> Iterator[Path]:
         yield folder
     finally:
         remove_tree(folder)
+
+
+def write_files(files: Mapping[str, bytes], folder: Path) -> Path:
+    """Write files by their relative paths into a folder, which is made; returns the folder."""
+    folder.mkdir()
+    for name, data in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)
+    return folder
 
 
 def remove_tree(folder: Path) -> None:
