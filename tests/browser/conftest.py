@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import os
-import re
 import shutil
-import subprocess
 import sys
-import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
 from environment.system_packages import CHROMIUM_NAMES, find_program
+
+sys.path.insert(0, str(Path(__file__).parent))
+from server_of_a_test import jupyter_server
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -54,26 +54,10 @@ def chapters(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def lab(chapters: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """The address of a JupyterLab, token included, that knows nothing of the user's own settings."""
     home = tmp_path_factory.mktemp("home")
-    places = ("HOME", "IPYTHONDIR", "JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "JUPYTER_RUNTIME_DIR")
     environ = {name: value for name, value in os.environ.items() if name != "ROS_DOMAIN_ID"}
-    environ |= {name: str(home / name) for name in places}
-    command = [sys.executable, "-m", "autograder", "lab", "--folder", str(chapters), "--no-browser"]
-    options = ["--allow-root", "--ServerApp.port=0", "--IdentityProvider.token=student"]
-    with subprocess.Popen([*command, *options], env=environ, stderr=subprocess.PIPE, text=True) as server:
-        assert server.stderr is not None
-        said: list[str] = []
-        try:
-            for line in server.stderr:
-                said.append(line)
-                if found := re.search(r"http://127\.0\.0\.1:\d+/", line):
-                    break
-            else:
-                pytest.fail("JupyterLab did not start:\n" + "".join(said))
-            # A full pipe would stop it.
-            threading.Thread(target=server.stderr.read, daemon=True).start()
-            yield found.group() + "{}?token=student"
-        finally:
-            server.terminate()
+    arguments = ["autograder", "lab", "--folder", str(chapters)]
+    with jupyter_server(arguments, "student", home, environ) as address:
+        yield address + "{}?token=student"
 
 
 @pytest.fixture

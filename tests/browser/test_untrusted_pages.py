@@ -6,9 +6,7 @@ import json
 import os
 import re
 import shutil
-import subprocess
 import sys
-import threading
 import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,6 +20,7 @@ from nbgrader.coursedir import CourseDirectory
 from playwright.sync_api import Error
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "grading"))
+from server_of_a_test import jupyter_server
 from tiny_class import FakeEngine, TinyClass, make_tiny_class
 
 from autograder.boxes.execution import CellRun, Ended, Kind
@@ -279,26 +278,10 @@ def test_the_card_is_whole_and_hints_open(watched: Watched, hostile_class: TinyC
 @pytest.fixture
 def formgrader(hostile_class: TinyClass, tmp_path: Path) -> Iterator[str]:
     """The address of a Jupyter server in the class's folder."""
-    places = ("HOME", "IPYTHONDIR", "JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "JUPYTER_RUNTIME_DIR")
-    environ = os.environ | {name: str(tmp_path / name) for name in places}
-    command = [sys.executable, "-m", "jupyter", "server", "--no-browser", "--allow-root"]
-    options = ["--ServerApp.port=0", "--IdentityProvider.token=teacher"]
-    with subprocess.Popen(
-        [*command, *options], env=environ, cwd=hostile_class.path, stderr=subprocess.PIPE, text=True
-    ) as server:
-        assert server.stderr is not None
-        said: list[str] = []
-        try:
-            for line in server.stderr:
-                said.append(line)
-                if found := re.search(r"http://127\.0\.0\.1:\d+/", line):
-                    break
-            else:
-                pytest.fail("the server did not start:\n" + "".join(said))
-            threading.Thread(target=server.stderr.read, daemon=True).start()
-            yield found.group() + "formgrader/{}?token=teacher"
-        finally:
-            server.terminate()
+    with jupyter_server(
+        ["jupyter", "server"], "teacher", tmp_path, os.environ, hostile_class.path
+    ) as address:
+        yield address + "formgrader/{}?token=teacher"
 
 
 def test_formgraders_view_of_a_submission(

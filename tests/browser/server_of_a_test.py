@@ -1,0 +1,53 @@
+"""A Jupyter server of a test's own, which knows nothing of the user's settings."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+import subprocess
+import sys
+import threading
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
+
+_PLACES = ("HOME", "IPYTHONDIR", "JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "JUPYTER_RUNTIME_DIR")
+
+
+@contextlib.contextmanager
+def jupyter_server(
+    arguments: Sequence[str], token: str, home: Path, environ: Mapping[str, str], cwd: Path | None = None
+) -> Iterator[str]:
+    """Start a server; its address, which ends with a slash.
+
+    Args:
+        arguments: What follows ``python -m``.
+        token: Lets a browser in.
+        home: Where its settings are.
+        environ: The rest of its environment.
+        cwd: Its folder.
+    """
+    command = [sys.executable, "-m", *arguments, "--no-browser", "--allow-root"]
+    options = ["--ServerApp.port=0", f"--IdentityProvider.token={token}"]
+    places = {name: str(home / name) for name in _PLACES}
+    with subprocess.Popen(
+        [*command, *options], env={**environ, **places}, cwd=cwd, stderr=subprocess.PIPE, text=True
+    ) as server:
+        assert server.stderr is not None
+        said: list[str] = []
+        try:
+            for line in server.stderr:
+                said.append(line)
+                if found := re.search(r"http://127\.0\.0\.1:\d+/", line):
+                    break
+            else:
+                pytest.fail("the server did not start:\n" + "".join(said))
+            # A full pipe would stop it.
+            threading.Thread(target=server.stderr.read, daemon=True).start()
+            yield found.group()
+        finally:
+            server.terminate()
