@@ -29,9 +29,12 @@ if TYPE_CHECKING:
 
 _PRELOADED = (
     "IPython.core.completer",
+    "IPython.core.magics.osm",
+    "IPython.core.magics.script",
     "IPython.display",
     "matplotlib_inline",
-    "numpy",
+    "importlib.resources.readers",
+    "numpy.random",
     "rclpy",
     "rclpy.action",
     "rclpy.callback_groups",
@@ -42,8 +45,11 @@ _PRELOADED = (
     "rclpy.task",
     "autograder.notebook",
     "autograder.notebook.check",
+    "autograder.boxes.processes",
     "autograder.cards.bundle",
 )
+_PREPARED = ("autograder.cards.bundle",)
+"""Of those, what has a function ``prepare`` for that."""
 _INTERFACES = (
     "action_msgs.msg",
     "action_msgs.srv",
@@ -51,6 +57,7 @@ _INTERFACES = (
     "rcl_interfaces.srv",
     "rosgraph_msgs.msg",
     "std_msgs.msg",
+    "type_description_interfaces.msg",
     "my_robot_interfaces.action",
     "my_robot_interfaces.srv",
 )
@@ -61,7 +68,9 @@ def prepare() -> None:
     """Import what nearly every notebook of the course does; what is not there is left to the notebook to miss."""
     for name in (*_PRELOADED, *_rehearsed()):
         with contextlib.suppress(Exception):
-            importlib.import_module(name)
+            module = importlib.import_module(name)
+            if name in _PREPARED:
+                module.prepare()
     for name in _INTERFACES:
         with contextlib.suppress(ImportError):
             for kind in list(vars(importlib.import_module(name)).values()):
@@ -134,9 +143,9 @@ def _arguments() -> list[str]:
 def _forget_the_fork() -> None:
     """Let nothing be alike in two kernels because they came from one process. Python reseeds ``random`` itself."""
     random.seed()
-    numpy = sys.modules.get("numpy")
-    if numpy is not None:
-        numpy.random.seed()
+    numpy_random = sys.modules.get("numpy.random")
+    if numpy_random is not None:
+        numpy_random.seed()
 
 
 class _GivenSockets(IPKernelApp):

@@ -32,7 +32,7 @@ _PLAIN_COLOURS = {State.PASSED: "#2f8f57", State.FAILED: "#c8641a", State.NOT_CH
 
 def card_html(verdict: Verdict) -> str:
     """Show a verdict in JupyterLab, in nbgrader's feedback or on any page; everything is escaped."""
-    css, template = _sources()
+    css, template = templates()
     return template.render(card=_Card.of(verdict), css=css)
 
 
@@ -170,7 +170,8 @@ def _kind_of_time(simulated: bool) -> str:
 
 
 @cache
-def _sources() -> tuple[Any, Template]:
+def templates() -> tuple[Any, Template]:
+    """The style sheet and the card's template, read once."""
     # Imported on first use: a terminal that only prints text need not pay for it.
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
@@ -180,5 +181,7 @@ def _sources() -> tuple[Any, Template]:
     )
     shapes: Any = environment.get_template("shapes.html.j2").module
     environment.globals["shape"] = shapes.shape
+    for name in environment.list_templates(extensions=["j2"]):
+        environment.get_template(name)  # also those that the card includes: it would compile them when it is shown
     css = (files("autograder.cards") / "card.css").read_text(encoding="utf-8")
     return Markup(css), environment.get_template("card.html.j2")
