@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from autograder import exercises
 from autograder.grading.class_directory import ClassDirectory
 from autograder.grading.preparing import tasks_of
 from autograder.grading.task import encode
@@ -19,8 +20,8 @@ if TYPE_CHECKING:
 
     from benchmarks.classes import BenchmarkClass
 
-Cell = tuple[str, float, float, float | None]
-"""The cell's first words, wall seconds, CPU seconds, and the score that a check gave."""
+Cell = tuple[str, float, float, str]
+"""The cell's first words, wall seconds, CPU seconds, and the exercise that it checks."""
 
 
 @dataclass(frozen=True)
@@ -40,9 +41,14 @@ class Floor:
     cells: tuple[Cell, ...]
 
     @property
-    def checks(self) -> list[float]:
-        """Wall seconds of each check cell."""
-        return [seconds for _, seconds, _, score in self.cells if score is not None]
+    def checks(self) -> list[tuple[float, bool]]:
+        """Wall seconds of each check cell, and whether it builds a workspace."""
+        return [(seconds, builds(exercise)) for _, seconds, _, exercise in self.cells if exercise]
+
+
+def builds(exercise: str) -> bool:
+    """Whether the check of an exercise builds a workspace, and takes what colcon takes."""
+    return bool(exercises.get(exercise).runner)
 
 
 def measure_floor(made: BenchmarkClass, students: Sequence[str]) -> list[Floor]:

@@ -7,6 +7,7 @@ a Python programmer knows (``\x1b``), or cut in the middle with a mark.
 
 from __future__ import annotations
 
+import functools
 import re
 import unicodedata
 
@@ -28,7 +29,9 @@ def one_line(text: str, limit: int, *, mark: str = "…") -> str:
         mark: What stands for the part that was cut out.
     """
     # Escaping can only lengthen: cutting first keeps a megabyte from being walked character by character.
-    return _cut("".join(map(_escaped, _cut(text, 4 * limit, mark))), limit, mark)
+    text = _cut(text, 4 * limit, mark)
+    # Whatever would be escaped is not printable (Python's "isprintable"), and hardly any text has some of it.
+    return _cut(text if text.isprintable() else "".join(map(_escaped, text)), limit, mark)
 
 
 def paragraph(text: str, limit: int, *, mark: str = "…") -> str:
@@ -53,7 +56,7 @@ def block(text: str, *, max_lines: int, max_columns: int, mark: str = "…") -> 
 
 def width(text: str) -> int:
     """Columns that ``text`` takes in a fixed-width font: East Asian characters take two, accents none."""
-    return len(text) if text.isascii() else sum(_columns(character) for character in text)
+    return len(text) if text.isascii() else sum(map(_columns, text))
 
 
 def wrap(text: str, limit: int, first: str = "", later: str = "") -> list[str]:
@@ -66,26 +69,28 @@ def wrap(text: str, limit: int, first: str = "", later: str = "") -> list[str]:
         later: The indent of all others.
     """
     lines = []
-    line, empty = first, True
+    line, taken, empty = first, width(first), True
     for word in text.split():
-        if not empty and width(line) + 1 + width(word) > limit:
+        needed = width(word)
+        if not empty and taken + 1 + needed > limit:
             lines.append(line)
-            line, empty = later, True
+            line, taken, empty = later, width(later), True
         if not empty:
-            line += " "
-        if width(line) + width(word) <= limit:
-            line += word
+            line, taken = line + " ", taken + 1
+        if taken + needed <= limit:
+            line, taken = line + word, taken + needed
             empty = False
             continue
         for character in word:
-            if width(line) + _columns(character) > limit:
+            if taken + _columns(character) > limit:
                 lines.append(line)
-                line = later
-            line += character
+                line, taken = later, width(later)
+            line, taken = line + character, taken + _columns(character)
         empty = False
     return [*lines, line.rstrip() if empty else line]
 
 
+@functools.lru_cache(maxsize=4096)
 def _columns(character: str) -> int:
     if unicodedata.combining(character) or unicodedata.category(character) in {"Cf", "Mn", "Me"}:
         return 0

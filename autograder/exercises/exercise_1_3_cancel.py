@@ -38,7 +38,7 @@ PROMPT = 0.05
 """Seconds of wall time in which a client that counts feedback has asked to cancel, once its executor has turned."""
 AT_ONCE = 0.01
 """The same, where a request comes too early in any case, and only the advice counts the messages before it."""
-PAUSE = 0.2
+PAUSE = 0.15
 """Seconds after the first feedback message that the second run of a fast look is longer than the first."""
 GOAL_LIMIT = 15.0
 """Seconds in which a goal must arrive once the client is on the graph."""

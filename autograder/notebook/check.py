@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 from typing import Any
 
-from autograder.cards.bundle import mimebundle
+from autograder.cards import bundle
 from autograder.notebook.check_context import CheckContext
 from autograder.notebook.hurry import Hurry
 from autograder.notebook.judge_link import JudgeLink, JudgeUnreachable
@@ -55,6 +55,7 @@ def _ask(exercise: str, subject: Any) -> Verdict:
 def _converse(link: JudgeLink, exercise: str, subject: Any) -> Verdict:
     """Do what the judge says until it has a verdict."""
     link.say("check", exercise=exercise, kind="class" if inspect.isclass(subject) else "function")
+    bundle.prepare()  # while the judge makes its node
     first = link.hear()
     if first["say"] == "collect":
         # A grader builds and runs what a path leads to by itself.
@@ -119,11 +120,11 @@ def _show(verdict: Verdict) -> None:
     from IPython.core.getipython import get_ipython
     from IPython.display import display
 
-    bundle = mimebundle(verdict)
+    card = bundle.mimebundle(verdict)
     if get_ipython() is None:
-        print(bundle["text/plain"])
+        print(card["text/plain"])
     else:
-        display(bundle, raw=True)  # type: ignore[no-untyped-call]
+        display(card, raw=True)  # type: ignore[no-untyped-call]
 
 
 def _what_to_pass(exercise: str, subject: Any) -> str:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 
-from autograder.cards.readable import block, one_line, paragraph, width, wrap
+from autograder.cards.readable import _escaped, block, one_line, paragraph, width, wrap
 
 
 @pytest.mark.parametrize(
@@ -25,6 +27,12 @@ from autograder.cards.readable import block, one_line, paragraph, width, wrap
 )
 def test_one_line_writes_out_what_cannot_be_seen(text: str, shown: str) -> None:
     assert one_line(text, 100) == shown
+
+
+def test_no_printable_character_is_escaped() -> None:
+    """Why a printable text need not be walked."""
+    printable = filter(str.isprintable, map(chr, range(sys.maxunicode + 1)))
+    assert [character for character in printable if _escaped(character) != character] == []
 
 
 def test_one_line_cuts_in_the_middle() -> None:
@@ -68,3 +76,10 @@ def test_wrap_breaks_at_blanks_and_long_words_anywhere() -> None:
     assert wrap("abcdefghij k", 6, "", " ") == ["abcdef", " ghij", " k"]
     assert wrap("你好你好", 5) == ["你好", "你好"]
     assert wrap("", 5, "> ") == [">"]
+
+
+def test_no_wrapped_line_is_wider_than_asked_for() -> None:
+    text = "a e\u0301e\u0301 你好你好你 longer-than-a-line-can-be x\u200dy 你 bb"
+    lines = wrap(text, 9, "> ", "… ")
+    assert max(map(width, lines)) == 9
+    assert "".join("".join(line[2:] for line in lines).split()) == "".join(text.split())
