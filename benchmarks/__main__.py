@@ -21,6 +21,7 @@ from benchmarks.box_start import measure_box_start
 from benchmarks.classes import BenchmarkClass, make_class
 from benchmarks.execution import measure_execute
 from benchmarks.floor import Floor, measure_floor
+from benchmarks.interrupt import measure_interrupts
 from benchmarks.machine import Usage, Watch, machine
 from benchmarks.ours import OurRun, diagnosed, problems_of, run_ours
 from benchmarks.overload import differences, run_overloaded, verdicts_of
@@ -50,6 +51,7 @@ class Form:
         overloaded: Students in the class that is graded under load.
         turns: Of starting a box.
         executed: Notebooks that ``autograder execute`` runs; all where empty.
+        interrupted: Notebooks that are graded before each Ctrl-C.
     """
 
     name: str
@@ -61,10 +63,11 @@ class Form:
     overloaded: int
     turns: int
     executed: tuple[str, ...]
+    interrupted: tuple[int, ...]
 
 
-FULL = Form("full", 24, (), 2, 1, 100, 3, 20, ())
-SHORT = Form("short", 2, ("exercise_1_2",), 1, 1, 5, 1, 3, ("exercise_1_2",))
+FULL = Form("full", 24, (), 2, 1, 100, 3, 20, (), (1, 3, 5))
+SHORT = Form("short", 2, ("exercise_1_2",), 1, 1, 5, 1, 3, ("exercise_1_2",), (1,))
 
 
 @dataclass
@@ -83,6 +86,7 @@ class _Run:
             self.small_costs,
             self.regrade,
             self.under_load,
+            self.interrupt,
             self.execute,
         ):
             try:
@@ -158,6 +162,13 @@ class _Run:
         wrong = differences(found, verdicts_of(loaded))
         self.differences += wrong
         self.figures.append(figures.overload(wrong, len(found), figures.load_of(loaded.usage)))
+
+    def interrupt(self) -> None:
+        """Ctrl-C."""
+        made = make_class(self.folder / "stopped", self.form.students, self.form.assignments)
+        with _told("Ctrl-C"), Watch() as watch:
+            spent = measure_interrupts(made, self.form.interrupted)
+        self.figures.append(figures.interrupt(spent, _load(watch)))
 
     def execute(self) -> None:
         """Every notebook of the course."""

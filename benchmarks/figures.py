@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 MB = 1e6
 THROUGHPUT, CPU, BUSY, BOX_MB, BOX_MS = 30.0, 1.5, 0.85, 150.0, 150.0
-CHECK_MEDIAN, CHECK_P95, REGRADE, EXECUTE_BEYOND = 0.5, 1.0, 2.0, 5.0
+CHECK_MEDIAN, CHECK_P95, REGRADE, EXECUTE_BEYOND, INTERRUPT = 0.5, 1.0, 2.0, 5.0, 3.0
 
 
 def load_of(usage: Usage) -> str:
@@ -126,7 +126,7 @@ def checks(floor: Sequence[Floor], load: str) -> list[Figure]:
     if building:
         found.append(
             Figure(
-                "a check cell that builds a workspace with colcon, or launches one",
+                "the first check that builds a workspace with colcon, or launches one",
                 "–",
                 f"median {statistics.median(building):.1f} s, at most {max(building):.1f} s, of {len(building)} checks",
                 None,
@@ -157,6 +157,17 @@ def regrade(spent: Sequence[tuple[float, float]], students: int, load: str) -> F
         f"under {REGRADE:g} s",
         f"{best:.2f} s, of which {cpu:.2f} s of CPU (best of {len(spent)}; worst {max(spent)[0]:.2f} s)",
         best < REGRADE,
+        load,
+    )
+
+
+def interrupt(spent: Sequence[float], load: str) -> Figure:
+    """Ctrl-C while notebooks run."""
+    return Figure(
+        "from Ctrl-C to the end of `autograder grade`",
+        f"under {INTERRUPT:g} s",
+        f"{', '.join(f'{seconds:.1f}' for seconds in spent)} s, each time going on where it was stopped",
+        max(spent) < INTERRUPT,
         load,
     )
 

@@ -1,30 +1,46 @@
 """Exercise 1.3: a client that cancels its goal after a few feedback messages and reports how the goal ended.
 
-The judge is the action server. In a first part it cancels as it is asked to; in a second one it refuses and
-the goal
+The judge is the action server. In a first part it cancels as it is asked to; in a second one it refuses and the goal
 succeeds, so that a client that only claims "canceled" is told from one that looked at the status.
 """
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder.exercises import common_mistakes as common
+from autograder.exercises.cancel_evidence import (
+    FIRST_FEEDBACK,
+    HONOURED,
+    LAST_FEEDBACK,
+    REFUSED,
+    Request,
+    after_result,
+    expected_order,
+    false_claim,
+    orders,
+    request_of,
+    says_canceled,
+    telling_count,
+)
+from autograder.exercises.cancel_mistakes import (
+    cancel_missing,
+    cancel_repeated,
+    cancel_too_early,
+    cancel_too_late,
+    never_spun,
+    order_never_filled,
+    status_misreported,
+    status_not_reported,
+    wrong_order,
+)
 from autograder.exercises.hangs import HANGS
-from autograder.exercises.model import Advice, Bench, Criterion, Exercise, Finding, Look, Mistake
+from autograder.exercises.model import Bench, Criterion, Exercise, Finding, Look, Mistake
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from autograder.exercises.evidence import Event, Evidence, Part
 
-HONOURED = "the server cancels"
-REFUSED = "the server refuses to cancel"
-
-FIRST_FEEDBACK, LAST_FEEDBACK = 3, 5
-"""The cancel request must come after this many feedback messages, at the earliest and at the latest."""
 WITHOUT_CANCEL = 9
 """Feedback messages that are sent to a client that does not cancel."""
 LATE_FEEDBACK = 3
@@ -128,7 +144,7 @@ def run(bench: Bench, name: str, *, accept: bool, pause: float = 0.0) -> Request
         if not cancelled:
             bench.note_whether_it_spins()
         server.finish("canceled" if cancelled and accept else "succeeded", sequence=sequence)
-        if bench.wait_until(lambda evidence: bool(_after_result(evidence.main)), HANGS_AFTER):
+        if bench.wait_until(lambda evidence: bool(after_result(evidence.main)), HANGS_AFTER):
             bench.await_end(AFTERMATH)
         else:
             bench.note_where_it_hangs()
@@ -148,109 +164,10 @@ def _request_now(bench: Bench) -> Request | None:
     return found[-1]
 
 
-@dataclass(frozen=True)
-class Request:
-    """A request to cancel.
-
-    Attributes:
-        count: How many feedback messages were sent before it.
-        after: Seconds of wall time from the goal to it.
-    """
-
-    count: int
-    after: float
-
-
-# --- questions to the evidence -----------------------------------------------------------------------------
-
-
-def goals(part: Part) -> list[Event]:
-    """The goals that were sent."""
-    return part.of("goal")
-
-
-def expected_order(evidence: Evidence) -> int:
-    """The order that the reference solution asks for."""
-    return int(goals(evidence.reference.part(HONOURED))[0].data["fields"]["order"])
-
-
-def feedbacks_before_cancel(part: Part) -> int | None:
-    """How many feedback messages were sent before the first cancel request; None where none came."""
-    cancel = part.first("cancel")
-    if cancel is None:
-        return None
-    before = part.events[: part.events.index(cancel)]
-    return sum(event.kind == "feedback" for event in before)
-
-
-def request_of(part: Part) -> Request | None:
-    """The first request to cancel; None where none came."""
-    goal, cancel, count = part.first("goal"), part.first("cancel"), feedbacks_before_cancel(part)
-    if goal is None or cancel is None or count is None:
-        return None
-    return Request(count, cancel.t - goal.t)
-
-
-def telling_count(evidence: Evidence) -> int | None:
-    """How many feedback messages were sent before the cancel request, in the run where that is least right."""
-    counts = [feedbacks_before_cancel(part) for part in evidence if goals(part)] or [None]
-    return next((n for n in counts if n is None or not FIRST_FEEDBACK <= n <= LAST_FEEDBACK), counts[0])
-
-
-def says_canceled(lines: Sequence[str], elsewhere: Sequence[str] = (), otherwise: Sequence[str] = ()) -> bool:
-    """Whether a line names the status CANCELED, by its name or by its number 5 (action_msgs/msg/GoalStatus).
-
-    Args:
-        lines: What was said.
-        elsewhere: What was said in the run with a goal that was not canceled: a 5 in the same place of a line there is
-            no status.
-        otherwise: What was said there of how the goal ended: a name that is in the same line there tells nothing.
-    """
-    ends = {_shape(line) for line in otherwise}
-    return any(
-        (_names_canceled(line) and _shape(line) not in ends) or _has_the_number(line, elsewhere)
-        for line in lines
-    )
-
-
-def _has_the_number(line: str, elsewhere: Sequence[str]) -> bool:
-    twins = [_numbers(other) for other in elsewhere if _shape(other) == _shape(line)]
-    return any(
-        number == "5" and all(twin[place] != "5" for twin in twins)
-        for place, number in enumerate(_numbers(line))
-    )
-
-
-_NUMBER = re.compile(r"\d+(?:\.\d+)*")
-
-
-def _numbers(line: str) -> list[str]:
-    return _NUMBER.findall(_without_lists(line))
-
-
-def _shape(line: str) -> str:
-    """A line with a place for each number, so that two lines for two goals can be compared."""
-    return _NUMBER.sub("#", _without_lists(line))
-
-
-def _names_canceled(line: str) -> bool:
-    return re.search(r"cancel|abgebrochen|annul", _without_lists(line), re.IGNORECASE) is not None
-
-
-def _without_lists(line: str) -> str:
-    # The numbers of a sequence are not a status.
-    return re.sub(r"\[[^\]]*\]|\([\d, ]*\)", "", line)
-
-
-def _after_result(part: Part) -> list[str]:
-    result = part.first("result")
-    return part.said(after=result) if result else []
-
-
 def sends_the_goal(evidence: Evidence) -> Finding:
     """Exactly one goal of the reference's order."""
     wanted = expected_order(evidence)
-    made = [int(goal.data["fields"]["order"]) for goal in goals(evidence.main)]
+    made = orders(evidence)
     seen = f"{len(made)} goals" if len(made) > 1 else f"order {made[0]}" if made else "no goal"
     return Finding(made == [wanted], f"one goal of order {wanted}", seen)
 
@@ -307,149 +224,13 @@ def reports_the_status(evidence: Evidence) -> Finding:
         return Finding(False, expected, "no cancel request")
     if part.first("result_request") is None:
         return Finding(False, expected, "never asked for the result")
-    said = _after_result(part)
-    if not says_canceled(said, refused.said(), _after_result(refused)):
+    said = after_result(part)
+    if not says_canceled(said, refused.said(), after_result(refused)):
         return Finding(False, expected, f"“{said[-1]}”" if said else "nothing was said after the result")
-    claimed = _false_claim(refused)
+    claimed = false_claim(refused)
     if claimed:
         return Finding(False, expected, f"“{claimed}” about a goal that succeeded")
     return Finding(True, expected, f"“{said[-1]}”")
-
-
-def _false_claim(refused: Part) -> str | None:
-    """What it says that amounts to "the goal was canceled" although the goal succeeded."""
-    if refused.first("result_request") is None:
-        return None
-    said = _after_result(refused)
-    honest = r"succe|not |n't|4|refus|reject|fail|nicht|erfolg|unable|could|instead|denied|unknown"
-    said = said or refused.said()
-    claims = [line for line in said if _names_canceled(line)]
-    if not claims or any(re.search(honest, _without_lists(line), re.IGNORECASE) for line in said):
-        return None
-    return claims[-1]
-
-
-# --- known mistakes ----------------------------------------------------------------------------------------
-
-
-def wrong_order(evidence: Evidence) -> Advice | None:
-    """A goal of another order."""
-    finding = sends_the_goal(evidence)
-    if finding.passed or not goals(evidence.main):
-        return None
-    return Advice(
-        f"The judge got {finding.seen}; the task asks for {finding.expected}.",
-        f"Set goal.order = {expected_order(evidence)} and send the goal once.",
-    )
-
-
-def order_never_filled(evidence: Evidence) -> Advice | None:
-    """A goal of order 0: the field's default."""
-    made = goals(evidence.main)
-    if not made or any(goal.data["fields"]["order"] != 0 for goal in made):
-        return None
-    return Advice(
-        "The goal asks for order 0: its field was never filled.",
-        "Set goal.order (or Fibonacci.Goal(order=...)). A misspelt keyword is ignored silently.",
-    )
-
-
-def never_spun(evidence: Evidence) -> Advice | None:
-    """It sent its goal, and nothing that came back was taken in."""
-    part = evidence.main
-    if not goals(part) or part.first("cancel") is not None or not part.of("unanswered"):
-        return None
-    return Advice(
-        "Your client sent its goal, but it takes in nothing that comes back: no callback of it is called "
-        "any more.",
-        "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future), in one "
-        "place, and never "
-        "inside a callback.",
-    )
-
-
-def cancel_missing(evidence: Evidence) -> Advice | None:
-    """A goal, feedback, and no cancel request."""
-    part = evidence.main
-    if not goals(part) or part.first("cancel") is not None:
-        return None
-    return Advice(
-        "Your client sent its goal and got its feedback, but it never asked to cancel.",
-        "Count in the feedback callback, and at the third message call goal_handle.cancel_goal_async(). "
-        "Keep the "
-        "goal_handle from the goal response.",
-    )
-
-
-def cancel_too_early(evidence: Evidence) -> Advice | None:
-    """Fewer feedback messages than the task asks for."""
-    count = telling_count(evidence)
-    if count is None or count >= FIRST_FEEDBACK:
-        return None
-    return Advice(
-        f"Your client asked to cancel after {count} feedback messages; the task asks for {FIRST_FEEDBACK} to "
-        f"{LAST_FEEDBACK}.",
-        f"Count the calls of the feedback callback and cancel when the count reaches {FIRST_FEEDBACK}.",
-    )
-
-
-def cancel_too_late(evidence: Evidence) -> Advice | None:
-    """More feedback messages than the task asks for."""
-    count = telling_count(evidence)
-    if count is None or count <= LAST_FEEDBACK:
-        return None
-    return Advice(
-        f"Your client asked to cancel only after {count} feedback messages; the task asks for "
-        f"{FIRST_FEEDBACK} to "
-        f"{LAST_FEEDBACK}.",
-        f"Cancel in the feedback callback itself, when the count reaches {FIRST_FEEDBACK}: a timer of a "
-        f"fixed length "
-        "does not know how fast the server is.",
-    )
-
-
-def cancel_repeated(evidence: Evidence) -> Advice | None:
-    """More than one cancel request."""
-    total = len(evidence.main.of("cancel"))
-    if total < 2:
-        return None
-    return Advice(
-        f"Your client asked to cancel {total} times. Feedback goes on arriving until the server has ended "
-        f"the goal.",
-        "Remember that you have asked: test `count == 3` rather than `count >= 3`, or keep a flag.",
-    )
-
-
-def status_not_reported(evidence: Evidence) -> Advice | None:
-    """It cancels, and never says how the goal ended."""
-    part = evidence.part(HONOURED)
-    if part.first("cancel") is None or says_canceled(_after_result(part), evidence.part(REFUSED).said()):
-        return None
-    if part.first("result_request") is None:
-        return Advice(
-            "Your client asked to cancel, but it never asked for the result, so it cannot know how the goal "
-            "ended.",
-            "Call goal_handle.get_result_async() once the goal is accepted, and read result.status when it "
-            "is done.",
-        )
-    return Advice(
-        "The goal ended with the status CANCELED (5), but your client did not say so after it got the "
-        "result.",
-        "When the result is there, log its status: future.result().status, by name or by number.",
-    )
-
-
-def status_misreported(evidence: Evidence) -> Advice | None:
-    """It claims a cancel that did not happen."""
-    claim = _false_claim(evidence.part(REFUSED))
-    if claim is None:
-        return None
-    return Advice(
-        f"The judge refused the cancel request and the goal succeeded, but your client said “{claim}”.",
-        "Compare result.status with GoalStatus.STATUS_CANCELED before you say so: a cancel is a request, "
-        "and the "
-        "server may refuse it.",
-    )
 
 
 EXERCISE = Exercise(
