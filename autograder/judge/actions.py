@@ -100,7 +100,7 @@ class ScriptedActionServer:
 
     def await_cancel(self, within: float) -> bool:
         """Wait until somebody asked to cancel; False where nobody did in ``within`` seconds."""
-        return self._await("cancel", within)
+        return self._await("cancel", within, wall=True)
 
     def await_result_request(self, within: float) -> bool:
         """Wait until somebody asked for the result; False where nobody did in ``within`` seconds."""
@@ -134,11 +134,11 @@ class ScriptedActionServer:
         for publisher in (self._feedback, self._statuses):
             self._wire.node.destroy_publisher(publisher)
 
-    def _await(self, kind: str, within: float) -> bool:
+    def _await(self, kind: str, within: float, *, wall: bool = False) -> bool:
         def came() -> bool:
             return self._recorder.part().first(kind, self._name) is not None
 
-        self._recorder.wait(lambda: came() or self._client_is_gone(), within)
+        self._recorder.wait(lambda: came() or self._client_is_gone(), within, wall=wall)
         return came()
 
     def _take_goal(self, request: Any, response: Any) -> Any:

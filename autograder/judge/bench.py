@@ -285,10 +285,7 @@ class TestBench:
             self._clock.run(seconds, lambda: over() or self._subject.ended)
             self.doubtful = self.doubtful or self._clock.doubtful
             return
-        self._recorder.wait(
-            lambda: over() or self._subject.ended or (quiet is not None and self._recorder.idle > quiet),
-            seconds,
-        )
+        self._recorder.wait(lambda: over() or self._subject.ended, seconds, quiet=quiet, wall=True)
 
     def _follow_clock(self) -> bool:
         if self._clock is None and not self._clock_refused and (self._ears or self._mouths):
@@ -364,10 +361,7 @@ class TestBench:
         def holds() -> bool:
             return condition(Evidence([self._recorder.part()], self.reference, self.look is Look.REAL_TIME))
 
-        def over() -> bool:
-            return holds() or self._subject.ended or (quiet is not None and self._recorder.idle > quiet)
-
-        self._recorder.wait(over, within)
+        self._recorder.wait(lambda: holds() or self._subject.ended, within, quiet=quiet)
         return holds()
 
     def compare_type(self, service: str, like: str) -> None:

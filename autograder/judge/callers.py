@@ -58,8 +58,7 @@ class RecordedCaller:
     def await_answers(self, quiet: float) -> bool:
         """Wait until every call is answered, as long as anything happens."""
         self._recorder.wait(
-            lambda: self._all_answered() or self._server_is_gone() or self._recorder.idle > quiet,
-            self._calls * quiet,
+            lambda: self._all_answered() or self._server_is_gone(), self._calls * quiet, quiet=quiet
         )
         if not self._all_answered():
             return False

@@ -7,6 +7,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from autograder.exercises.evidence import REPORTS, Event, Part
+from autograder.judge.patience import Patience
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -101,36 +102,49 @@ class Recorder:
         with self._changed:
             return Part(self._name, self._inputs, tuple(self._events))
 
-    @property
-    def idle(self) -> float:
-        """Seconds of wall time since the last event (or since the part began)."""
-        with self._changed:
-            last = self._events[-1].t if self._events else 0.0
-            return time.monotonic() - self._start - last
-
-    def wait(self, condition: Callable[[], bool], within: float, *, poll: float = 0.5) -> bool:
+    def wait(
+        self,
+        condition: Callable[[], bool],
+        within: float,
+        *,
+        poll: float = 0.5,
+        quiet: float | None = None,
+        wall: bool = False,
+    ) -> bool:
         """Wait until ``condition`` holds; it is asked again at every event.
 
         Args:
             condition: Called in the waiting thread without the recorder's lock.
-            within: Seconds of wall time at most.
+            within: Seconds at most, as :mod:`autograder.judge.patience` counts them.
             poll: Seconds after which it is asked again without an event. Graph queries have no event to wait
                 for, so their callers give a few milliseconds.
+            quiet: Give up earlier when nothing happened for so many seconds, counted likewise.
+            wall: Count wall time instead: what is waited for sets the judge's own pace and is no limit.
 
         Returns:
             Whether the condition held in time.
         """
-        deadline = time.monotonic() + within
+        slowness = _never_slower if wall else None
+        patience = Patience(within, slowness=slowness)
+        silence = None if quiet is None else Patience(quiet, slowness=slowness)
+        heard = self._count
         while True:
             seen = self._count
             if condition():
                 return True
-            remaining = deadline - time.monotonic()
-            if remaining <= 0:
+            if silence is not None and seen != heard:
+                silence.restart()
+                heard = seen
+            left = patience.left if silence is None else min(patience.left, silence.left)
+            if left <= 0:
                 return False
             with self._changed:
                 if self._count == seen:
-                    self._changed.wait(min(remaining, poll))
+                    self._changed.wait(min(left, poll))
+
+
+def _never_slower() -> float:
+    return 1.0
 
 
 def _is_speech(event: Event) -> bool:

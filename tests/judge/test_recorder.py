@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import threading
+from typing import Any
 
-from autograder.judge import recorder
+import pytest
+
+from autograder.judge import patience, recorder
+from autograder.judge.patience import SLOWEST, Patience
 from autograder.judge.recorder import Recorder
 
 
@@ -40,6 +44,37 @@ def test_waiting_gives_up_at_its_limit() -> None:
     book = Recorder()
     book.begin("part", {})
     assert not book.wait(lambda: False, within=0.01)
+
+
+def test_silence_ends_the_wait_and_every_event_puts_it_off() -> None:
+    book = Recorder()
+    book.begin("part", {})
+    asked: list[int] = []
+
+    def speak_at_first() -> bool:
+        asked.append(len(asked))
+        if len(asked) < 20:
+            book.record("log", "x", text="going on")
+        return False
+
+    assert not book.wait(speak_at_first, within=60.0, quiet=0.05)
+    assert len(asked) > 20
+
+
+@pytest.mark.parametrize(("wall", "slowness"), [(False, SLOWEST), (True, 1.0)])
+def test_a_crowded_machine_gives_more_time_and_the_judges_own_pace_stays(
+    monkeypatch: pytest.MonkeyPatch, wall: bool, slowness: float
+) -> None:
+    made: list[Patience] = []
+
+    def noted(seconds: float, **how: Any) -> Patience:
+        made.append(Patience(seconds, **how))
+        return made[-1]
+
+    monkeypatch.setattr(patience, "machine_slowness", lambda: SLOWEST)
+    monkeypatch.setattr(recorder, "Patience", noted)
+    Recorder().wait(lambda: True, within=5.0, quiet=1.0, wall=wall)
+    assert [one.slowness() for one in made] == [slowness, slowness]
 
 
 def test_a_flood_is_cut(monkeypatch: object) -> None:
