@@ -10,26 +10,27 @@ import functools
 import re
 from typing import TYPE_CHECKING, Any
 
-import nbformat
 from bs4 import BeautifulSoup
 from jinja2 import pass_context
 from nbconvert.exporters.templateexporter import TemplateExporter
 from nbconvert.filters.highlight import Highlight2HTML
 from nbconvert.filters.widgetsdatatypefilter import WidgetsDataTypeFilter
 from nbconvert.preprocessors import CSSHTMLHeaderPreprocessor
+from nbformat import NotebookNode
 from nbgrader.utils import is_grade, is_solution, is_task
 
-from autograder.grading import gradebook
+from autograder.grading import gradebook, nodes
 from autograder.grading.class_directory import SUFFIX
 from autograder.grading.harmless import is_the_masters, make_harmless
 from autograder.grading.journal import write_whole
 from autograder.grading.pages import FeedbackExporter, markdown_to_html
+from autograder.grading.rebuild import is_check
+from autograder.grading.remembered import Remembered
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
-    from nbformat import NotebookNode
     from traitlets.config import Config
 
     from autograder.grading.class_directory import ClassDirectory, Submission
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
 
 _REMEMBERED = 1024
 """Pieces of a page of each kind; the given cells of a chapter are a few hundred."""
+_REMEMBERED_CHARACTERS = 8_000_000
+"""Of rendered parts of pages; those that the students of a chapter share have about a million."""
 _PICTURE_WITHOUT_WORDS = re.compile(r"<img\b(?![^>]*\salt=)", re.IGNORECASE)
 
 _USUAL = {"exporter_class": "autograder.grading.pages.FeedbackExporter"}
@@ -89,8 +92,7 @@ class FeedbackPages:
             write_whole(folder / f"{name}.html", page.encode())
 
     def _page(self, path: Path, submission: Submission, state: NotebookState) -> str:
-        read: Any = nbformat.v4.reads  # without nbformat's validation: we have written it ourselves
-        notebook = read(path.read_text(encoding="utf-8"))
+        notebook = nodes.read_own(path.read_bytes())
         for cell in notebook.cells:
             _fill_in(cell, state)
         score = sum(cell.score or 0.0 for cell in state.cells.values())
@@ -102,48 +104,68 @@ class FeedbackPages:
             "max_score": sum(cell.max_score or 0.0 for cell in state.cells.values()),
             "late_penalty": state.late_penalty,
         }
-        resources = {
-            "unique_key": path.stem,
-            "output_files_dir": f"{path.stem}_files",
-            "nbgrader": names,
-            "metadata": {"name": path.stem, "path": str(path.parent)},
-        }
-        page, _ = self._exporter.from_notebook_node(notebook, resources)
-        return page
+        return self._exporter.page(notebook, names)
 
     @functools.cached_property
     def _exporter(self) -> _PageExporter:
         make: Any = _PageExporter
         exporter: _PageExporter = make(config=self._directory.config)
-        exporter._preprocessors = []
-        css: Any = CSSHTMLHeaderPreprocessor(config=self._directory.config)
-        register: Any = exporter.register_preprocessor
-        register(css, enabled=True)
         return exporter
 
 
 class _PageExporter(FeedbackExporter):
-    """Makes the page that :class:`FeedbackExporter` makes, and remembers the pieces that many students share."""
+    """Makes the page that :class:`FeedbackExporter` makes, and remembers the parts that many students share.
 
-    def from_notebook_node(  # type: ignore[override]
-        self, nb: NotebookNode, resources: dict[str, Any], **kw: Any
-    ) -> tuple[str, dict[str, Any]]:
-        """Make the page of one notebook."""
-        language = nb.metadata.get("language_info", {})
+    Nbconvert copies and validates a notebook twice on its way to the template, for preprocessors that may change it.
+    Here there are none, so the template is rendered from the notebook itself.
+    """
+
+    def __init__(self, *args: Any, **kw: Any) -> None:
+        initialise: Any = super().__init__
+        initialise(*args, **kw)
+        self._parts = Remembered(_REMEMBERED_CHARACTERS)
+        self._preprocessors: list[Any] = []
+        css: Any = CSSHTMLHeaderPreprocessor(config=self.config)
+        register: Any = self.register_preprocessor
+        register(css, enabled=True)
+        self._set_filter("markdown2html", _markdown_to_html)
+
+    def page(self, notebook: NotebookNode, names: Mapping[str, Any]) -> str:
+        """Make the page of one notebook.
+
+        Args:
+            notebook: As it lies in ``autograded/``, with points and comments filled in; it is changed.
+            names: What the template asks of the student, the notebook and the points.
+        """
+        language = notebook.metadata.get("language_info", {})
         lexer = language.get("pygments_lexer", language.get("name", None))
-        exporter: Any = self
-        resources = exporter._init_resources(resources)
-        exporter.register_filter("highlight_code", _highlighter(lexer))
-        exporter.register_filter("markdown2html", _markdown_to_html)
-        exporter.register_filter(
-            "filter_data_type",
-            WidgetsDataTypeFilter(
-                notebook_metadata=exporter._nb_metadata, parent=exporter, resources=resources
-            ),
-        )
-        convert: Any = TemplateExporter.from_notebook_node
-        page, resources = convert(self, make_harmless(nb), resources, **kw)
-        return _with_alternative_texts(page), resources
+        self._set_filter("highlight_code", _highlighter(lexer))
+        self._set_filter("part_of_page", functools.partial(self._part, lexer))
+        resources = self._resources.copy()
+        resources["nbgrader"] = names
+        rendered: str = self.template.render(nb=make_harmless(notebook), resources=resources)
+        return _with_alternative_texts(rendered.lstrip("\r\n"))
+
+    @functools.cached_property
+    def _resources(self) -> dict[str, Any]:
+        """What nbconvert hands to a template beside the notebook: the same for all, so made for an empty one."""
+        initialise: Any = self._init_resources
+        names = {"notebook": "", "score": 0.0, "max_score": 0.0, "late_penalty": 0.0}
+        resources: dict[str, Any] = initialise({"nbgrader": names})
+        shown: Any = WidgetsDataTypeFilter(notebook_metadata={}, parent=self, resources=resources)
+        self._set_filter("filter_data_type", shown)
+        convert: Any = TemplateExporter.from_notebook_node  # HTMLExporter's would parse the page anew
+        _, resources = convert(self, nodes.notebook([], {}), resources)
+        return resources
+
+    def _part(self, lexer: str | None, render: Callable[[], str], depends_on: Any) -> str:
+        if isinstance(depends_on, NotebookNode) and is_check(depends_on):
+            return render()  # its card is this student's
+        return self._parts.get((lexer, depends_on), render)
+
+    def _set_filter(self, name: str, function: Callable[..., Any]) -> None:
+        register: Any = self.register_filter
+        register(name, function)
 
 
 @functools.lru_cache(maxsize=8)

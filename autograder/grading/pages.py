@@ -6,6 +6,7 @@ formgrader all come through here.
 
 from __future__ import annotations
 
+import functools
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,7 +20,7 @@ from autograder.grading.harmless import clean, is_the_masters, make_harmless
 from autograder.grading.nbgrader_guard import guard
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from nbformat import NotebookNode
 
@@ -65,6 +66,7 @@ class FeedbackExporter(HTMLExporter):
         yield from filters()
         yield "markdown2html", markdown_to_html
         yield "without_scripts", without_scripts
+        yield "part_of_page", part_of_page
 
     def from_notebook_node(  # type: ignore[override]
         self, nb: NotebookNode, resources: dict[str, Any] | None = None, **kw: Any
@@ -84,6 +86,19 @@ def markdown_to_html(context: Any, source: str) -> str:
     return rendered if is_the_masters(context.get("cell", {})) else clean(rendered)
 
 
+def part_of_page(render: Callable[[], str], depends_on: Any) -> str:
+    """A part of nbgrader's page; stands where an exporter may have another filter that remembers some of them.
+
+    Args:
+        render: Renders the part.
+        depends_on: All that makes this part other than that of another page.
+    """
+    del depends_on
+    return render()
+
+
+# The same for all students of an assignment, and most of a page.
+@functools.lru_cache(maxsize=16)
 def without_scripts(head: str) -> str:
     """The head of a page without its scripts, and with the policy that forbids any other.
 
