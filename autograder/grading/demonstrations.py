@@ -11,6 +11,7 @@ changes a file that is not its own log, such as ``ros2 pkg create`` or ``colcon 
 
 from __future__ import annotations
 
+import functools
 import re
 from typing import TYPE_CHECKING
 
@@ -55,6 +56,7 @@ def are_run(directory: ClassDirectory) -> bool:
     return bool(directory.config.WireExecute.get("demonstrations", False))
 
 
+@functools.lru_cache(maxsize=256)  # a chapter has some forty, the same for every student
 def _only_looks(script: str) -> bool:
     plain = _QUOTED.sub("TEXT", re.sub(r"^\s*#.*$", "", script, flags=re.MULTILINE))
     written = {name for name in _TO_FILE.findall(plain) if name != "/dev/null"}

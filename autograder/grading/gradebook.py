@@ -6,6 +6,8 @@ importing them more than a second.
 
 from __future__ import annotations
 
+import functools
+import re
 import uuid
 from collections.abc import Iterable, Mapping
 from contextlib import contextmanager
@@ -13,20 +15,21 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import sqlalchemy
-from sqlalchemy import text
 from sqlalchemy.pool import NullPool
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from datetime import datetime
 
-    from sqlalchemy import Connection
+    from sqlalchemy import Connection, Engine, TextClause
 
 Scores = Mapping[str, float | None]
 """By grade_id; None where there is no automatic score."""
 
 _GRADED = ("GradeCell", "TaskCell")
 _COMMENTED = ("SolutionCell", "TaskCell")
+
+_PARAMETER = re.compile(r":(\w+)")
 
 _SUBMITTED = """
     submitted_assignment s
@@ -95,7 +98,7 @@ def reset(url: str, submissions: Iterable[tuple[str, str]]) -> None:
     with _open(url) as book:
         if pairs and _has_tables(book):
             book.execute(
-                text(
+                _sql(
                     "UPDATE grade SET auto_score = 0, needs_manual_grade = :yes WHERE notebook_id IN"
                     f" (SELECT sn.id FROM {_SUBMITTED} WHERE a.name = :assignment AND s.student_id = :student)"
                 ),
@@ -122,7 +125,7 @@ def worth(url: str, assignment: str) -> dict[str, dict[str, float]]:
     with _open(url) as book:
         if _has_tables(book):
             rows = book.execute(
-                text(
+                _sql(
                     "SELECT n.name, b.name, g.max_score FROM assignment a"
                     " JOIN notebook n ON n.assignment_id = a.id"
                     " LEFT JOIN base_cell b ON b.notebook_id = n.id AND b.type = 'GradeCell'"
@@ -161,7 +164,7 @@ def enter(
     """
     with _open(url) as book:
         found = book.execute(
-            text("SELECT id, duedate FROM assignment WHERE name = :name"), {"name": assignment}
+            _sql("SELECT id, duedate FROM assignment WHERE name = :name"), {"name": assignment}
         ).first()
         if found is None:
             raise NoSuchAssignment(f"the gradebook has no assignment named {assignment}")
@@ -186,11 +189,11 @@ def states(url: str, assignment: str, student: str) -> dict[str, NotebookState]:
     penalties: dict[str, float] = {}
     with _open(url) as book:
         for notebook, penalty in book.execute(
-            text(f"SELECT n.name, sn.late_submission_penalty FROM {_SUBMITTED} {of_student}"), names
+            _sql(f"SELECT n.name, sn.late_submission_penalty FROM {_SUBMITTED} {of_student}"), names
         ):
             penalties[notebook] = penalty or 0.0
         for notebook, cell, by_hand, automatic in book.execute(
-            text(
+            _sql(
                 f"SELECT n.name, b.name, c.manual_comment, c.auto_comment FROM {_SUBMITTED}"
                 f" JOIN comment c ON c.notebook_id = sn.id JOIN base_cell b ON b.id = c.cell_id {of_student}"
             ),
@@ -199,7 +202,7 @@ def states(url: str, assignment: str, student: str) -> dict[str, NotebookState]:
             comment = by_hand if by_hand is not None else automatic
             cells.setdefault(notebook, {})[cell] = CellState(comment=comment)
         for notebook, cell, by_hand, automatic, extra, of_grade, of_task in book.execute(
-            text(
+            _sql(
                 "SELECT n.name, b.name, g.manual_score, g.auto_score, g.extra_credit, gc.max_score, tc.max_score"
                 f" FROM {_SUBMITTED} JOIN grade g ON g.notebook_id = sn.id JOIN base_cell b ON b.id = g.cell_id"
                 f" LEFT JOIN grade_cells gc ON gc.id = b.id LEFT JOIN task_cells tc ON tc.id = b.id {of_student}"
@@ -227,7 +230,7 @@ class _Cells:
 
 def _cells(book: Connection, assignment: str) -> dict[str, _Cells]:
     rows = book.execute(
-        text(
+        _sql(
             "SELECT n.id, n.name, b.id, b.name, b.type FROM notebook n"
             " LEFT JOIN base_cell b ON b.notebook_id = n.id WHERE n.assignment_id = :id"
         ),
@@ -245,21 +248,21 @@ def _cells(book: Connection, assignment: str) -> dict[str, _Cells]:
 
 def _submission(book: Connection, assignment: str, student: str, timestamp: datetime | None) -> str:
     """The id of a submission, made where there is none, with its timestamp as nbgrader keeps it."""
-    if not book.execute(text("SELECT 1 FROM student WHERE id = :id"), {"id": student}).first():
-        book.execute(text("INSERT INTO student (id) VALUES (:id)"), {"id": student})
+    if not book.execute(_sql("SELECT 1 FROM student WHERE id = :id"), {"id": student}).first():
+        book.execute(_sql("INSERT INTO student (id) VALUES (:id)"), {"id": student})
     found = book.execute(
-        text("SELECT id FROM submitted_assignment WHERE assignment_id = :a AND student_id = :s"),
+        _sql("SELECT id FROM submitted_assignment WHERE assignment_id = :a AND student_id = :s"),
         {"a": assignment, "s": student},
     ).scalar()
     made = found or uuid.uuid4().hex
     if found is None:
         book.execute(
-            text("INSERT INTO submitted_assignment (id, assignment_id, student_id) VALUES (:id, :a, :s)"),
+            _sql("INSERT INTO submitted_assignment (id, assignment_id, student_id) VALUES (:id, :a, :s)"),
             {"id": made, "a": assignment, "s": student},
         )
     if timestamp is not None:
         book.execute(
-            text("UPDATE submitted_assignment SET timestamp = :at WHERE id = :id").bindparams(
+            _sql("UPDATE submitted_assignment SET timestamp = :at WHERE id = :id").bindparams(
                 sqlalchemy.bindparam("at", type_=sqlalchemy.DateTime())
             ),
             {"at": timestamp, "id": made},
@@ -269,20 +272,20 @@ def _submission(book: Connection, assignment: str, student: str, timestamp: date
 
 def _enter_notebook(book: Connection, submission: str, cells: _Cells, entry: NotebookEntry) -> None:
     notebook = book.execute(
-        text("SELECT id FROM submitted_notebook WHERE assignment_id = :s AND notebook_id = :n"),
+        _sql("SELECT id FROM submitted_notebook WHERE assignment_id = :s AND notebook_id = :n"),
         {"s": submission, "n": cells.notebook},
     ).scalar()
     if notebook is None:
         notebook = uuid.uuid4().hex
         book.execute(
-            text(
+            _sql(
                 "INSERT INTO submitted_notebook (id, assignment_id, notebook_id, flagged)"
                 " VALUES (:id, :s, :n, :no)"
             ),
             {"id": notebook, "s": submission, "n": cells.notebook, "no": False},
         )
     book.execute(
-        text("UPDATE submitted_notebook SET late_submission_penalty = NULL WHERE id = :id"), {"id": notebook}
+        _sql("UPDATE submitted_notebook SET late_submission_penalty = NULL WHERE id = :id"), {"id": notebook}
     )
     _enter_scores(book, notebook, cells, entry.scores)
     _enter_comments(book, notebook, cells, entry.comments)
@@ -290,7 +293,7 @@ def _enter_notebook(book: Connection, submission: str, cells: _Cells, entry: Not
 
 def _enter_scores(book: Connection, notebook: str, cells: _Cells, scores: Scores) -> None:
     rows = book.execute(
-        text("SELECT cell_id, manual_score FROM grade WHERE notebook_id = :n"), {"n": notebook}
+        _sql("SELECT cell_id, manual_score FROM grade WHERE notebook_id = :n"), {"n": notebook}
     ).all()
     by_hand: dict[str, float | None] = {row.cell_id: row.manual_score for row in rows}
     wanted: list[dict[str, object]] = [
@@ -322,7 +325,7 @@ def _enter_comments(
     book: Connection, notebook: str, cells: _Cells, comments: Mapping[str, str | None]
 ) -> None:
     known = set(
-        book.execute(text("SELECT cell_id FROM comment WHERE notebook_id = :n"), {"n": notebook}).scalars()
+        book.execute(_sql("SELECT cell_id FROM comment WHERE notebook_id = :n"), {"n": notebook}).scalars()
     )
     wanted: list[dict[str, object]] = [
         {"id": uuid.uuid4().hex, "n": notebook, "cell": cell, "comment": comments.get(name)}
@@ -343,9 +346,8 @@ def _enter_comments(
 def _put(book: Connection, rows: list[dict[str, object]], statement: str) -> None:
     """Execute a statement for each of the rows; it may name fewer fields than they have."""
     if rows:
-        clause = text(statement)
-        names = set(clause.compile().params)
-        book.execute(clause, [{name: row[name] for name in names} for row in rows])
+        names = _PARAMETER.findall(statement)
+        book.execute(_sql(statement), [{name: row[name] for name in names} for row in rows])
 
 
 def _scores(url: str, where: str, **names: str) -> dict[str, dict[str, Scores]]:
@@ -354,7 +356,7 @@ def _scores(url: str, where: str, **names: str) -> dict[str, dict[str, Scores]]:
         if not _has_tables(book):
             return {}
         rows = book.execute(
-            text(
+            _sql(
                 f"SELECT s.student_id, n.name, b.name, g.auto_score FROM {_SUBMITTED}"
                 f" JOIN grade g ON g.notebook_id = sn.id JOIN base_cell b ON b.id = g.cell_id WHERE {where}"
             ),
@@ -367,13 +369,21 @@ def _scores(url: str, where: str, **names: str) -> dict[str, dict[str, Scores]]:
 
 @contextmanager
 def _open(url: str) -> Iterator[Connection]:
-    """A connection whose block is one transaction."""
-    engine = sqlalchemy.create_engine(url, poolclass=NullPool)
-    try:
-        with engine.begin() as connection:
-            yield connection
-    finally:
-        engine.dispose()
+    """A connection whose block is one transaction, and that is closed behind it."""
+    with _engine(url).begin() as connection:
+        yield connection
+
+
+@functools.lru_cache(maxsize=8)
+def _engine(url: str) -> Engine:
+    """Holds no connection, only what SQLAlchemy knows of the database and of our statements."""
+    return sqlalchemy.create_engine(url, poolclass=NullPool)
+
+
+@functools.lru_cache(maxsize=64)
+def _sql(statement: str) -> TextClause:
+    """A statement, parsed once."""
+    return sqlalchemy.text(statement)
 
 
 def _has_tables(book: Connection) -> bool:

@@ -148,7 +148,7 @@ class _Sorting:
     def _filled(self, name: str, cell: NotebookNode) -> NotebookNode:
         filled = nodes.copied(cell)
         if is_answer(cell) and name in self._chosen:
-            filled.source = self._submitted[self._chosen[name]].source
+            filled["source"] = self._submitted[self._chosen[name]].source
         return filled
 
 
@@ -172,11 +172,12 @@ def _finished(cells: list[NotebookNode], remarks: list[str]) -> Rebuilt:
     if remarks:
         cells = [_remarks_cell(remarks), *cells]
     for index, cell in enumerate(cells):
-        cell.id = _cell_id(cell, index)
+        # As items: to set an attribute, nbformat's nodes look for it in their class first.
+        cell["id"] = _cell_id(cell, index)
         cell.pop("attachments", None)
-        if cell.cell_type == Kind.CODE:
-            cell.outputs = []
-            cell.execution_count = None
+        if cell["cell_type"] == Kind.CODE:
+            cell["outputs"] = []
+            cell["execution_count"] = None
     notebook = nodes.notebook(
         cells,
         {
@@ -189,7 +190,7 @@ def _finished(cells: list[NotebookNode], remarks: list[str]) -> Rebuilt:
 
 
 def _extra(cell: SubmittedCell) -> NotebookNode:
-    return nodes.cell(cell.kind, cell.source)
+    return nodes.cell(cell.kind, cell.source, "own")
 
 
 def _remarks_cell(remarks: list[str]) -> NotebookNode:

@@ -24,6 +24,7 @@ MAX_CELL_CHARACTERS = 100_000
 MAX_CHARACTERS = 1_000_000
 """Of all cells together."""
 _LONGEST_SHOWN = 80
+_CELL_TYPES = tuple(Kind)
 _KINDS = {
     stat.S_ISLNK: "a link",
     stat.S_ISDIR: "a folder",
@@ -225,7 +226,7 @@ def _from_version_3(cell: Any) -> Any:
 
 
 def _cell(cell: Any) -> SubmittedCell | None:
-    if not isinstance(cell, Mapping) or cell.get("cell_type") not in tuple(Kind):
+    if not isinstance(cell, Mapping) or cell.get("cell_type") not in _CELL_TYPES:
         return None
     source = cell.get("source")
     if isinstance(source, list) and all(isinstance(line, str) for line in source):
