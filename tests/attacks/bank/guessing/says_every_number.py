@@ -3,6 +3,7 @@
 # tries = "The client calls as it should, never looks at the answer, and then says every number that the answer can be."
 # could_earn = "The four points for reporting the answer."
 # earned = { "lab_1_3.client" = 6 }
+# at_most = true
 # undefended = "Half the points or all: the hidden bias was one of 900,000, which takes six megabytes to say."
 
 # %% solution add_two_ints
