@@ -143,6 +143,20 @@ def test_what_is_entered_for_a_submission_is_one_transaction(
     assert everything(tiny.path)["grade g"] == everything(tiny.path)["student"] == []
 
 
+def test_a_gradebook_that_was_put_back_is_read_anew(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    """What SQLAlchemy knows of a gradebook is kept between transactions, but nothing of what is in it."""
+    book = tiny.path / "gradebook.db"
+    url = ClassDirectory(tiny.path).gradebook_url
+    tiny.submit("ada", 4)
+    tiny.grade()
+    shutil.copy(book, book.with_suffix(".copy"))
+    tiny.submit("ada", 9)
+    tiny.grade()
+    assert gradebook.scores_of_student(url, "lab_1_2", "ada")["lab_1_2"][TALKER] == 9
+    book.with_suffix(".copy").replace(book)
+    assert gradebook.scores_of_student(url, "lab_1_2", "ada")["lab_1_2"][TALKER] == 4
+
+
 def test_a_notebook_that_was_replaced_while_it_ran_is_not_given_the_old_ones_points(
     tiny: TinyClass, fake_engine: FakeEngine
 ) -> None:
