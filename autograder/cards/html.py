@@ -182,6 +182,8 @@ def templates() -> tuple[Any, Template]:
     shapes: Any = environment.get_template("shapes.html.j2").module
     environment.globals["shape"] = shapes.shape
     for name in environment.list_templates(extensions=["j2"]):
-        environment.get_template(name)  # also those that the card includes: it would compile them when it is shown
+        environment.get_template(
+            name
+        )  # also those that the card includes: it would compile them when it is shown
     css = (files("autograder.cards") / "card.css").read_text(encoding="utf-8")
     return Markup(css), environment.get_template("card.html.j2")
