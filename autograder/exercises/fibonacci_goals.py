@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import statistics
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -17,6 +18,9 @@ ORDERS = (5, 4, 3)
 """Orders of the goal alone and of the two at once; the seed decides which is which."""
 LAST_ORDER = 2
 """The order of the goal after the bad ones."""
+NO_TIME = 0.0005
+"""Seconds between two feedback messages that no pause can make: without one they take a tenth of it, and the shortest
+that a person would write, a hundredth of a second of which a notebook sleeps a tenth, takes twice as long."""
 FIRST_TOO_LARGE = 47
 """The first order whose last number does not fit into an int32."""
 ERROR_GOAL_TERMINATED = 3
@@ -50,6 +54,7 @@ class Goal:
         before_cancel: How many numbers the last feedback before the cancel request had.
         unread: How many feedback messages came between the cancel request and its answer.
         seconds: Wall time from the acceptance to the result; None where one of them is missing.
+        pauses: Seconds between one feedback message and the next, by their publisher's clock.
         status: The status that came with the result; None where none came.
         sequence: The result.
     """
@@ -62,6 +67,7 @@ class Goal:
     before_cancel: int
     unread: int
     seconds: float | None
+    pauses: tuple[float, ...]
     status: int | None
     sequence: list[int]
 
@@ -82,6 +88,7 @@ def goal(part: Part, number: int) -> Goal:
     split = events.index(cancel) if cancel else len(events)
     answered = events.index(by_kind["cancel_answer"]) if "cancel_answer" in by_kind else len(events)
     before = [event for event in heard if events.index(event) < split]
+    sent = [float(event.data["sent"]) for event in heard if "sent" in event.data]
     return Goal(
         order=data.get("goal_sent", {}).get("fields", {}).get("order"),
         accepted=data.get("goal_answer", {}).get("accepted"),
@@ -91,9 +98,22 @@ def goal(part: Part, number: int) -> Goal:
         before_cancel=len(before[-1].data["fields"]["partial_sequence"]) if before else 0,
         unread=sum(split < events.index(event) < answered for event in heard),
         seconds=by_kind["result_heard"].t - by_kind["goal_answer"].t if "result_heard" in by_kind else None,
+        pauses=tuple(after - before for before, after in pairwise(sent)),
         status=result.get("status"),
         sequence=list(result.get("fields", {}).get("sequence", [])),
     )
+
+
+def takes_no_time(part: Part) -> bool:
+    """Whether the server counts without any pause between two numbers.
+
+    Such a goal is over before anybody can cancel it, except where the machine happens to be so busy that the request
+    gets in between. The median is that of a server that is not held up.
+    """
+    pauses = [
+        pause for number in (ALONE, FIRST_OF_TWO, SECOND_OF_TWO, LONG) for pause in goal(part, number).pauses
+    ]
+    return bool(pauses) and statistics.median(pauses) < NO_TIME
 
 
 def good_goals(evidence: Evidence) -> list[Goal]:

@@ -25,6 +25,7 @@ from autograder.exercises.fibonacci_goals import (
     is_beginning,
     objection,
     status_text,
+    takes_no_time,
 )
 from autograder.exercises.model import Finding
 
@@ -100,7 +101,13 @@ def _cancel_objection(evidence: Evidence, long: Goal) -> str:
         return f"the cancel request was not accepted; status {status_text(long.status)}"
     if long.status != CANCELED:
         return f"the cancel was accepted, then: status {status_text(long.status)}"
-    return "" if is_the_part(evidence, long) else f"CANCELED with {long.sequence}"
+    if not is_the_part(evidence, long):
+        return f"CANCELED with {long.sequence}"
+    return (
+        "only as the machine is busy: it counts without a pause"
+        if takes_no_time(evidence.part(GOALS))
+        else ""
+    )
 
 
 def is_the_part(evidence: Evidence, long: Goal) -> bool:

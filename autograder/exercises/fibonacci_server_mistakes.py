@@ -27,6 +27,7 @@ from autograder.exercises.fibonacci_goals import (
     good_goals,
     objection,
     status_text,
+    takes_no_time,
 )
 from autograder.exercises.fibonacci_server_criteria import (
     counts,
@@ -239,7 +240,8 @@ def _quick(long: Goal) -> bool:
 def done_at_once(evidence: Evidence) -> Advice | None:
     """The long goal was over before anybody could cancel it."""
     long = goal(evidence.part(GOALS), LONG)
-    if long.status != SUCCEEDED or long.cancel_accepted or not _quick(long):
+    quick = long.status == SUCCEEDED and not long.cancel_accepted and _quick(long)
+    if not quick and not (long.status == CANCELED and takes_no_time(evidence.part(GOALS))):
         return None
     return Advice(
         f"A goal of order {long.order} was done at once: there was no time to cancel it.",

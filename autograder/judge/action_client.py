@@ -50,7 +50,10 @@ class RecordedActionClient:
         # one, too,
         # and no first feedback is lost.
         self._feedback = node.create_subscription(
-            self._parts.FeedbackMessage, f"{action}/_action/feedback", self._hear, QoSProfile(depth=100)
+            self._parts.FeedbackMessage,
+            f"{action}/_action/feedback",
+            self._hear,  # type: ignore[arg-type]  # rclpy gives the message info to whoever takes two arguments
+            QoSProfile(depth=100),
         )
         self._send = node.create_client(self._parts.SendGoalService, f"{action}/_action/send_goal")
         self._cancel = node.create_client(CancelGoal, f"{action}/_action/cancel_goal")
@@ -115,9 +118,12 @@ class RecordedActionClient:
         code = int(response.return_code)
         self._recorder.record("cancel_answer", self._name, goal=number, accepted=accepted, return_code=code)
 
-    def _hear(self, message: Any) -> None:
+    def _hear(self, message: Any, info: Any) -> None:
         known = [goal_text(goal) for goal in self._goals]
         heard = goal_text(message.goal_id)
         number = known.index(heard) if heard in known else -1
-        fields = to_data(message.feedback)
-        self._recorder.record("feedback_heard", self._name, goal=number, fields=fields)
+        # When it was sent is not blurred by how busy this process is (rmw_message_info_t).
+        sent = info["source_timestamp"] / 1e9
+        self._recorder.record(
+            "feedback_heard", self._name, goal=number, fields=to_data(message.feedback), sent=sent
+        )

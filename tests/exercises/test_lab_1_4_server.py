@@ -28,7 +28,10 @@ def goal(number: int, order: int, **changed: Any) -> list[Event]:
     events = [event("goal_sent", fields={"order": order}), event("goal_answer", accepted=accepted)]
     if not accepted:
         return events
-    events += [event("feedback_heard", fields={"partial_sequence": partial}) for partial in feedback]
+    events += [
+        event("feedback_heard", fields={"partial_sequence": partial}, sent=changed.get("pause", 0.5) * turn)
+        for turn, partial in enumerate(feedback)
+    ]
     if "cancel" in changed:
         events += [event("cancel_sent"), event("cancel_answer", accepted=changed["cancel"])]
     events.append(event("result_heard", status=changed.get("status", 4), fields={"sequence": numbers}))
@@ -62,6 +65,18 @@ def failed(seen: Evidence) -> set[str]:
 
 def test_a_right_server_passes_everything() -> None:
     assert failed(evidence(RIGHT)) == set()
+
+
+def test_a_server_without_a_pause_is_not_canceled_by_the_machine_s_being_busy() -> None:
+    hurried = [
+        *goal(0, 5, pause=0.00015),
+        *goal(1, 4, pause=0.00015),
+        *goal(2, 3, pause=0.00015),
+        *canceled([0, 1, 1, 2, 3]),
+    ]
+    assert failed(evidence(hurried)) == {"cancel"}
+    advice = [m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(evidence(hurried))]
+    assert advice[0] == "done_at_once"
 
 
 def test_a_server_that_was_never_there_passes_nothing() -> None:
