@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from environment.ros2_command.discovery import participants_here, ports_in_use
+from autograder.ros_domain import claim_free_domain
 from environment.ros2_command.install import LAUNCH_FRONT
 
 if TYPE_CHECKING:
@@ -105,10 +105,19 @@ def prefix(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def domain() -> str:
-    """A DDS domain that nobody on this machine uses."""
-    ports = ports_in_use()
-    return str(next(number for number in range(40, 60) if not participants_here(number, ports)))
+def domain() -> Iterator[str]:
+    """A DDS domain that nobody else on this machine uses."""
+    claim = claim_free_domain()
+    yield str(claim.domain)
+    claim.release()
+
+
+@pytest.fixture
+def other_domain() -> Iterator[str]:
+    """Another one, on which there is nobody at all."""
+    claim = claim_free_domain()
+    yield str(claim.domain)
+    claim.release()
 
 
 @pytest.fixture

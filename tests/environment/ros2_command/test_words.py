@@ -51,7 +51,7 @@ def test_help_needs_no_ros() -> None:
 
 @pytest.mark.parametrize(
     "words",
-    [*[(name,) for name in ELSEWHERE], *[(c, v) for c in COMMANDS for v in COMMANDS[c].elsewhere]],
+    [*[(name,) for name in ELSEWHERE], *[(c, v) for c in COMMANDS for v in sorted(COMMANDS[c].elsewhere)]],
     ids=" ".join,
 )
 def test_the_rest_of_ros2cli_is_named_as_such(
