@@ -18,7 +18,7 @@ from server_of_a_test import jupyter_server
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from playwright.sync_api import Page
+    from playwright.sync_api import Browser, Page
 
 ROOT = Path(__file__).resolve().parents[2]
 LIMIT = 60.0
@@ -60,21 +60,25 @@ def lab(chapters: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[st
         yield address + "{}?token=student"
 
 
-@pytest.fixture
-def page(chromium: str, tmp_path: Path) -> Iterator[Page]:
-    """An empty page of a browser that starts as on its first day."""
+@pytest.fixture(scope="module")
+def browser(chromium: str) -> Iterator[Browser]:
+    """A Chromium. No longer than for a module: in its thread nobody else can run an event loop."""
     from playwright.sync_api import expect, sync_playwright
 
     expect.set_options(timeout=LIMIT * 1000)
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch_persistent_context(
-            tmp_path / "profile",
-            executable_path=chromium,
-            args=list(CHROMIUM_OPTIONS),
-            viewport={"width": 1300, "height": 1000},
-        )
-        browser.set_default_timeout(LIMIT * 1000)
-        yield browser.pages[0]
-        if folder := os.environ.get("SCREENSHOTS"):
-            browser.pages[0].screenshot(path=Path(folder) / "end.png")
-        browser.close()
+        started = playwright.chromium.launch(executable_path=chromium, args=list(CHROMIUM_OPTIONS))
+        yield started
+        started.close()
+
+
+@pytest.fixture
+def page(browser: Browser) -> Iterator[Page]:
+    """An empty page of a browser that knows nothing of any page before."""
+    context = browser.new_context(viewport={"width": 1300, "height": 1000})
+    context.set_default_timeout(LIMIT * 1000)
+    page = context.new_page()
+    yield page
+    if folder := os.environ.get("SCREENSHOTS"):
+        page.screenshot(path=Path(folder) / "end.png")
+    context.close()
