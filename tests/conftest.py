@@ -1,10 +1,74 @@
-"""What holds for every test."""
+"""What holds for every test, and how ``./course test`` shares the tests out among processes."""
 
 from __future__ import annotations
 
+import functools
+import os
 import signal
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+from xdist.scheduler import LoadScopeScheduling
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 # Started in the background of a shell without job control, a process ignores Ctrl-C, and so does all that it starts
 # (POSIX, "Asynchronous Lists"). Tests send SIGINT to what they start.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# As in autograder/grading/__init__.py: not every test imports that before it imports nbformat.
+sys.modules.setdefault("rfc3987_syntax", None)  # type: ignore[arg-type]
+
+TOGETHER = ("tests/attacks", "tests/boxes", "tests/environment/ros2_command")
+"""Folders whose tests share what takes long to make, so that one process runs them all."""
+LONGEST = (
+    "tests/judge/test_bank.py",
+    "tests/attacks",
+)
+"""Begun first, so that nobody waits for one of them at the end."""
+
+
+class ByFile(LoadScopeScheduling):
+    """A process takes a file of tests at a time, the longest first."""
+
+    def _split_scope(self, nodeid: str) -> str:
+        file = nodeid.split("::")[0]
+        return next((folder for folder in TOGETHER if file.startswith(f"{folder}/")), file)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> ByFile:
+    """Called by pytest-xdist (its documentation, "Identifying workers" and hooks)."""
+    config.option.loadscopereorder = False
+    return ByFile(config, log)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    """One process for each core, and one that mostly waits for the bank, which is judged beside all other tests."""
+    return len(os.sched_getaffinity(0)) + 1 if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1) + 1
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The longest first."""
+    items.sort(key=_rank)
+
+
+def _rank(item: pytest.Item) -> int:
+    return next((rank for rank, name in enumerate(LONGEST) if item.nodeid.startswith(name)), len(LONGEST))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _gradebook_version() -> Iterator[None]:
+    """For each new gradebook nbgrader starts a program that says the same as the last time, in two or three seconds."""
+    # Where no test has imported nbgrader, none makes a gradebook in this process.
+    api = sys.modules.get("nbgrader.api")
+    if api is None:
+        yield
+        return
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(api, "get_alembic_version", functools.cache(api.get_alembic_version))
+        yield

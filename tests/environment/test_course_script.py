@@ -203,7 +203,7 @@ def test_test_runs_every_check_and_the_tests_last(course: Course, tmp_path: Path
         "mypy",
         "autograder [build] [--check]",
         "autograder [execute]",
-        "pytest [-x]",
+        "pytest [--numprocesses] [auto] [-x]",
     ]
     assert done.stdout.splitlines()[-1].startswith(f"{course.root}|")
 
