@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,8 +31,13 @@ MAY_IMPORT = {
 }
 
 
-def imports(folder: Path) -> Iterator[tuple[Path, int, str]]:
+@functools.cache
+def imports(folder: Path) -> list[tuple[Path, int, str]]:
     """Each import below a folder: file, line and full name, whether at the top or inside a function."""
+    return list(_imports(folder))
+
+
+def _imports(folder: Path) -> Iterator[tuple[Path, int, str]]:
     for path in sorted(folder.rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Import):

@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -127,6 +128,7 @@ def test_a_killed_batch_leaves_no_wrong_grade_and_no_process_and_the_next_one_go
     else:
         while not leftovers(tiny):  # the workers have started, so the old grades are taken back
             assert batch.poll() is None
+            time.sleep(0.05)
     orphans = psutil.Process(batch.pid).children(recursive=True)
     batch.send_signal(signal.SIGKILL)
     batch.wait()
@@ -152,6 +154,7 @@ def test_a_killed_batch_does_not_wait_for_the_notebook_that_is_running(
     batch = subprocess.Popen([sys.executable, "-W", "ignore", "-c", GRADE, str(tiny.path), with_fake_judge])
     while len(leftovers(tiny)) < 2:  # the worker and the keeper of its boxes
         assert batch.poll() is None
+        time.sleep(0.05)  # to look at every process of the machine keeps a core busy
     orphans = psutil.Process(batch.pid).children(recursive=True)
     batch.kill()
     batch.wait()
@@ -198,6 +201,7 @@ def test_warm_processes_that_die_are_started_anew(tiny: TinyClass, with_fake_jud
     )
     while len(leftovers(tiny)) < 2:
         assert batch.poll() is None
+        time.sleep(0.05)  # to look at every process of the machine keeps a core busy
     for process in psutil.Process(batch.pid).children():
         if "autograder.boxes.warm" in process.cmdline():
             process.kill()
