@@ -61,6 +61,8 @@ class Watched:
     def __init__(self, page: Page) -> None:
         self.page = page
         self.happened: list[str] = []
+        # A piece of HTML that has done nothing leaves the page as good as new.
+        self._used = False
         page.expose_function("fired", lambda: self.happened.append("runs"))
         page.on("dialog", self._dialog)
         page.context.route(ELSEWHERE, self._elsewhere)
@@ -79,24 +81,30 @@ class Watched:
         route.fulfill(status=204)  # nothing there: the page stays where it is
 
     def settle(self) -> None:
-        """Let the page come to what it does by itself: after two frames all has been asked for and shown."""
-        self.page.evaluate("() => new Promise(r => requestAnimationFrame(() => requestAnimationFrame(r)))")
-        self.page.evaluate("() => new Promise(resolve => setTimeout(resolve, 0))")
+        """Let the page come to what it does by itself."""
+        self.page.evaluate(SETTLE)
 
     def show(self, html: str) -> list[str]:
         """What happens when a page has this piece of HTML in its body."""
+        if self._used:
+            self.page.goto("about:blank")
         self.happened.clear()
-        self.page.goto("about:blank")
         try:
             self.page.set_content(f"<!DOCTYPE html><html><body>{html}</body></html>")
-            self.settle()
-            looked = self.page.evaluate(LOOK, "body")
+            looked = self.page.evaluate(f"async () => {{ await ({SETTLE})(); return ({LOOK})('body'); }}")
         except Error as error:
             if "navigation" not in str(error):
                 raise
             looked = ["leaves"]
+        self._used = bool(self.happened or looked)
         return [*self.happened, *looked]
 
+
+# After two frames all has been asked for and shown.
+SETTLE = """async () => {
+  await new Promise(r => requestAnimationFrame(() => requestAnimationFrame(r)));
+  await new Promise(resolve => setTimeout(resolve, 0));
+}"""
 
 # What waits for a click, and what lies over the rest of the page, below an element.
 LOOK = """root => {
