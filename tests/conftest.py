@@ -22,11 +22,25 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 # As in autograder/grading/__init__.py: not every test imports that before it imports nbformat.
 sys.modules.setdefault("rfc3987_syntax", None)  # type: ignore[arg-type]
 
-TOGETHER = ("tests/attacks", "tests/boxes", "tests/environment/ros2_command")
+TOGETHER = ("tests/attacks", "tests/boxes")
 """Folders whose tests share what takes long to make, so that one process runs them all."""
 LONGEST = (
     "tests/judge/test_bank.py",
     "tests/attacks",
+    "tests/grading/test_cluster.py",
+    "tests/grading/test_sample_class.py",
+    "tests/grading/test_killed.py",
+    "tests/benchmarks/test_short_run.py",
+    "tests/grading/test_workers.py",
+    "tests/browser",
+    "tests/boxes",
+    "tests/workspaces/test_graded_notebooks.py",
+    "tests/environment/ros2_command/test_graph.py",
+    "tests/grading/test_class_lock.py",
+    "tests/workspaces",
+    "tests/test_adding_an_exercise.py",
+    "tests/test_recording.py",
+    "tests/grading",
 )
 """Begun first, so that nobody waits for one of them at the end."""
 
