@@ -9,7 +9,6 @@ import sys
 from typing import TYPE_CHECKING
 
 import pytest
-from xdist.scheduler import LoadScopeScheduling
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -45,17 +44,18 @@ LONGEST = (
 """Begun first, so that nobody waits for one of them at the end."""
 
 
-class ByFile(LoadScopeScheduling):
-    """A process takes a file of tests at a time, the longest first."""
-
-    def _split_scope(self, nodeid: str) -> str:
-        file = nodeid.split("::")[0]
-        return next((folder for folder in TOGETHER if file.startswith(f"{folder}/")), file)
-
-
 @pytest.hookimpl(optionalhook=True)
-def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> ByFile:
+def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
     """Called by pytest-xdist (its documentation, "Identifying workers" and hooks)."""
+    from xdist.scheduler import LoadScopeScheduling
+
+    class ByFile(LoadScopeScheduling):
+        """A process takes a file of tests at a time, the longest first."""
+
+        def _split_scope(self, nodeid: str) -> str:
+            file = nodeid.split("::")[0]
+            return next((folder for folder in TOGETHER if file.startswith(f"{folder}/")), file)
+
     config.option.loadscopereorder = False
     return ByFile(config, log)
 
