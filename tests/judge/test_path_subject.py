@@ -100,6 +100,7 @@ def test_a_grader_s_side_that_is_gone_is_no_verdict(judge: JudgeProcess) -> None
     door, judge.workspaces = judge.workspaces, f"{judge.workspaces}-gone"
     try:
         kernel = kernel_of(judge)
+        assert kernel.hear() == {"say": "collect"}
         kernel.say("sources", path="ros2_ws", trouble="")
         report = judge.close_report()
         assert report.verdict is None
