@@ -148,7 +148,10 @@ def use_of(first: int, memory_of: Callable[[str], int] | None) -> Use:
     threads = memory = 0
     seconds = 0.0
     try:
-        processes = [entry for entry in os.scandir(f"/proc/{first}/root/proc") if entry.name.isdecimal()]
+        own = f"/proc/{first}/root/proc"
+        if Path(own).stat().st_dev == Path("/proc").stat().st_dev:
+            return Use(0, 0, 0.0)  # it is on its way into the box and still sees the processes of the host
+        processes = [entry for entry in os.scandir(own) if entry.name.isdecimal()]
     except OSError:
         return Use(0, 0, 0.0)
     for process in processes:

@@ -185,3 +185,7 @@ def test_many_small_processes_cannot_take_the_watcher_with_them(run: Run) -> Non
     execution = run(many, memory_bytes=400_000_000)
     # Whoever is ended, it is one of the box, and the submission's own doing.
     assert execution.trouble == ""
+
+
+def test_what_is_not_in_its_box_yet_is_not_taken_for_all_that_the_host_does() -> None:
+    assert guards.use_of(os.getpid(), None) == guards.Use(0, 0, 0.0)
