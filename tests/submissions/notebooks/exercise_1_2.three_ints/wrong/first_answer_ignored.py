@@ -4,6 +4,8 @@
 def ask(node, client, a, b, patience_sec):
     future = client.call_async(AddTwoInts.Request(a=a, b=b))
     rclpy.spin_until_future_complete(node, future, timeout_sec=patience_sec)
+    if not future.done():
+        raise TimeoutError("no answer")
     return future.result().sum
 
 # %% solution add_three_ints
