@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import course
+from autograder.grading.pacing import cores
 from benchmarks import figures, results
 from benchmarks.box_start import measure_box_start
 from benchmarks.classes import BenchmarkClass, make_class
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
 RESULTS = Path(__file__).with_name("results.json")
 PROFILE = Path(__file__).with_name("profile.txt")
 PAGE = course.root() / "docs" / "performance.md"
+MOST_AT_ONCE = 12
+"""Notebooks of the floor for each core, which wait most of the time: about as many as a grading run lets in."""
 
 
 @dataclass(frozen=True)
@@ -120,23 +123,25 @@ class _Run:
         self.figures += [
             figures.throughput(stock, ours, form.students),
             figures.points(wrong, honest),
-            self.cpu_against(floor, made, ours, load),
+            self.cpu_against(floor, made, ours),
             figures.busy(ours),
             *figures.memory(ours),
             *figures.checks(floor, load),
         ]
 
-    def cpu_against(
-        self, floor: list[Floor], made: BenchmarkClass, ours: OurRun, load: str
-    ) -> results.Figure:
+    def cpu_against(self, floor: list[Floor], made: BenchmarkClass, ours: OurRun) -> results.Figure:
         """CPU against the floor: of the notebooks that build nothing, graded by themselves where there are others."""
         building = {one.notebook for one in floor if any(built for _, built in one.checks)}
         others = tuple(name for name in made.assignments if name not in building)
         if building and others:
             with _told(f"autograder grade, {len(others)} assignments without builds"):
-                plain = make_class(self.folder / "plain", self.form.students, others)
-                ours = run_ours(plain, self.folder / "plain.log")
-        return figures.cpu(floor, ours, f"{figures.load_of(ours.usage)}; floor: {load}")
+                made = make_class(self.folder / "plain", self.form.students, others)
+                ours = run_ours(made, self.folder / "plain.log")
+        some = made.students[: max(1, len(made.students) // 2)]
+        at_once = min(MOST_AT_ONCE * cores(), len(some) * len(others))
+        with _told(f"the floor, {at_once} notebooks at once"), Watch() as watch:
+            crowded = measure_floor(made, some, at_once=at_once, building=False)
+        return figures.cpu(floor, crowded, ours, f"{figures.load_of(ours.usage)}; floor: {_load(watch)}")
 
     def small_costs(self) -> None:
         """What a box adds."""
@@ -264,7 +269,8 @@ NOTES = (
     "of them out alone.",
     "The floor runs the very cells that a grading run executes, and the judge's work, in processes that are warm "
     "already: no kernel, no box, no gradebook, no page. Notebooks that build a workspace are left out of the "
-    "comparison: the floor would build each of them, and a grading run builds each content once.",
+    "comparison: the floor would build each of them, and a grading run builds each content once. It is measured with many "
+    "notebooks at once, as they are graded: a CPU second of a busy core does less than one of an idle core.",
     "`autograder grade` takes a workspace that this machine has built before from its cache; stock nbgrader runs the "
     "check as a student does, which builds. The students of this class hand in few different workspaces: in a class "
     "where each one differs, a grading run builds each of them once.",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,7 @@ from autograder.grading.task import encode
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from autograder.grading.task import Task
     from benchmarks.classes import BenchmarkClass
 
 Cell = tuple[str, float, float, str]
@@ -51,12 +53,17 @@ def builds(exercise: str) -> bool:
     return bool(exercises.get(exercise).runner)
 
 
-def measure_floor(made: BenchmarkClass, students: Sequence[str]) -> list[Floor]:
-    """Run the notebooks of some students, one after the other, exactly as they are graded.
+def measure_floor(
+    made: BenchmarkClass, students: Sequence[str], *, at_once: int = 1, building: bool = True
+) -> list[Floor]:
+    """Run the notebooks of some students exactly as they are graded.
 
     Args:
         made: The class; nothing is written into it.
         students: Whose notebooks.
+        at_once: How many run beside each other. A CPU second of a busy core does less than one of an idle core, so a
+            grader that keeps its cores busy is compared with a floor that does, too.
+        building: Also those that build a workspace.
     """
     directory = ClassDirectory(made.path)
     tasks = [
@@ -64,7 +71,14 @@ def measure_floor(made: BenchmarkClass, students: Sequence[str]) -> list[Floor]:
         for submission in directory.submissions()[0]
         if submission.student in students
         for task in tasks_of(directory, submission)
+        if building or not any(cell.check and builds(cell.check.exercise) for cell in task.cells)
     ]
+    with ThreadPoolExecutor(at_once) as pool:
+        return [one for part in pool.map(_run, (tasks[i::at_once] for i in range(at_once))) for one in part]
+
+
+def _run(tasks: Sequence[Task]) -> list[Floor]:
+    """In one warm process, one after the other."""
     done = subprocess.run(
         [sys.executable, "-m", "benchmarks.warm_notebook"],
         input=b"".join(encode(task) + b"\n" for task in tasks),
