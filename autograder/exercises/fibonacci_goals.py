@@ -108,12 +108,12 @@ def takes_no_time(part: Part) -> bool:
     """Whether the server counts without any pause between two numbers.
 
     Such a goal is over before anybody can cancel it, except where the machine happens to be so busy that the request
-    gets in between. The median is that of a server that is not held up.
+    gets in between. Threads that are in each other's way can hold up a goal or most messages, so it is enough that one
+    goal was counted without a pause: a server that pauses does so in every goal.
     """
-    pauses = [
-        pause for number in (ALONE, FIRST_OF_TWO, SECOND_OF_TWO, LONG) for pause in goal(part, number).pauses
-    ]
-    return bool(pauses) and statistics.median(pauses) < NO_TIME
+    pauses = [goal(part, number).pauses for number in (ALONE, FIRST_OF_TWO, SECOND_OF_TWO, LONG)]
+    at_once = any(len(one) > 1 and max(one) < NO_TIME for one in pauses)
+    return at_once or statistics.median([pause for one in pauses for pause in one] or [NO_TIME]) < NO_TIME
 
 
 def good_goals(evidence: Evidence) -> list[Goal]:
