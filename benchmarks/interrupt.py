@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 STOPPED = 130
 """The exit code of a command that Ctrl-C has ended (128 + SIGINT, as shells have it)."""
-_GRADED = re.compile(r"^graded \d+ of \d+", re.MULTILINE)
+_GRADED = re.compile(r"graded \d+ of \d+")
 
 
 def measure_interrupts(made: BenchmarkClass, after: Sequence[int]) -> list[float]:

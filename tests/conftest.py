@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import functools
-import os
 import signal
 import sys
 from typing import TYPE_CHECKING
 
 import pytest
+
+# First of all: it keeps nbformat from loading what takes a second, and not every test imports it before that.
+import autograder.grading  # noqa: F401
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -17,9 +19,6 @@ if TYPE_CHECKING:
 # (POSIX, "Asynchronous Lists"). Tests send SIGINT to what they start.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
-
-# As in autograder/grading/__init__.py: not every test imports that before it imports nbformat.
-sys.modules.setdefault("rfc3987_syntax", None)  # type: ignore[arg-type]
 
 TOGETHER = ("tests/attacks", "tests/boxes")
 """Folders whose tests share what takes long to make, so that one process runs them all."""
@@ -63,7 +62,9 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
     """One process for each core, and one that mostly waits for the bank, which is judged beside all other tests."""
-    return len(os.sched_getaffinity(0)) + 1 if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1) + 1
+    from autograder.grading.pacing import cores
+
+    return cores() + 1
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.ros_domain import claim_free_domain
+from autograder.judge.domain import lease
 from environment.ros2_command.install import LAUNCH_FRONT
 
 if TYPE_CHECKING:
@@ -107,17 +107,15 @@ def prefix(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def domain() -> Iterator[str]:
     """A DDS domain that nobody else on this machine uses."""
-    claim = claim_free_domain()
-    yield str(claim.domain)
-    claim.release()
+    with lease() as number:
+        yield str(number)
 
 
 @pytest.fixture
 def other_domain() -> Iterator[str]:
     """Another one, on which there is nobody at all."""
-    claim = claim_free_domain()
-    yield str(claim.domain)
-    claim.release()
+    with lease() as number:
+        yield str(number)
 
 
 @pytest.fixture
