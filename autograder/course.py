@@ -1,13 +1,71 @@
-"""Where the course's own files are."""
+"""Where the course's own files are: its chapters, and the labs of a chapter in their order."""
 
 from __future__ import annotations
 
 import os
+import tomllib
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+VARIABLE = "AUTOGRADER_COURSE"
+"""Names the top folder of a course that lies elsewhere than the package."""
+SOLUTIONS = "solutions"
+"""The folder of the chapters as their authors write them."""
+HANDED_OUT = "exercises"
+"""What is in its place in what students are handed: the judge's part of the chapters, and no master."""
+CHAPTERS = "chapters"
+"""The folder of the notebooks that students open, one folder a chapter."""
+CHAPTER = "chapter.toml"
+"""What says of a chapter what cannot be seen in the folders of its labs."""
+INTERFACES = "interfaces"
+"""The folder of a chapter with its own packages of interfaces, which the set-up of the course builds."""
+COPY = "(your copy,"
+"""In the name of each notebook that `./course reset` has kept."""
+LAB = "lab.md"
+"""The master in a lab's folder, from which its notebook is derived."""
 
 
 class NoCourse(LookupError):
     """The folder with ``solutions/`` and ``chapters/`` was not found."""
+
+
+class BrokenChapter(Exception):
+    """A chapter's description cannot be used. The message names the file and what is wrong."""
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """A chapter of the course.
+
+    Attributes:
+        folder: With its description, and a folder for each lab.
+        title: Of the chapter.
+        labs: The folders of its labs, in the order in which they are read. Those that the description does not name
+            come last.
+        exercises: For a lab, the names of its exercises in the order in which they are done, where that is not the
+            order of the alphabet.
+        interfaces: The packages with interfaces that come with the chapter, for its nodes to import. The set-up builds
+            each, from the chapter's folder ``interfaces`` or from the course's environment.
+    """
+
+    folder: Path
+    title: str
+    labs: tuple[Path, ...]
+    exercises: dict[str, tuple[str, ...]]
+    interfaces: tuple[str, ...]
+
+    def in_order(self, lab: Path, files: Sequence[Path]) -> list[Path]:
+        """The files of a lab's exercises in the order in which they are done."""
+        wanted = self.exercises.get(lab.name, ())
+        return sorted(files, key=lambda file: wanted.index(file.stem) if file.stem in wanted else len(wanted))
+
+    def exercises_of(self, lab: Path) -> dict[str, Path]:
+        """The files of a lab's exercises by their ids, in the order in which they are done."""
+        return {f"{lab.name}.{file.stem}": file for file in self.in_order(lab, sorted(lab.glob("[!_]*.py")))}
 
 
 def root() -> Path:
@@ -18,9 +76,79 @@ def root() -> Path:
     Raises:
         NoCourse: There is no course there.
     """
-    folder = Path(os.environ.get("AUTOGRADER_COURSE") or Path(__file__).resolve().parents[1])
-    if not (folder / "solutions").is_dir():
+    folder = Path(os.environ.get(VARIABLE) or Path(__file__).resolve().parents[1])
+    if not _written(folder).is_dir():
         raise NoCourse(
-            f"{folder} holds no course: set AUTOGRADER_COURSE to the folder with solutions/ and chapters/"
+            f"{folder} holds no course: set {VARIABLE} to the folder with solutions/ and chapters/"
         )
     return folder
+
+
+def variables() -> dict[str, str]:
+    """What a process with an environment of its own needs to find the same course. No box of a student's gets it."""
+    return {VARIABLE: str(root())}
+
+
+def chapters(folder: Path) -> tuple[Chapter, ...]:
+    """The chapters of a course, in the order of their folders' names.
+
+    Args:
+        folder: The top folder of the course.
+
+    Raises:
+        BrokenChapter: A description cannot be used.
+    """
+    written = _written(folder)
+    found = {file.parent for file in written.glob(f"*/{CHAPTER}")}
+    found |= {file.parents[1] for file in written.glob(f"*/*/{LAB}")}
+    return tuple(_chapter(chapter) for chapter in sorted(found))
+
+
+def _written(folder: Path) -> Path:
+    """Where the chapters are written: by their authors, or in what students are handed."""
+    solutions, handed_out = folder / SOLUTIONS, folder / HANDED_OUT
+    return handed_out if handed_out.is_dir() and not solutions.is_dir() else solutions
+
+
+def released(lab: Path) -> Path:
+    """Where a lab's notebook is kept as it was released, in what students are handed."""
+    return lab / f"{lab.name}.ipynb"
+
+
+def interfaces() -> tuple[str, ...]:
+    """The packages with interfaces that come with the course."""
+    return tuple(name for chapter in chapters(root()) for name in chapter.interfaces)
+
+
+def interface_modules() -> tuple[str, ...]:
+    """The modules in which their classes may be; a package need not have all three kinds."""
+    return tuple(f"{package}.{kind}" for package in interfaces() for kind in ("msg", "srv", "action"))
+
+
+def _chapter(folder: Path) -> Chapter:
+    said = _description(folder / CHAPTER)
+    present = {lab.name: lab for lab in sorted(folder.iterdir()) if _is_lab(lab)}
+    order = [name for name in said.get("labs", ()) if name in present]
+    return Chapter(
+        folder,
+        said.get("title", folder.name),
+        tuple(present[name] for name in dict.fromkeys((*order, *present))),
+        {lab: tuple(names) for lab, names in said.get("exercises", {}).items()},
+        tuple(said.get("interfaces", ())),
+    )
+
+
+def _description(file: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return {}
+    except (OSError, ValueError) as error:
+        raise BrokenChapter(f"{file} cannot be read: {error}") from error
+
+
+def _is_lab(folder: Path) -> bool:
+    # What students are handed has exercises and the notebook as it was released, and no master.
+    return folder.is_dir() and (
+        (folder / LAB).is_file() or released(folder).is_file() or any(folder.glob("*.py"))
+    )

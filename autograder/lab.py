@@ -10,6 +10,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from autograder import journal
 from autograder.ros_domain import DOMAIN_VARIABLE, DomainClaim, claim_free_domain, domain_from_environment
 
 if TYPE_CHECKING:
@@ -17,6 +18,12 @@ if TYPE_CHECKING:
 
 SETTINGS = Path(__file__).with_name("lab_config")
 """No *Create Assignment*, formgrader and lists of courses: those are for whoever grades."""
+PANEL = Path(__file__).parent / "progress" / "labextensions"
+"""The side panel with the course page: an extension of JupyterLab's, ready to be loaded."""
+COURSE_PAGE = "course"
+"""Where the server has the course page, below its base address."""
+NOTEBOOKS_VARIABLE = "AUTOGRADER_NOTEBOOKS"
+"""Names the folder of the session's notebooks to its terminals."""
 _CONFIG_PATH = "JUPYTER_CONFIG_PATH"
 _DISCOVERY = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
 
@@ -44,11 +51,13 @@ def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
     claim = join_domain()
     os.environ[_CONFIG_PATH] = os.pathsep.join(filter(None, (str(SETTINGS), os.environ.get(_CONFIG_PATH))))
     os.chdir(folder)
+    os.environ[NOTEBOOKS_VARIABLE] = str(Path.cwd())
+    os.environ[journal.VARIABLE] = str(journal.place(Path.cwd()))
     from jupyterlab.labapp import LabApp
 
     try:
         # In this process, because the domain is held for as long as it lives.
-        LabApp.launch_instance([*_start_folder(Path.cwd()), *arguments])
+        LabApp.launch_instance([*_start_page(), *_start_folder(Path.cwd()), *arguments])
     finally:
         if claim:
             claim.release()
@@ -74,6 +83,11 @@ def join_domain() -> DomainClaim | None:
     claim = claim_free_domain()
     os.environ[DOMAIN_VARIABLE] = str(claim.domain)
     return claim
+
+
+def _start_page() -> list[str]:
+    """Begin with the course page, and have it in the side panel."""
+    return [f"--LabApp.default_url=/{COURSE_PAGE}", f"--LabApp.extra_labextensions_path={PANEL}"]
 
 
 def _start_folder(root: Path) -> list[str]:

@@ -16,8 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import course, exercises, masters
-from autograder.judge import reference
-from autograder.judge.process import JudgeDied, JudgeProcess
+from autograder.judge.serving.process import JudgeDied, JudgeProcess
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -54,7 +53,7 @@ def record(wanted: Sequence[str], *, only_check: bool, tell: Callable[[str], obj
     changed = []
     for exercise_id in wanted or exercises.all_ids():
         text = recording(exercise_id)
-        file = reference.path(exercise_id)
+        file = exercises.reference_path(exercise_id)
         if file.exists() and file.read_text(encoding="utf-8") == text:
             tell(f"{exercise_id}: unchanged")
             continue
@@ -76,12 +75,12 @@ def recording(exercise_id: str) -> str:
     """
     try:
         exercise = exercises.get(exercise_id)
-    except exercises.UnknownExercise as error:
+    except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
         raise CannotRecord(str(error)) from error
-    program = _program(exercise.id)
+    text = program(exercise.id)
     with tempfile.TemporaryDirectory(prefix="record-") as folder:
         file = Path(folder) / "reference_solution.py"
-        file.write_text(program, encoding="utf-8")
+        file.write_text(text, encoding="utf-8")
         try:
             with JudgeProcess(Path(folder) / "judge", seed=secrets.token_hex(8)) as judge:
                 judge.open(exercise.id, record=True)
@@ -94,17 +93,22 @@ def recording(exercise_id: str) -> str:
             f"{exercise.id}: {report.trouble or 'the solution never asked to be checked'}\n{output}".strip()
         )
     if not report.verdict.passed:
-        missed = ", ".join(c.title for c in report.verdict.criteria if not c.passed)
+        missed = "; ".join(f"{c.title} ({c.seen})" for c in report.verdict.criteria if not c.passed)
         raise CannotRecord(f"{exercise.id}: the reference solution is not right by its own measure: {missed}")
     return report.reference
 
 
-def _program(exercise_id: str) -> str:
-    for master in masters.masters(course.root()):
-        if exercise_id in master.read_text(encoding="utf-8"):
-            solution = masters.reference_source(master, exercise_id)
-            return solution.source + _CALL.format(exercise=exercise_id, subject=solution.subject)
-    raise CannotRecord(f"no master in solutions/ checks {exercise_id}")
+def program(exercise_id: str) -> str:
+    """The program that is recorded: the solution of the master, and its check.
+
+    Raises:
+        CannotRecord: No master checks the exercise.
+    """
+    master = exercises.path(exercise_id).with_name(course.LAB)
+    if not master.is_file() or exercise_id not in master.read_text(encoding="utf-8"):
+        raise CannotRecord(f"{master} does not check {exercise_id}")
+    solution = masters.reference_source(master, exercise_id)
+    return solution.source + _CALL.format(exercise=exercise_id, subject=solution.subject)
 
 
 def _run(file: Path, socket: Path) -> str:

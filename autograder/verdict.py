@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
 
 import msgspec
 
@@ -71,6 +70,8 @@ class Moment:
         label: A few words: the text, the numbers, the status.
         part: Which part of the check, where it has several (``"the service is late"``), else empty.
         simulated: Whether ``t`` is simulated time.
+        key: Whether the story hangs on it, such as a goal, a cancel request, a result: a picture always names it.
+        stray: Whether it was beside the point, such as on a topic that nobody asked for.
     """
 
     t: float
@@ -79,6 +80,8 @@ class Moment:
     label: str
     part: str = ""
     simulated: bool = False
+    key: bool = False
+    stray: bool = False
 
 
 @dataclass(frozen=True)
@@ -132,15 +135,6 @@ def from_json(data: bytes | str) -> Verdict:
         msgspec.DecodeError: ``data`` is not JSON.
     """
     return msgspec.json.decode(data, type=Verdict)
-
-
-def from_builtins(data: Any) -> Verdict:
-    """Read a verdict from what a JSON decoder made of it.
-
-    Raises:
-        msgspec.ValidationError: ``data`` is not a verdict.
-    """
-    return msgspec.convert(data, type=Verdict)
 
 
 def not_checked(exercise: str, title: str, max_score: float, reason: str, next_step: str = "") -> Verdict:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from autograder.boxes.execution import Cell
-from autograder.grading import engine
+from autograder.grading.running.worker_process import WorkerProcess
 from autograder.grading.task import Task
 
 
@@ -41,14 +41,14 @@ def measure_box_start(turns: int) -> BoxStart:
     """
     spent: dict[bool, list[float]] = {True: [], False: []}
     with contextlib.ExitStack() as stack:
-        lanes = {}
+        workers = {}
         for boxed in spent:
             scratch = stack.enter_context(tempfile.TemporaryDirectory(prefix="bench-"))
-            lanes[boxed] = engine.KeptLane(Path(scratch) / "0", boxed=boxed)
-            stack.callback(lanes[boxed].end)
+            workers[boxed] = WorkerProcess(Path(scratch) / "0", boxed=boxed)
+            stack.callback(workers[boxed].end)
         for turn in range(turns + 1):
-            for boxed, lane in lanes.items():
-                execution = lane.execute(_empty(boxed))
+            for boxed, worker in workers.items():
+                execution = worker.execute(_empty(boxed))
                 if execution.trouble:
                     raise RuntimeError(f"an empty notebook could not be run: {execution.trouble}")
                 if turn:  # the first one starts the warm processes

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from autograder import course
-from autograder.grading import nodes
-from autograder.grading.class_directory import SUFFIX, ClassDirectory
-from autograder.grading.new_class import new_class
-from autograder.grading.sample_class import BANK, SampleNotebook, made_notebook
+from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory
+from autograder.grading.classes.new_class import new_class
+from autograder.grading.classes.sample_class import BANK, SampleNotebook, made_notebook
+from autograder.grading.rebuilding import nodes
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -84,7 +84,7 @@ def bank_variants() -> dict[str, Variants]:
     data = tomllib.loads((course.root() / BANK / "notebooks.toml").read_text(encoding="utf-8"))
     return {
         exercise: Variants(
-            right=tuple(f"{exercise}/correct/{name}" for name in sorted(kinds.get("correct", {}))),
+            right=tuple(f"{exercise}/right/{name}" for name in sorted(kinds.get("right", {}))),
             wrong=tuple(
                 f"{exercise}/wrong/{name}"
                 for name, entry in sorted(kinds.get("wrong", {}).items())

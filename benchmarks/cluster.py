@@ -22,8 +22,8 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder import course
-from autograder.grading.class_directory import ClassDirectory
-from autograder.grading.preparing import tasks_of
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.rebuilding.task_making import tasks_of
 from autograder.grading.task import encode
 from benchmarks.classes import make_class
 from benchmarks.machine import Machine, Watch, machine

@@ -15,8 +15,9 @@ from unittest import mock
 from rich.console import Console
 
 from autograder.boxes.execution import CellRun, Ended, Execution
-from autograder.grading import batch, places
-from autograder.grading.engine import Done
+from autograder.grading import batch
+from autograder.grading.running import places
+from autograder.grading.running.engine import Done
 from autograder.verdict import State, Verdict
 from benchmarks.ours import GRADE
 

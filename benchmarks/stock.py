@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING
 from nbgrader.api import Gradebook
 
 from autograder.boxes.limits import Limits
-from autograder.grading.class_directory import CONFIG_NAME
-from autograder.judge.domain import lease
+from autograder.grading.classes.class_directory import CONFIG_NAME
+from autograder.judge.serving.domain import lease
 from benchmarks.machine import Usage, Watch
 
 if TYPE_CHECKING:

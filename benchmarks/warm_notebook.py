@@ -47,9 +47,9 @@ def main() -> None:
     from autograder.cards import bundle
 
     bundle.prepare()
-    from autograder.judge import warm
+    from autograder.judge.serving import preimport
 
-    warm.imports()
+    preimport.imports()
     for line in sys.stdin.buffer:
         answers.write(msgspec.json.encode(_floor(decode_task(line))) + b"\n")
         answers.flush()
@@ -57,8 +57,8 @@ def main() -> None:
 
 def _floor(task: Task) -> dict[str, Any]:
     """CPU seconds of a task's cells and of the judge's children; and by cell."""
-    from autograder.judge.domain import lease
-    from autograder.judge.process import JudgeProcess
+    from autograder.judge.serving.domain import lease
+    from autograder.judge.serving.process import JudgeProcess
 
     group = CpuGroup.make()
     with tempfile.TemporaryDirectory(prefix="floor-") as name, lease() as domain:

@@ -17,7 +17,7 @@ from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from environment import jupyter_files, loopback, ros_flavour, system_packages
+from environment import jupyter_files, loopback, ownership, ros_flavour, system_packages
 from environment.findings import Finding, as_text, exit_code
 from environment.place import Place
 from environment.ros_report import INTERFACE_FIELDS
@@ -211,12 +211,13 @@ def kernel(spec: Path) -> Finding:
 
 def space() -> list[Finding]:
     """Look at the disk and at the shared memory."""
-    found = [folder_space("Disk", ROOT, _DISK_NEEDED, "Make room on the disk.")]
+    whose = f"Have {ownership.owner(ROOT)}, whose folder it is, type what changes it, such as: ./course setup"
+    found = [folder_space("Disk", ROOT, _DISK_NEEDED, "Make room on the disk.", whose)]
     remedy = "In a container: docker run --shm-size=512m …; or set FASTDDS_BUILTIN_TRANSPORTS=UDPv4"
     return [*found, folder_space("Shared memory", Path("/dev/shm"), _SHM_NEEDED, remedy)]
 
 
-def folder_space(name: str, folder: Path, needed: int, remedy: str) -> Finding:
+def folder_space(name: str, folder: Path, needed: int, remedy: str, not_yours: str = "") -> Finding:
     """Look at a folder that must be writable and have room.
 
     Args:
@@ -224,9 +225,12 @@ def folder_space(name: str, folder: Path, needed: int, remedy: str) -> Finding:
         folder: the folder.
         needed: the free space that it must have, in bytes.
         remedy: how to get it.
+        not_yours: what to do where the folder is somebody else's; the same where empty.
     """
-    if not os.access(folder, os.W_OK):
-        return Finding(name, "missing", f"{folder} cannot be written to", remedy)
+    if not folder.is_dir():
+        return Finding(name, "missing", f"there is no folder {folder}", remedy)
+    if not ownership.may_write(folder):
+        return Finding(name, "missing", f"{folder} is not yours to write to", not_yours or remedy)
     free = shutil.disk_usage(folder).free
     detail = f"{free / 1e9:.1f} GB free in {folder}"
     if free < needed:

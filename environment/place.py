@@ -6,6 +6,7 @@ import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from environment.interface_packages import interface_packages
 from environment.ros_flavour import DISTRO
 
 if TYPE_CHECKING:
@@ -55,9 +56,9 @@ class Place:
         return self.root / "environment"
 
     @property
-    def interfaces(self) -> Path:
-        """The source of the interface package."""
-        return self.environment / "ros2_ws" / "src" / INTERFACES
+    def interfaces(self) -> tuple[Path, ...]:
+        """The sources of the packages with interfaces: the course's own, and those of its chapters."""
+        return interface_packages(self.root)
 
     @property
     def warning(self) -> str:

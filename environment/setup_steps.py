@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from typing import IO, TYPE_CHECKING
 
 from environment import course_process, ros_flavour
+from environment.interface_packages import build_command
 from environment.jupyter_files import kernel_install_options, write_jupyter_files
 from environment.lock import EXTRAS, split_blocks
 from environment.place import INTERFACES, Place, environment_paths, environment_values
@@ -56,7 +57,10 @@ class Setup:
         # The notice is for the user: it does not make another environment.
         ros = repr(replace(self.ros, notice=""))
         kind = (str(place.root), str(place.base_python), sys.version, ros)
-        interfaces = (place.environment / "repair_wheels.py", *files_below(place.interfaces))
+        interfaces = (
+            place.environment / "repair_wheels.py",
+            *(file for package in place.interfaces for file in files_below(package)),
+        )
         start = (place.environment / "course_process.py", place.environment / "place.py")
         ros2 = (place.environment / "ros2_command" / "install.py",)
         jupyter = (place.environment / "jupyter_files.py",)
@@ -65,7 +69,9 @@ class Setup:
         steps = [
             Step("environment", f"making .venv with {python}", kind, self._make_environment),
             Step("packages", self._what_is_installed(), tuple(locks), lambda: self._install(locks)),
-            Step("interfaces", f"building {INTERFACES} with colcon", interfaces, self._build_interfaces),
+            Step(
+                "interfaces", f"building {self._interfaces()} with colcon", interfaces, self._build_interfaces
+            ),
             Step("start", "teaching its Python to find ROS", start, self._install_start),
             Step("ros2", "adding the ros2 command", ros2, lambda: install_ros2_command(place.prefix)),
             Step("jupyter", "configuring JupyterLab", jupyter, self._configure_jupyter),
@@ -152,17 +158,16 @@ class Setup:
         place = self.place
         if not self.ros.is_sourced:
             self._run("repairing the wheels", [place.python, "-m", "environment.repair_wheels"])
-        build, log = place.notes / "build", place.notes / "colcon-log"
         # The cache of an interrupted build can name compilers that are gone.
-        shutil.rmtree(build, ignore_errors=True)
-        command: list[str | Path] = [place.prefix / "bin/colcon", "--log-base", log, "build"]
-        command += ["--base-paths", place.interfaces, "--build-base", build]
+        shutil.rmtree(place.notes / "build", ignore_errors=True)
         # Merged into the environment itself: its lib folder and its site-packages are searched already.
-        command += ["--merge-install", "--install-base", place.prefix, "--event-handlers", "console_direct+"]
-        command += ["--cmake-args", "-G", "Ninja", f"-DPython3_EXECUTABLE={place.python}"]
-        # Release defines NDEBUG. With asserts, a field of a wrong type would end a student's process.
-        command += ["-DCMAKE_BUILD_TYPE=Release", "-DBUILD_TESTING=OFF", "--no-warn-unused-cli"]
-        self._run(f"building {INTERFACES}", command)
+        command = build_command(
+            place.prefix / "bin/colcon", place.python, place.interfaces, place.prefix, place.notes
+        )
+        self._run(f"building {self._interfaces()}", command)
+
+    def _interfaces(self) -> str:
+        return ", ".join(package.name for package in self.place.interfaces)
 
     def _install_start(self) -> None:
         """Give every Python of the environment its start, see course_process.py."""
@@ -181,7 +186,7 @@ class Setup:
         names = [name for name in course_process.READ_AT_START if name in wanted]
         exports = "".join(f"export {name}={shlex.quote(wanted[name])}\n" for name in names)
         (self.place.notes / "libraries.sh").write_text(exports, encoding="utf-8")
-        check = f"import rclpy, {INTERFACES}.action, {INTERFACES}.srv"
+        check = f"import rclpy, {INTERFACES}.action, {INTERFACES}.srv, {self._interfaces()}"
         self._run("importing rclpy and the interfaces", [self.place.python, "-c", check])
 
     def _configure_jupyter(self) -> None:

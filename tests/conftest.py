@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+# Has Python find the labs, whose modules tests import.
+import autograder.exercises
+
 # First of all: it keeps nbformat from loading what takes a second, and not every test imports it before that.
 import autograder.grading  # noqa: F401
 
@@ -25,17 +28,18 @@ TOGETHER = ("tests/attacks", "tests/boxes")
 LONGEST = (
     "tests/judge/test_bank.py",
     "tests/attacks",
-    "tests/grading/test_cluster.py",
-    "tests/grading/test_sample_class.py",
+    "tests/grading/cluster/test_cluster.py",
+    "tests/grading/classes/test_sample_class.py",
     "tests/grading/test_killed.py",
     "tests/benchmarks/test_short_run.py",
-    "tests/grading/test_workers.py",
+    "tests/grading/running/test_workers.py",
     "tests/browser",
     "tests/boxes",
-    "tests/workspaces/test_graded_notebooks.py",
+    "tests/workspaces/grading/test_graded_notebooks.py",
     "tests/environment/ros2_command/test_graph.py",
-    "tests/grading/test_class_lock.py",
+    "tests/grading/classes/test_class_lock.py",
     "tests/workspaces",
+    "tests/authoring",
     "tests/test_adding_an_exercise.py",
     "tests/test_recording.py",
     "tests/grading",
@@ -62,7 +66,7 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
     """One process for each core, and one that mostly waits for the bank, which is judged beside all other tests."""
-    from autograder.grading.pacing import cores
+    from autograder.grading.running.pacing import cores
 
     return cores() + 1
 
@@ -74,6 +78,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 def _rank(item: pytest.Item) -> int:
     return next((rank for rank, name in enumerate(LONGEST) if item.nodeid.startswith(name)), len(LONGEST))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _no_journal() -> Iterator[None]:
+    """Checks that tests make are nobody's progress."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("AUTOGRADER_JOURNAL", "")
+        yield
 
 
 @pytest.fixture(scope="session", autouse=True)

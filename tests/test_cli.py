@@ -3,14 +3,25 @@
 from __future__ import annotations
 
 import json
+import os
+import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
 
-BANK = Path(__file__).parent / "submissions"
-TALKER = BANK / "lab_1_2.talker"
+from autograder.authoring.answers import folder_of, named
+from autograder.boxes.sandbox import why_impossible
+
+TALKER = folder_of("lab_1_2.talker")
+LISTENER = folder_of("lab_1_2.listener")
+
+
+def wrong_talker(name: str, folder: Path) -> str:
+    """A wrong answer of the bank as a file."""
+    return named(f"lab_1_2.talker/wrong/{name}").unpack(folder)[-1]
 
 
 def _run(*words: str) -> subprocess.CompletedProcess[str]:
@@ -46,20 +57,74 @@ def test_bad_input_is_named_and_ends_with_2(words: tuple[str, ...], hint: str) -
     assert "Traceback" not in done.stderr
 
 
+NO_BOX = pytest.mark.skipif(bool(why_impossible()), reason=f"no boxes here: {why_impossible()}")
+
+
+def _boxed(folder: Path, *command: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "autograder", "check", "lab_1_2.talker", "--box", "--json", "--", *command],
+        capture_output=True, text=True, check=False, timeout=120, cwd=folder, env={**os.environ, **variables},
+    )  # fmt: skip
+
+
+@NO_BOX
 @pytest.mark.ros
-def test_a_right_answer_ends_with_0_and_a_wrong_one_with_1() -> None:
+def test_in_a_box_a_program_has_the_same_verdict_and_sees_its_folder_only(tmp_path: Path) -> None:
+    shutil.copy(TALKER / "right" / "text_as_it_stands.py", tmp_path / "talker.py")
+    assert json.loads(_boxed(tmp_path, "python3", "talker.py").stdout)["state"] == "passed"
+    secret = tmp_path.parent / "secret_of_somebody_else"
+    secret.touch()
+    (tmp_path / "talker.py").write_text(f"""
+import os, socket
+found = [
+    os.path.exists({str(secret)!r}), os.path.exists({str(TALKER)!r}), os.environ.get("SECRET"),
+    [name for _, name in socket.if_nameindex()], os.access(".", os.W_OK), os.listdir(),
+]
+raise RuntimeError(f"it sees {{found}}")
+""")
+    done = _boxed(tmp_path, "python3", "talker.py", SECRET="1")
+    assert done.returncode == 1
+    assert "it sees [False, False, None, ['lo'], False, ['talker.py']]" in done.stdout
+    assert not list(Path(tempfile.gettempdir()).glob("box-*/scratch"))
+
+
+@NO_BOX
+@pytest.mark.parametrize(
+    ("folder", "command", "hint"),
+    [
+        (Path.home(), ["true"], "holds too much"),
+        (TALKER, ["python3", "../listener.answers/right/text_as_it_stands.py"], "is not in"),
+    ],
+)
+def test_what_a_box_cannot_show_is_said(folder: Path, command: list[str], hint: str) -> None:
+    done = _boxed(folder, *command)
+    assert done.returncode == 2
+    assert hint in done.stderr
+
+
+def test_where_no_box_is_possible_nothing_is_run(tmp_path: Path) -> None:
+    nothing = tmp_path / "bin"
+    nothing.mkdir()
+    done = _boxed(tmp_path, "/bin/sh", "-c", "touch it_ran", PATH=str(nothing))
+    assert done.returncode == 2
+    assert "no box is possible here: bubblewrap is not installed" in done.stderr
+    assert not (tmp_path / "it_ran").exists()
+
+
+@pytest.mark.ros
+def test_a_right_answer_ends_with_0_and_a_wrong_one_with_1(tmp_path: Path) -> None:
     right = _run(
-        "check", "lab_1_2.talker", "--", sys.executable, str(TALKER / "correct" / "text_as_it_stands.py")
+        "check", "lab_1_2.talker", "--", sys.executable, str(TALKER / "right" / "text_as_it_stands.py")
     )
-    wrong = _run("check", "lab_1_2.talker", "--", sys.executable, str(TALKER / "wrong" / "topic_name.py"))
+    wrong = _run("check", "lab_1_2.talker", "--", sys.executable, wrong_talker("topic_name.py", tmp_path))
     assert (right.returncode, wrong.returncode) == (0, 1)
     assert "/chater" in wrong.stdout
 
 
 @pytest.mark.ros
-def test_json_is_one_object_with_the_promised_names() -> None:
+def test_json_is_one_object_with_the_promised_names(tmp_path: Path) -> None:
     done = _run(
-        "check", "lab_1_2.talker", "--json", "--", sys.executable, str(TALKER / "wrong" / "wrong_text.py")
+        "check", "lab_1_2.talker", "--json", "--", sys.executable, wrong_talker("wrong_text.py", tmp_path)
     )
     verdict = json.loads(done.stdout)
     assert verdict["exercise"] == "lab_1_2.talker"
@@ -72,7 +137,7 @@ def test_json_is_one_object_with_the_promised_names() -> None:
 
 @pytest.mark.ros
 def test_the_same_seed_gives_the_same_inputs() -> None:
-    program = str(BANK / "lab_1_2.listener" / "correct" / "text_as_it_stands.py")
+    program = str(LISTENER / "right" / "text_as_it_stands.py")
     words = ("check", "lab_1_2.listener", "--json", "--seed", "s", "--", sys.executable, program)
     sent = [
         [m["label"] for m in json.loads(_run(*words).stdout)["timeline"] if m["direction"] == "to_subject"]
@@ -86,10 +151,14 @@ def test_the_same_seed_gives_the_same_inputs() -> None:
 def test_a_judge_that_cannot_judge_ends_with_2_and_accuses_nobody(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "solutions").mkdir()
+    # Its reference output is missing.
+    lab = tmp_path / "solutions" / "chapter" / "lab_1_2"
+    lab.mkdir(parents=True)
+    for file in TALKER.parent.glob("*.[pm][yd]"):
+        shutil.copy(file, lab)
     monkeypatch.setenv("AUTOGRADER_COURSE", str(tmp_path))
     done = _run(
-        "check", "lab_1_2.talker", "--", sys.executable, str(TALKER / "correct" / "text_as_it_stands.py")
+        "check", "lab_1_2.talker", "--", sys.executable, str(TALKER / "right" / "text_as_it_stands.py")
     )
     assert done.returncode == 2
     assert "COULD NOT BE CHECKED" in done.stdout

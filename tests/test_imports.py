@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from autograder import course, exercises
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -21,11 +23,15 @@ ALL = frozenset(PARTS)
 # What a part may import of the package; what is not here may import anything but `cli`.
 MAY_IMPORT = {
     "verdict": frozenset[str](),
-    "exercises": frozenset[str](),
+    "course": frozenset[str](),
+    "kit": frozenset[str](),
+    "exercises": frozenset({"course", "kit"}),
+    "messages": frozenset({"verdict"}),
     "cards": frozenset({"verdict"}),
     "boxes": frozenset({"verdict"}),
-    "masters": frozenset({"exercises"}),
-    "notebook": ALL - {"judge", "exercises", "masters", "boxes", "grading", "execution", "recording"},
+    "masters": frozenset({"course", "exercises"}),
+    "journal": frozenset({"course", "verdict"}),
+    "notebook": ALL - {"judge", "exercises", "kit", "masters", "boxes", "grading", "execution", "recording"},
     "judge": ALL - {"notebook", "cards", "masters", "boxes", "grading", "execution", "recording"},
     "__main__": frozenset({"cli"}),
 }
@@ -81,6 +87,78 @@ def test_the_environment_never_imports_the_package() -> None:
     assert not wrong
 
 
+def circles(folder: Path) -> list[list[str]]:
+    """Modules below a folder that import each other in a circle when they run, also from within a function.
+
+    What is imported for types alone is left out: it does not run.
+    """
+    graph = {module: _runs(path, module) for module, path in _modules(folder).items()}
+    reach = {module: _reached(module, graph) for module in graph}
+    found = {tuple(sorted(other for other in reach[m] if m in reach[other])) for m in graph if m in reach[m]}
+    return sorted(map(list, found))
+
+
+def _modules(folder: Path) -> dict[str, Path]:
+    names = {path: path.relative_to(folder.parent).with_suffix("").parts for path in folder.rglob("*.py")}
+    return {".".join(parts).removesuffix(".__init__"): path for path, parts in names.items()}
+
+
+def _runs(path: Path, module: str) -> set[str]:
+    """The full names of what a module imports when it runs; each may be a module or something in one."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    for_types = {
+        id(inner)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING")
+        for statement in node.body
+        for inner in ast.walk(statement)
+    }
+    package = module.split(".") if path.name == "__init__.py" else module.split(".")[:-1]
+    found: set[str] = set()
+    for node in ast.walk(tree):
+        if id(node) in for_types:
+            continue
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            above = package[: len(package) - node.level + 1] if node.level else []
+            base = ".".join([*above, *([node.module] if node.module else [])])
+            found |= {f"{base}.{alias.name}" for alias in node.names}
+    return found
+
+
+def _reached(module: str, graph: dict[str, set[str]]) -> set[str]:
+    reached: set[str] = set()
+    waiting = [module]
+    while waiting:
+        for name in graph[waiting.pop()]:
+            # The module itself, or the one that has what is imported from it.
+            imported = name if name in graph else name.rpartition(".")[0]
+            if imported in graph and imported not in reached:
+                reached.add(imported)
+                waiting.append(imported)
+    return reached
+
+
+@pytest.mark.parametrize("folder", ["autograder", "environment", "environment/launch_front/launch"])
+def test_no_modules_import_each_other_in_a_circle(folder: str) -> None:
+    assert not circles(ROOT / folder)
+
+
+def test_a_circle_is_found_wherever_the_import_stands(tmp_path: Path) -> None:
+    texts = {
+        "a.py": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import pkg.c\nfrom pkg.b import one\n",
+        "b.py": "one = 1\n\ndef use():\n    from . import c\n",
+        "c.py": "import pkg.b\n",
+        "d.py": "from pkg import a\n",
+        "__init__.py": "",
+    }
+    (tmp_path / "pkg").mkdir()
+    for name, text in texts.items():
+        (tmp_path / "pkg" / name).write_text(text)
+    assert circles(tmp_path / "pkg") == [["pkg.b", "pkg.c"]]
+
+
 def test_dask_is_imported_where_it_is_shut_in_and_where_it_executes() -> None:
     """The courier reads no pickle; the other two run on workers. The grader itself never imports Dask."""
     found = {
@@ -109,3 +187,28 @@ def test_every_dependency_has_its_reason_in_the_architecture() -> None:
     text = (ROOT / "docs/architecture.md").read_text().partition("## Dependencies")[2]
     names = [requirement.partition(">")[0].partition("=")[0].partition("[")[0] for requirement in wanted]
     assert not [name for name in names if name not in text]
+
+
+def test_the_engine_knows_no_lab() -> None:
+    """A second chapter needs no line of the package: what is a fact of a lab stands in its folder."""
+    labs = {exercise_id.partition(".")[0] for exercise_id in exercises.all_ids()}
+    interfaces = course.interfaces()
+    wrong = [
+        f"{path.relative_to(ROOT)}:{constant.lineno} says {constant.value!r}"
+        for path in sorted(PACKAGE.rglob("*.py"))
+        for constant in strings_of_code(ast.parse(path.read_text(encoding="utf-8")))
+        if any(name in str(constant.value) for name in (*labs, *interfaces))
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def strings_of_code(tree: ast.AST) -> Iterator[ast.Constant]:
+    """The strings of a module that it does something with: no docstring is among them."""
+    texts = {
+        id(node.value)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in texts:
+            yield node

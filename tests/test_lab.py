@@ -10,13 +10,17 @@ from typing import Any
 
 import pytest
 from jupyter_core.paths import jupyter_config_path
+from jupyter_server.services.config import ConfigManager
 from jupyterlab.labapp import LabApp
 from jupyterlab_server.config import get_page_config
 
-from autograder.lab import NoSuchFolderError, open_lab
+from autograder import journal
+from autograder.lab import NOTEBOOKS_VARIABLE, PANEL, NoSuchFolderError, open_lab
 from autograder.ros_domain import claim_free_domain
 
-VARIABLES = ("ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY", "JUPYTER_CONFIG_PATH")
+ROS_VARIABLES = ("ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
+VARIABLES = (*ROS_VARIABLES, "JUPYTER_CONFIG_PATH", journal.VARIABLE, NOTEBOOKS_VARIABLE)
+START = ["--LabApp.default_url=/course", f"--LabApp.extra_labextensions_path={PANEL}"]
 
 
 class Started:
@@ -29,6 +33,8 @@ class Started:
         labextensions = Path(sys.prefix) / "share/jupyter/labextensions"
         self.disabled = get_page_config([str(labextensions)])["disabledExtensions"]
         self.config_path = jupyter_config_path()
+        # As jupyterlab_server's settings_utils reads it.
+        self.settings = ConfigManager(config_dir_name="labconfig").get("default_setting_overrides")  # type: ignore[no-untyped-call]
         self.domain_is_held = not _can_claim(int(os.environ.get("ROS_DOMAIN_ID", "0")))
 
 
@@ -94,6 +100,11 @@ def test_a_student_has_validate_and_nothing_of_the_instructors(
     assert off == {"assignment-list", "course-list", "create-assignment", "formgrader", "menu"}
 
 
+def test_cells_have_line_numbers_since_cards_name_them(started: list[Started], tmp_path: Path) -> None:
+    open_lab(tmp_path)
+    assert started[0].settings["@jupyterlab/notebook-extension:tracker"]["codeCellConfig"]["lineNumbers"]
+
+
 @pytest.mark.parametrize("chapters", [["01_first"], ["01_first", "02_second"]])
 def test_it_opens_the_folder_inside_the_only_chapter(
     started: list[Started], tmp_path: Path, chapters: list[str]
@@ -103,7 +114,15 @@ def test_it_opens_the_folder_inside_the_only_chapter(
     open_lab(tmp_path, ["--no-browser"])
     assert started[0].folder == tmp_path
     inside: list[Any] = [f"--ServerApp.preferred_dir={tmp_path / chapters[0]}"] if len(chapters) == 1 else []
-    assert started[0].argv == [*inside, "--no-browser"]
+    assert started[0].argv == [*START, *inside, "--no-browser"]
+
+
+def test_its_kernels_and_terminals_know_the_journal_beside_the_notebooks(
+    started: list[Started], tmp_path: Path
+) -> None:
+    open_lab(tmp_path)
+    assert started[0].environ[NOTEBOOKS_VARIABLE] == str(tmp_path)
+    assert started[0].environ[journal.VARIABLE] == str(tmp_path / journal.NAME)
 
 
 def test_a_folder_that_is_not_there_is_a_clear_error(tmp_path: Path) -> None:

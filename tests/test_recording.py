@@ -41,7 +41,7 @@ def test_a_changed_reference_solution_changes_what_is_expected(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     shutil.copytree(ROOT / "solutions", tmp_path / "solutions")
-    master = tmp_path / "solutions" / "01_ros2_fundamentals" / "lab_1_2.md"
+    master = tmp_path / "solutions" / "01_ros2_fundamentals" / "lab_1_2" / "lab.md"
     text = master.read_text(encoding="utf-8")
     assert '"chatter"' in text
     master.write_text(text.replace('"chatter"', '"gossip"'), encoding="utf-8")

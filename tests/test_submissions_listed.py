@@ -12,20 +12,28 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-BANK = Path(__file__).parent / "submissions"
-NOTEBOOKS = BANK / "notebooks"
+from autograder import exercises
+from autograder.authoring.answer_tables import KINDS
+from autograder.authoring.answers import answers, folder_of
+from autograder.authoring.as_edit import nearest, whole_right_answers, worth
+
+NOTEBOOKS = Path(__file__).parent / "submissions" / "notebooks"
 MISTAKES = Path(__file__).parents[1] / "docs" / "mistakes.md"
-LISTINGS = sorted(BANK.glob("*/expected.toml"))
+FOLDERS = [folder_of(exercise_id) for exercise_id in exercises.all_ids()]
 CELL = re.compile(r"^# %% (solution \w+|extra)$", re.MULTILINE)
+PROGRAMS = list(answers())
 
 
 @dataclass(frozen=True)
-class Answer:
-    """One listed file: where it should be, ``"correct"`` or ``"wrong"``, and what its listing says."""
+class InNotebook:
+    """An answer that students write into a notebook: its file, and what its listing says."""
 
     path: Path
-    kind: str
     entry: dict[str, Any]
+
+    @property
+    def kind(self) -> str:
+        return self.path.parent.name
 
     @property
     def source(self) -> str:
@@ -37,23 +45,11 @@ class Answer:
         return {self.entry["diagnosis"], *self.entry.get("also", [])} if "diagnosis" in self.entry else set()
 
 
-def listed(folder: Path, listing: dict[str, Any]) -> list[Answer]:
-    return [
-        Answer(folder / kind / name, kind, entry)
-        for kind in ("correct", "wrong")
-        for name, entry in listing[kind].items()
-    ]
-
-
-def read(path: Path) -> dict[str, Any]:
-    return tomllib.loads(path.read_text(encoding="utf-8"))
-
-
-PROGRAMS = [answer for path in LISTINGS for answer in listed(path.parent, read(path))]
 IN_NOTEBOOKS = [
-    answer
-    for exercise, listing in read(NOTEBOOKS / "notebooks.toml").items()
-    for answer in listed(NOTEBOOKS / exercise, listing)
+    InNotebook(NOTEBOOKS / exercise / kind / name, entry)
+    for exercise, listing in tomllib.loads((NOTEBOOKS / "notebooks.toml").read_text(encoding="utf-8")).items()
+    for kind in KINDS
+    for name, entry in listing[kind].items()
 ]
 
 
@@ -70,49 +66,64 @@ def explained() -> set[str]:
 
 
 def test_every_file_is_listed_and_every_listed_one_is_there() -> None:
-    found = {
-        path for path in BANK.rglob("*.*") if path.is_file() and path.parent.name in ("correct", "wrong")
-    }
-    assert found == {answer.path for answer in PROGRAMS + IN_NOTEBOOKS}
+    files = [path for folder in (NOTEBOOKS, *FOLDERS) for path in folder.rglob("*.*") if path.is_file()]
+    found = {path for path in files if path.parent.name in KINDS and path.suffix != ".toml"}
+    whole = {answer.file for answer in PROGRAMS if answer.edit is None}
+    assert found == whole | {answer.path for answer in IN_NOTEBOOKS}
+
+
+def test_every_edit_fits_its_base_and_no_two_answers_are_the_same(tmp_path: Path) -> None:
+    # Reading an edit raises where it does not fit, and so does making a workspace.
+    assert len({(answer.exercise, answer.text) for answer in PROGRAMS}) == len(PROGRAMS)
+    for number, answer in enumerate(answer for answer in PROGRAMS if answer.base is not None):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        answer.unpack(folder)
+
+
+def test_what_is_nearly_a_right_answer_is_stored_as_an_edit_of_it() -> None:
+    for folder in FOLDERS:
+        bases = whole_right_answers(folder)
+        for file in sorted((folder / "wrong").glob("*.py")):
+            text = file.read_text(encoding="utf-8")
+            near = nearest(text, bases)
+            assert near is None or not worth(text, near), f"python -m autograder.authoring.as_edit {file}"
 
 
 def test_a_program_says_in_its_first_line_what_it_shows() -> None:
-    words = {"correct": "Right", "wrong": "Wrong"}
     mute = [
-        a.path for a in PROGRAMS if not a.source.splitlines()[0].lstrip("<!-# \"'").startswith(words[a.kind])
+        a.name
+        for a in PROGRAMS
+        if not a.text.lstrip("<!-# \"'").startswith("Wrong" if a.diagnoses else "Right")
     ]
     assert mute == []
 
 
 def test_only_a_syntax_error_cannot_be_read_by_python() -> None:
-    programs = [answer for answer in PROGRAMS if answer.path.suffix == ".py"]
-    unreadable = {answer.path for answer in programs if not is_python(answer.source)}
-    assert unreadable == {
-        answer.path for answer in programs if answer.entry.get("diagnosis") == "syntax_error"
-    }
+    programs = [answer for answer in PROGRAMS if answer.file.suffix == ".py"]
+    unreadable = {answer.name for answer in programs if not is_python(answer.text)}
+    assert unreadable == {a.name for a in programs if a.diagnoses and a.diagnoses[0] == "syntax_error"}
 
 
 def test_what_fails_has_a_diagnosis_and_what_passes_has_none() -> None:
-    assert [a.path for a in PROGRAMS if bool(a.keys) != (a.kind == "wrong")] == []
+    assert [a.name for a in PROGRAMS if bool(a.diagnoses) != (a.file.parent.name == "wrong")] == []
     assert [a.path for a in IN_NOTEBOOKS if bool(a.keys) != (a.entry["verdict"] == "failed")] == []
 
 
 def test_every_diagnosis_is_explained_to_students() -> None:
-    keys = explained()
-    assert {key for answer in PROGRAMS + IN_NOTEBOOKS for key in answer.keys} - keys == set()
+    used = {key for answer in PROGRAMS for key in answer.diagnoses}
+    used |= {key for answer in IN_NOTEBOOKS for key in answer.keys}
+    assert used - explained() == set()
 
 
 def test_a_wrong_program_is_named_after_its_diagnosis() -> None:
     # The course text's own solutions are named so instead.
-    names = {
-        a.path: a.path.stem for a in PROGRAMS if a.kind == "wrong" and a.path.stem != "text_as_it_stands"
-    }
-    odd = [a.path for a in PROGRAMS if a.path in names and not names[a.path].startswith(a.entry["diagnosis"])]
-    assert odd == []
+    wrong = [a for a in PROGRAMS if a.diagnoses and a.file.stem != "text_as_it_stands"]
+    assert [a.name for a in wrong if not a.file.name.startswith(a.diagnoses[0])] == []
 
 
 def test_an_answer_in_a_notebook_names_its_exercise_and_its_cells() -> None:
     for answer in IN_NOTEBOOKS:
         assert answer.source.startswith(f"# {answer.path.parent.parent.name}: "), answer.path
         assert any(cell.startswith("solution") for cell in CELL.findall(answer.source)), answer.path
-        assert (answer.entry["verdict"] == "passed") == (answer.kind == "correct"), answer.path
+        assert (answer.entry["verdict"] == "passed") == (answer.kind == "right"), answer.path

@@ -90,6 +90,15 @@ class Channel:
         message: dict[str, Any] = json.loads(data)
         return message, descriptors
 
+    @property
+    def hung_up(self) -> bool:
+        """Whether the other end is gone, though there may be words of it that nobody has read yet."""
+        if self._socket.fileno() < 0:
+            return False
+        poll = select.poll()
+        poll.register(self._socket, 0)
+        return bool(poll.poll(0))
+
     def close(self) -> None:
         """Hang up; may be called twice."""
         self._socket.close()

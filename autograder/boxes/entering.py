@@ -1,4 +1,4 @@
-"""From a fork of a warm process into a box: its namespaces, then without a right that a student must not have."""
+"""From a fork of a fork server into a box: its namespaces, then without a right that a student must not have."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from autograder.boxes import linux
+from autograder.boxes import syscalls
 from autograder.boxes.channel import Channel, ChannelClosed, close_all
-from autograder.boxes.system_calls import filter_for_boxes
+from autograder.boxes.seccomp_filter import filter_for_boxes
 
 Run = Callable[[Mapping[str, Any], Sequence[int]], None]
 """What a child becomes: called with the request's ``call`` and its descriptors."""
 
 _ALL_NAMESPACES = (
-    linux.CLONE_NEWUSER | linux.CLONE_NEWNS | linux.CLONE_NEWPID | linux.CLONE_NEWNET
-    | linux.CLONE_NEWIPC | linux.CLONE_NEWUTS
+    syscalls.CLONE_NEWUSER | syscalls.CLONE_NEWNS | syscalls.CLONE_NEWPID | syscalls.CLONE_NEWNET
+    | syscalls.CLONE_NEWIPC | syscalls.CLONE_NEWUTS
 )  # fmt: skip
 
 
@@ -37,7 +37,7 @@ class Entrance:
             where it is, which only a course's own notebooks and ``--unsafe-no-sandbox`` do.
         cgroups: Files ``cgroup.procs`` to be entered into, outside of the box.
         rlimits: Limits of each process, by the name that :mod:`resource` gives them.
-        hidden_memory: See :func:`autograder.boxes.system_calls.filter_for_boxes`.
+        hidden_memory: See :func:`autograder.boxes.seccomp_filter.filter_for_boxes`.
         call: What ``run`` is told.
     """
 
@@ -55,22 +55,22 @@ class Entrance:
 
 
 def enter(channel: Channel, run: Run) -> None:
-    """Serve one request in the child of a warm process: fork into the box, watch over what is there.
+    """Serve one request in the child of a fork server: fork into the box, watch over what is there.
 
     The answer is ``{"pid": …}`` as the host counts, and when that process has ended ``{"status": …}``, its wait
     status. When the other end hangs up before, the process is killed.
     """
-    linux.die_with_parent(0)
+    syscalls.die_with_parent(0)
     message, descriptors = channel.receive()
     entrance = Entrance(**message)
     # Opened here, where they can be seen; but only the child goes in, so that a box without memory costs nobody who
     # watches over it.
     groups = [os.open(procs, os.O_WRONLY | os.O_CLOEXEC) for procs in entrance.cgroups]
     if entrance.boxed:
-        linux.setns(descriptors[0], _ALL_NAMESPACES)
+        syscalls.setns(descriptors[0], _ALL_NAMESPACES)
     else:
         # Without a PID namespace to take all along, daemons become our children, and we end them.
-        linux.prctl(linux.PR_SET_CHILD_SUBREAPER, 1)
+        syscalls.prctl(syscalls.PR_SET_CHILD_SUBREAPER, 1)
     pid = os.fork()
     if pid == 0:
         channel.close()
@@ -116,7 +116,7 @@ def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
             descriptors = descriptors[1:]
             give_up_rights(hidden_memory=entrance.hidden_memory)
         # Given up rights take this away (prctl(2)), so it comes after them. Our parent is in another PID namespace.
-        linux.die_with_parent(0)
+        syscalls.die_with_parent(0)
         signal.signal(signal.SIGINT, signal.default_int_handler)
         run(entrance.call, descriptors)
         code = 0
@@ -133,10 +133,10 @@ def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
 
 def give_up_rights(*, hidden_memory: bool) -> None:
     """No capability, none to be had by executing anything, and the filter of system calls."""
-    linux.drop_capabilities()
-    linux.filter_system_calls(filter_for_boxes(hidden_memory=hidden_memory))
+    syscalls.drop_capabilities()
+    syscalls.filter_system_calls(filter_for_boxes(hidden_memory=hidden_memory))
     # A process that changed its rights does not own its /proc/self any more, which programs read.
-    linux.prctl(linux.PR_SET_DUMPABLE, 1)
+    syscalls.prctl(syscalls.PR_SET_DUMPABLE, 1)
 
 
 def apply_rlimits(limits: Mapping[str, int]) -> None:

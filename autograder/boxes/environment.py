@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
-from autograder.boxes.view import HOME, USER
+from autograder.boxes.mounts import HOME, USER
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,22 +25,28 @@ _KEPT_PREFIXES = (
 )
 
 
-def base_environment() -> dict[str, str]:
-    """What a warm process starts with: what Python and ROS need of this process's environment, nothing else."""
-    kept = {
-        name: value for name, value in os.environ.items() if name in _KEPT or name.startswith(_KEPT_PREFIXES)
-    }
+def base_environment(given: Mapping[str, str] | None = None) -> dict[str, str]:
+    """What a fork server starts with: what Python and ROS need of an environment, nothing else.
+
+    Args:
+        given: The environment; this process's where None.
+    """
+    found = (os.environ if given is None else given).items()
+    kept = {name: value for name, value in found if name in _KEPT or name.startswith(_KEPT_PREFIXES)}
     return {**kept, "HOME": "/nonexistent", "PYTHONNOUSERSITE": "1", "PYTHONDONTWRITEBYTECODE": "1"}
 
 
-def box_environment(extra: Mapping[str, str] | None = None) -> dict[str, str]:
+def box_environment(
+    extra: Mapping[str, str] | None = None, given: Mapping[str, str] | None = None
+) -> dict[str, str]:
     """The whole environment of a process in a box.
 
     Args:
         extra: Variables that hold whatever the host says.
+        given: See :func:`base_environment`.
     """
     return {
-        **base_environment(),
+        **base_environment(given),
         "USER": USER,
         "HOME": str(HOME),
         "TMPDIR": "/tmp",

@@ -27,6 +27,7 @@ class Check:
         points: Points the judge gives at most.
         worth: Points the cell carries in the gradebook; the judge's score is scaled to it.
         limit: Seconds of wall time that the judge allows itself.
+        asserts: Whether the cell's own tests decide, by the rules of nbgrader, and not the judge.
     """
 
     exercise: str
@@ -34,6 +35,7 @@ class Check:
     points: float
     worth: float
     limit: float
+    asserts: bool = False
 
 
 @dataclass(frozen=True)
@@ -45,12 +47,14 @@ class Cell:
         kind: Only code cells are executed.
         check: Set on a check cell.
         name: The grade_id, or empty for a cell of the student's own.
+        own: Whether a student wrote the text.
     """
 
     source: str
     kind: Kind = Kind.CODE
     check: Check | None = None
     name: str = ""
+    own: bool = False
 
 
 class Ended(StrEnum):
@@ -63,6 +67,7 @@ class Ended(StrEnum):
     OUT_OF_MEMORY = "out_of_memory"
     OUT_OF_CPU = "out_of_cpu"
     TOO_MANY_PROCESSES = "too_many_processes"
+    TOO_MANY_FILES = "too_many_files"
     TOO_MUCH_OUTPUT = "too_much_output"
     NOT_RUN = "not_run"
     """The kernel was gone, or the notebook's time was up, before the cell's turn."""
@@ -96,6 +101,8 @@ class Execution:
         trouble: What went wrong on the grader's own side, empty when all was well. Then no result is final.
         seconds: Wall time, start of the kernel included.
         start_seconds: Of these, until kernel and judge were ready.
+        as_typed: The places of the cells whose text is too costly to be rendered on a page.
+        needs_room: It came to the end of the memory that it may have while others run beside: it says nothing then.
     """
 
     cells: tuple[CellRun, ...]
@@ -103,3 +110,5 @@ class Execution:
     trouble: str = ""
     seconds: float = 0.0
     start_seconds: float = 0.0
+    as_typed: tuple[int, ...] = ()
+    needs_room: bool = False

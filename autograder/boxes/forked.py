@@ -1,4 +1,4 @@
-"""A process that a warm process has forked for us, in a box or beside one."""
+"""A process that a fork server has forked for us, in a box or beside one."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ class ForkedProcess:
     """One process. It is killed when this object's channel is closed, in whatever way.
 
     Args:
-        address: Where the warm process listens.
+        address: Where the fork server listens.
         entrance: How the process begins.
         descriptors: What it is given; the pidfd of its box comes first where it has one. They stay open here.
 
     Raises:
-        ChannelClosed: The warm process is gone, or the child could not enter its box.
+        ChannelClosed: The fork server is gone, or the child could not enter its box.
     """
 
     def __init__(self, address: str, entrance: Entrance, descriptors: Sequence[int]) -> None:

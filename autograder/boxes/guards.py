@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from autograder.boxes.cgroups import Group, usable
 from autograder.boxes.execution import Ended
+from autograder.boxes.limits import open_files_of_a_box
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -47,7 +48,7 @@ class BoxGuard:
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
-        self._group = Group(limits.memory_bytes, limits.processes)
+        self._group = Group(limits.memory_now, limits.processes)
         self._memory, self._processes = ("memory" in usable(), "pids" in usable())
         self._first = 0
         self._next_look = 0.0
@@ -68,11 +69,12 @@ class BoxGuard:
         """Limits of each single process (setrlimit(2))."""
         limits = {
             "RLIMIT_CORE": 1,  # 0 would still start a handler of core dumps (core(5))
-            "RLIMIT_NOFILE": self._limits.open_files,
+            "RLIMIT_NOFILE": open_files_of_a_box(self._limits.open_files),
             "RLIMIT_FSIZE": self._limits.scratch_bytes,
             "RLIMIT_CPU": int(self._limits.cpu_seconds) + 1,
             "RLIMIT_MSGQUEUE": 1_000_000,
             "RLIMIT_MEMLOCK": 1 << 23,
+            "RLIMIT_SIGPENDING": 1000,
         }
         if not self._memory:
             # Address space that can be written to, the stacks of threads among it: more than is ever used.
@@ -111,15 +113,21 @@ class BoxGuard:
         self._group.close()
 
     def _look(self) -> Ended | None:
+        # Whom the kernel ends is a matter of chance; that somebody had to be is not.
+        if self._group.ran_out_of_memory:
+            return Ended.OUT_OF_MEMORY
         use = use_of(self._first, None if self._memory else _memory_of)
         if use.cpu_seconds > self._limits.cpu_seconds:
             return Ended.OUT_OF_CPU
+        if use.files > self._limits.all_open_files:
+            return Ended.TOO_MANY_FILES
         if not self._processes and use.threads > self._limits.processes:
             return Ended.TOO_MANY_PROCESSES
-        if use.memory > self._limits.memory_bytes:
+        files = 0 if self._memory else _scratch_of(self._first)
+        if use.memory + files > self._limits.memory_now:
             # Forks were counted with all that they share: look exactly before it has consequences.
             exactly = use_of(self._first, _exact_memory_of)
-            return Ended.OUT_OF_MEMORY if exactly.memory > self._limits.memory_bytes else None
+            return Ended.OUT_OF_MEMORY if exactly.memory + files > self._limits.memory_now else None
         return None
 
 
@@ -131,11 +139,13 @@ class Use:
         threads: How many there are, a process having at least one.
         memory: Bytes that belong to no file; 0 where nobody looked.
         cpu_seconds: Processor time, that of children included which have ended and were waited for.
+        files: Open files, sockets and pipes. What waits in them and who is told of them belongs to no process.
     """
 
     threads: int
     memory: int
     cpu_seconds: float
+    files: int
 
 
 def use_of(first: int, memory_of: Callable[[str], int] | None) -> Use:
@@ -145,15 +155,15 @@ def use_of(first: int, memory_of: Callable[[str], int] | None) -> Use:
         first: Its first process, as the host counts; the namespace's own ``/proc`` is seen through it.
         memory_of: The memory of the process with this folder, in bytes.
     """
-    threads = memory = 0
+    threads = memory = files = 0
     seconds = 0.0
     try:
         own = f"/proc/{first}/root/proc"
         if Path(own).stat().st_dev == Path("/proc").stat().st_dev:
-            return Use(0, 0, 0.0)  # it is on its way into the box and still sees the processes of the host
+            return Use(0, 0, 0.0, 0)  # it is on its way into the box and still sees the processes of the host
         processes = [entry for entry in os.scandir(own) if entry.name.isdecimal()]
     except OSError:
-        return Use(0, 0, 0.0)
+        return Use(0, 0, 0.0, 0)
     for process in processes:
         try:
             # After the name of the program, which may hold anything (proc(5)).
@@ -161,9 +171,25 @@ def use_of(first: int, memory_of: Callable[[str], int] | None) -> Use:
             threads += int(fields[17])
             seconds += sum(map(int, fields[11:15])) / _TICKS
             memory += memory_of(process.path) if memory_of else 0
+            files += _files_of(process.path)
         except (OSError, ValueError, IndexError):
             continue  # it has ended meanwhile
-    return Use(threads, memory, seconds)
+    return Use(threads, memory, seconds, files)
+
+
+def _files_of(process: str) -> int:
+    """Linux 6.2 and later say it as the folder's size (proc_pid_fd(5)); a process without any is rare."""
+    folder = f"{process}/fd"
+    return os.stat(folder).st_size or len(os.listdir(folder))  # noqa: PTH116, PTH208 (several times a second)
+
+
+def _scratch_of(first: int) -> int:
+    """Bytes of the files in a box's scratch, which are in memory and belong to no process."""
+    try:
+        inside, outside = (os.statvfs(place) for place in (f"/proc/{first}/root/tmp", "/tmp"))
+    except OSError:
+        return 0
+    return 0 if inside.f_fsid == outside.f_fsid else (inside.f_blocks - inside.f_bfree) * inside.f_frsize
 
 
 def _memory_of(process: str) -> int:
@@ -173,7 +199,11 @@ def _memory_of(process: str) -> int:
 
 def _exact_memory_of(process: str) -> int:
     """A page that several processes share counts once in all; takes the kernel a moment."""
-    return _sum_of(Path(process, "smaps_rollup"), ("Pss_Anon:", "Pss_Shmem:"))
+    try:
+        return _sum_of(Path(process, "smaps_rollup"), ("Pss_Anon:", "Pss_Shmem:"))
+    except PermissionError:
+        # It has hidden itself (PR_SET_DUMPABLE, prctl(2)): then all that it shares counts, too.
+        return _memory_of(process)
 
 
 def _sum_of(file: Path, wanted: tuple[str, ...]) -> int:
@@ -202,7 +232,7 @@ def guards() -> Mapping[str, str]:
         "processes": _cgroup("pids") or _processes_without(watched),
         "processor time": "looked at four times a second, and a limit on each process",
         "disk": "a file system in memory, with a size and a number of files",
-        "open files": "a limit on each process",
+        "open files": "a limit on each process, and all together looked at four times a second",
     }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import resource
 from dataclasses import dataclass
 
 
@@ -23,8 +24,12 @@ class Limits:
         flood_bytes: Output that a cell may send, kept or not, before it is stopped.
         cpu_seconds: Processor time of a box's processes together.
         memory_bytes: Memory of a box's processes together, files in its scratch included.
+        beside_bytes: The same, as long as others are executed beside. Who needs more is executed again, alone, so it
+            decides nothing.
+        beside: Whether others are.
         processes: Processes and threads of a box together.
         open_files: Files, sockets and pipes that one process may have open.
+        all_open_files: What all processes of a box may have open together.
         scratch_bytes: What a box's files may have together.
         scratch_files: How many files, folders and links a box may have.
     """
@@ -41,7 +46,50 @@ class Limits:
     flood_bytes: int = 50_000_000
     cpu_seconds: float = 600.0
     memory_bytes: int = 2_000_000_000
+    beside_bytes: int = 400_000_000
+    beside: bool = False
     processes: int = 500
     open_files: int = 1024
+    all_open_files: int = 6000
     scratch_bytes: int = 1_000_000_000
     scratch_files: int = 100_000
+
+    @property
+    def longest(self) -> float:
+        """Seconds of wall time after which a notebook is stopped, whatever it does."""
+        return self.start_seconds + self.notebook_seconds + self.interrupt_grace
+
+    @property
+    def memory_now(self) -> int:
+        """What a box may have now, in bytes."""
+        return min(self.memory_bytes, self.beside_bytes) if self.beside else self.memory_bytes
+
+
+_MOST_OPEN_FILES = 1 << 20
+"""More is never needed, and some systems allow a billion, which programs that go through all of them count up to."""
+
+
+def raise_own() -> None:
+    """Take as much as this user may have of what the system counts for each user and not for each process.
+
+    How many descriptors a user may have on their way through sockets is decided by the limit on open files of whoever
+    sends one (unix(7), ETOOMANYREFS), whoever else has sent the others. A box of the same user must never be able to
+    have as many as the grader, so that the grader can always send another one.
+    """
+    for kind, most in (
+        (resource.RLIMIT_NOFILE, _MOST_OPEN_FILES),
+        (resource.RLIMIT_NPROC, resource.RLIM_INFINITY),
+        (resource.RLIMIT_SIGPENDING, resource.RLIM_INFINITY),
+    ):
+        soft, hard = resource.getrlimit(kind)
+        wanted = hard if most == resource.RLIM_INFINITY else most
+        if hard != resource.RLIM_INFINITY:
+            wanted = min(wanted, hard)
+        if soft != resource.RLIM_INFINITY and (wanted == resource.RLIM_INFINITY or wanted > soft):
+            resource.setrlimit(kind, (wanted, hard))
+
+
+def open_files_of_a_box(wanted: int) -> int:
+    """How many files a process in a box may have open, given what the grader may have itself: at most half of that."""
+    own = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
+    return wanted if own == resource.RLIM_INFINITY else min(wanted, own // 2)

@@ -6,6 +6,7 @@ A place starts the two processes of a notebook, its kernel and its judge, and le
 from __future__ import annotations
 
 import contextlib
+import itertools
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
@@ -14,21 +15,23 @@ from autograder.boxes.entering import Entrance
 from autograder.boxes.environment import box_environment, kernel_environment
 from autograder.boxes.forked import ForkedProcess
 from autograder.boxes.guards import BoxGuard, NoGuard
+from autograder.boxes.mounts import HOME, WORK, Bind
 from autograder.boxes.sandbox import Enclosure
 from autograder.boxes.scratch import write_files
-from autograder.boxes.view import HOME, WORK, Bind
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from types import TracebackType
 
-    from autograder.boxes.forkserver import Addresses
+    from autograder.boxes.fork_server_client import Addresses
     from autograder.boxes.kernel import Channels
     from autograder.boxes.limits import Limits
 
-DOOR = Path("/run/judge")
+SHARED_FOLDER = Path("/run/judge")
 """Where the student's box sees the folder that it shares with its grader."""
 _STUDENT, _JUDGE = "student", "judge"
+_PROGRAMS_SCRATCH_BYTES, _PROGRAMS_SCRATCH_FILES = 1_000_000, 1_000
+"""Nobody writes there but the supervisor: what a program writes is in memory of its own box."""
 
 
 @dataclass(frozen=True)
@@ -45,16 +48,21 @@ class JudgeSetting:
 
 
 class BoxedPlace:
-    """Two boxes in one network namespace.
+    """The boxes of one submission, in one network or in two.
+
+    The student's box and a judge's are on the notebook's network. What the grader itself builds and starts for a check,
+    from sources that were handed in, runs on another network, with a judge of its own: nobody in the student's box can
+    say anything there, whatever it does.
 
     Args:
-        addresses: The warm processes.
+        addresses: The fork servers.
         folder: Ours alone; short, because Unix sockets will be in it.
         files: What lies beside the notebook.
         variables: More variables of the kernel's environment.
         socket_variable: The one that tells the kernel where the judge is.
         judge: What the judge's process needs.
         limits: The limits of the kernel and of all that it starts.
+        programs: Whether there is to be a network for programs.
 
     Raises:
         NoSandbox: The namespaces could not be made.
@@ -69,39 +77,47 @@ class BoxedPlace:
         socket_variable: str,
         judge: JudgeSetting,
         limits: Limits,
+        *,
+        programs: bool = False,
     ) -> None:
         self._addresses, self._judge, self._limits = addresses, judge, limits
-        self._door = folder / "door"
-        self._door.mkdir()
-        self._variables = {**variables, socket_variable: str(DOOR / _JUDGE)}
-        self._student: list[int] = []
+        self._open = contextlib.ExitStack()
+        self._judges = itertools.count(1)
+        self._shared = folder / "run"
+        self._shared.mkdir()
+        self._variables = {**variables, socket_variable: str(SHARED_FOLDER / _JUDGE)}
         self.guard = BoxGuard(limits)
+        self._open.callback(self.guard.close)
         try:
-            self.enclosure = Enclosure(
-                addresses.keepers, folder / "box", files=files,
-                scratch_bytes=limits.scratch_bytes, scratch_inodes=limits.scratch_files, guard=self.guard,
+            self.enclosure = self._open.enter_context(
+                Enclosure(
+                    addresses.supervisors, folder / "box", files=files,
+                    scratch_bytes=limits.scratch_bytes, scratch_inodes=limits.scratch_files, guard=self.guard,
+                )
+            )  # fmt: skip
+            self.programs = self.enclosure if not programs else self._open.enter_context(
+                Enclosure(
+                    addresses.supervisors, folder / "programs",
+                    scratch_bytes=_PROGRAMS_SCRATCH_BYTES, scratch_inodes=_PROGRAMS_SCRATCH_FILES, guard=self.guard,
+                )
             )  # fmt: skip
         except BaseException:
-            self.guard.close()
+            self._open.close()
             raise
 
     @property
     def judge_socket(self) -> Path:
         """Where the judge is to listen; the student's box sees the folder of this socket and nothing else of it."""
-        return self._door / _JUDGE
+        return self._shared / _JUDGE
 
     @property
     def shared(self) -> Path:
-        """The folder that the student's box sees as ``DOOR``, and may only read."""
-        return self._door
-
-    def students_processes(self) -> list[int]:
-        """The uppermost processes of the student's box, as the host counts: all others are below them."""
-        return list(self._student)
+        """The folder that the student's box sees as ``SHARED_FOLDER``, and may only read."""
+        return self._shared
 
     def start_kernel(self, channels: Channels) -> PlacedProcess:
-        """Let a fork of the warm process enter the student's box."""
-        box = self.enclosure.box(_STUDENT, [Bind(self._door, DOOR)])
+        """Let a fork of the fork server enter the student's box."""
+        box = self.enclosure.box(_STUDENT, [Bind(self._shared, SHARED_FOLDER)], guarded=True)
         self.guard.watch(box.pid)
         entrance = Entrance(
             cwd=str(WORK),
@@ -115,13 +131,19 @@ class BoxedPlace:
         process = ForkedProcess(
             self._addresses.kernels, entrance, [box.pidfd, channels.shell, channels.iopub, channels.log]
         )
-        # Whoever loses its parent in the box gets the box's first process for one.
-        self._student = [box.pid, process.pid]
-        return PlacedProcess(process, lambda: self.enclosure.end(_STUDENT))
+        return PlacedProcess(process, self.enclosure, _STUDENT)
 
-    def start_judge(self, listener: int, orders: int) -> PlacedProcess:
-        """Let a fork of the judges' warm process enter a box of its own."""
-        box = self.enclosure.box(_JUDGE, [Bind(path) for path in self._judge.readable], scratch=False)
+    def start_judge(self, listener: int, orders: int, *, of_programs: bool = False) -> PlacedProcess:
+        """Let a fork of the judges' fork server enter a box of its own.
+
+        Args:
+            listener: Where the notebook will reach it.
+            orders: Where the grader will.
+            of_programs: On the network of programs instead of the notebook's.
+        """
+        enclosure = self.programs if of_programs else self.enclosure
+        name = f"{_JUDGE} {next(self._judges)}"
+        box = enclosure.box(name, [Bind(path) for path in self._judge.readable], scratch=False)
         entrance = Entrance(
             cwd=str(HOME),
             environment=box_environment(self._judge.environment),
@@ -129,7 +151,8 @@ class BoxedPlace:
         )
         return PlacedProcess(
             ForkedProcess(self._addresses.judges, entrance, [box.pidfd, listener, orders]),
-            lambda: self.enclosure.end(_JUDGE),
+            enclosure,
+            name,
         )
 
     def __enter__(self) -> Self:
@@ -138,14 +161,11 @@ class BoxedPlace:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        try:
-            self.enclosure.close()
-        finally:
-            self.guard.close()
+        self._open.close()
 
 
 class UnboxedPlace:
-    """No box: forks of the warm processes with the rights of whoever grades.
+    """No box: forks of the fork servers with the rights of whoever grades.
 
     For the course's own notebooks, and for ``--unsafe-no-sandbox``. Arguments as for :class:`BoxedPlace`.
     """
@@ -159,7 +179,10 @@ class UnboxedPlace:
         socket_variable: str,
         judge: JudgeSetting,
         limits: Limits,
+        *,
+        programs: bool = False,
     ) -> None:
+        del programs  # there is one network, the host's
         self._addresses, self._folder, self._judge, self._limits = addresses, folder, judge, limits
         self.guard = NoGuard()
         self._cwd = write_files(files, folder / "work")
@@ -171,7 +194,7 @@ class UnboxedPlace:
         return self._folder / _JUDGE
 
     def start_kernel(self, channels: Channels) -> PlacedProcess:
-        """Let a fork of the warm process be the kernel."""
+        """Let a fork of the fork server be the kernel."""
         entrance = Entrance(
             cwd=str(self._cwd),
             environment=kernel_environment(self._folder, self._variables),
@@ -181,14 +204,15 @@ class UnboxedPlace:
         process = ForkedProcess(
             self._addresses.kernels, entrance, [channels.shell, channels.iopub, channels.log]
         )
-        return PlacedProcess(process, process.kill)
+        return PlacedProcess(process)
 
-    def start_judge(self, listener: int, orders: int) -> PlacedProcess:
-        """Let a fork of the judges' warm process be the judge."""
+    def start_judge(self, listener: int, orders: int, *, of_programs: bool = False) -> PlacedProcess:
+        """Let a fork of the judges' fork server be the judge."""
+        del of_programs
         environment = kernel_environment(self._folder / "of-the-judge", self._judge.environment)
         entrance = Entrance(cwd=str(self._folder), environment=environment, boxed=False)
         process = ForkedProcess(self._addresses.judges, entrance, [listener, orders])
-        return PlacedProcess(process, process.kill)
+        return PlacedProcess(process)
 
     def __enter__(self) -> Self:
         return self
@@ -204,11 +228,12 @@ class PlacedProcess:
 
     Args:
         process: The process.
-        end: Ends it and all that it has started.
+        enclosure: Has the box that it is in; None where it is in none.
+        box: The name of that box.
     """
 
-    def __init__(self, process: ForkedProcess, end: Callable[[], object]) -> None:
-        self._process, self._end = process, end
+    def __init__(self, process: ForkedProcess, enclosure: Enclosure | None = None, box: str = "") -> None:
+        self._process, self._enclosure, self._box = process, enclosure, box
 
     def fileno(self) -> int:
         """Readable when the process has ended."""
@@ -221,8 +246,8 @@ class PlacedProcess:
 
     @property
     def lost(self) -> bool:
-        """Whether nobody can tell any more what became of it."""
-        return self._process.lost
+        """Whether nobody can tell any more what became of it, as its box went away under it."""
+        return self._process.lost or (self._enclosure is not None and self._enclosure.lost)
 
     def interrupt(self) -> None:
         """SIGINT to its process group."""
@@ -234,6 +259,7 @@ class PlacedProcess:
 
     def end(self) -> None:
         """Kill it and all that it has started; may be called twice."""
-        with contextlib.suppress(OSError):
-            self._end()
+        if self._enclosure is not None:
+            with contextlib.suppress(OSError):
+                self._enclosure.end(self._box)
         self._process.close()

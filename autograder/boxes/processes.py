@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import os
-import signal
 import sys
 import time
 from typing import TYPE_CHECKING, Any
@@ -28,18 +27,6 @@ def adopt_orphans() -> bool:
     if sys.platform != "linux":
         return False
     return ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0) == 0
-
-
-def end_tree(pid: int) -> None:
-    """Kill process ``pid``, its process group and all its descendants."""
-    with contextlib.suppress(psutil.NoSuchProcess):
-        _kill(psutil.Process(pid).children(recursive=True))
-    with contextlib.suppress(ProcessLookupError, PermissionError):
-        # Only where it leads a group of its own: else the group is ours.
-        if os.getpgid(pid) == pid:
-            os.killpg(pid, signal.SIGKILL)
-    with contextlib.suppress(psutil.NoSuchProcess):
-        _kill([psutil.Process(pid)])
 
 
 def end_descendants(within: float = 3.0) -> int:

@@ -10,10 +10,12 @@ import contextlib
 import time
 from typing import TYPE_CHECKING, Any, Protocol
 
+from autograder.boxes.assertions import verdict_of
 from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution, Kind
+from autograder.boxes.hanging import Hangs, seconds_again
 from autograder.boxes.kernel import Kernel, KernelFailed, Start
+from autograder.boxes.missing_verdict import grader_trouble, without_verdict
 from autograder.boxes.outputs import Budget, OutputCollector
-from autograder.boxes.zero import grader_trouble, without_verdict
 from autograder.verdict import State, Verdict
 
 if TYPE_CHECKING:
@@ -91,6 +93,9 @@ class _Run:
         self._requests: dict[str, int] = {}
         self._verdicts: dict[int, Verdict] = {}
         self._trouble = ""
+        self._hangs = Hangs.of(cells)
+        self._allowed = [self._limit(cell) for cell in cells]
+        self._hung_before: dict[int, tuple[str, str]] = {}
 
     def on_output(self, request: str, message_type: str, content: Mapping[str, Any]) -> None:
         """An output belongs to the cell that asked for it, also when that cell has ended long ago."""
@@ -109,17 +114,33 @@ class _Run:
                 continue
             with self._watched(index, cell, judge):
                 began = time.monotonic()
-                deadline = min(notebook_deadline, began + self._limit(cell))
+                self._allow(index, cell)
+                deadline = min(notebook_deadline, began + self._allowed[index])
                 self._ended[index] = kernel.execute(cell.source, deadline, self._remember(index))
                 self._seconds[index] = time.monotonic() - began
+                if self._ended[index] is Ended.TIMED_OUT:
+                    self._hangs.note(cell, _title(cell))
+
+    def _allow(self, index: int, cell: Cell) -> None:
+        """Say how long a cell may take: what has hung before is not waited for at full length again."""
+        if (before := self._hangs.before(cell)) is not None:
+            self._hung_before[index] = before
+            self._allowed[index] = seconds_again(cell, self._allowed[index], self._limits)
 
     def result(self, seconds: float, start_seconds: float) -> Execution:
         """The execution, with a verdict for every check cell."""
         runs = [self._cell_run(index) for index in range(len(self._cells))]
         for index, cell in enumerate(self._cells):
-            if cell.check is not None and index not in self._verdicts:
-                before = self._what_led_to(index, runs)
-                self._verdicts[index] = without_verdict(cell.check, runs[index], before, self._limit(cell))
+            if cell.check is None or index in self._verdicts:
+                continue
+            by_tests = verdict_of(cell.check, runs[index]) if cell.check.asserts else None
+            self._verdicts[index] = by_tests or without_verdict(
+                cell.check,
+                runs[index],
+                self._what_led_to(index, runs),
+                self._allowed[index],
+                self._hung_before.get(index),
+            )
         return Execution(tuple(runs), self._verdicts, self._trouble, seconds, start_seconds)
 
     def _what_led_to(self, check: int, runs: list[CellRun]) -> list[tuple[str, CellRun]]:
@@ -140,7 +161,7 @@ class _Run:
     @contextlib.contextmanager
     def _watched(self, index: int, cell: Cell, judge: Judge) -> Iterator[None]:
         """Have the judge look at a check cell; any other cell runs unwatched."""
-        if cell.check is None:
+        if cell.check is None or cell.check.asserts:
             yield
             return
         try:
@@ -174,7 +195,7 @@ class _Run:
         return lambda request: self._requests.__setitem__(request, index)
 
     def _limit(self, cell: Cell) -> float:
-        if cell.check is not None:
+        if cell.check is not None and not cell.check.asserts:
             return cell.check.limit + self._limits.check_margin
         return self._limits.cell_seconds
 

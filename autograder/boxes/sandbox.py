@@ -2,7 +2,7 @@
 
 .. code-block:: python
 
-    with Enclosure(addresses.keepers, folder, files={"data.csv": b"1,2"}) as enclosure:
+    with Enclosure(addresses.supervisors, folder, files={"data.csv": b"1,2"}) as enclosure:
         box = enclosure.box("student", [Bind(folder_of_the_socket, Path("/run/judge"))])
         done = enclosure.run(["ros2", "run", "my_robot_pkg", "talker"], limit=30.0)
 
@@ -15,20 +15,19 @@ from __future__ import annotations
 
 import functools
 import os
-import select
 import shutil
-import tempfile
 import threading
-import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+from autograder.boxes.boxed_command import ANSWER_SECONDS, Finished, Running
 from autograder.boxes.channel import Channel, ChannelClosed, close_all
-from autograder.boxes.forkserver import KEEPER_MODULE, WarmProcess
+from autograder.boxes.fork_server import BESIDE
+from autograder.boxes.fork_server_client import SUPERVISOR_MODULE, ForkServer
+from autograder.boxes.held_folder import HeldFolder
+from autograder.boxes.mounts import HOME, WORK, Bind, box_arguments
 from autograder.boxes.scratch import write_files
-from autograder.boxes.view import HOME, WORK, Bind, box_arguments
-from autograder.boxes.warm import BESIDE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -38,7 +37,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Bind", "Box", "Enclosure", "Finished", "NoSandbox", "why_impossible"]
 
-_ANSWER_SECONDS = 30.0
 SCRATCH_BYTES = 1_000_000_000
 SCRATCH_INODES = 200_000
 OUTPUT_BYTES = 1_000_000
@@ -55,7 +53,7 @@ class Box:
     Attributes:
         name: Its name in its enclosure.
         pid: Its first process, as the host counts.
-        pidfd: Stands for that process: hand it to a warm process to enter the box. Belongs to the enclosure.
+        pidfd: Stands for that process: hand it to a fork server to enter the box. Belongs to the enclosure.
     """
 
     name: str
@@ -63,35 +61,11 @@ class Box:
     pidfd: int
 
 
-@dataclass(frozen=True)
-class Finished:
-    """How a command in a box ended.
-
-    Attributes:
-        returncode: As :class:`subprocess.Popen` has it: the exit code; negative for a signal. None where it was
-            ended at its limit.
-        output: What it said on standard output and standard error, in that order of arrival, at most the allowed
-            number of bytes.
-        cut: Whether it said more.
-        seconds: Wall time.
-    """
-
-    returncode: int | None
-    output: bytes
-    cut: bool
-    seconds: float
-
-    @property
-    def timed_out(self) -> bool:
-        """Whether it was ended at its limit."""
-        return self.returncode is None
-
-
 class Enclosure:
     """The network, the scratch and the boxes of one submission. Threads take turns.
 
     Args:
-        keepers: Where the warm process of keepers listens.
+        supervisors: Where the fork server of supervisors listens.
         folder: Ours alone and short-lived; nothing of it is seen in a box but what is bound. Made where it is not.
         files: Files to lie in the notebook's folder, by relative path.
         scratch_bytes: What all files that the boxes write may have together.
@@ -99,12 +73,12 @@ class Enclosure:
         guard: Holds the limits of the commands; they share them with whatever else it guards.
 
     Raises:
-        NoSandbox: The keeper could not make the namespaces.
+        NoSandbox: The supervisor could not make the namespaces.
     """
 
     def __init__(
         self,
-        keepers: str,
+        supervisors: str,
         folder: Path,
         *,
         files: Mapping[str, bytes] | None = None,
@@ -120,7 +94,7 @@ class Enclosure:
         self._ended: dict[str, int] = {}
         self._commands = 0
         self._turn = threading.RLock()
-        self._channel = Channel.to(keepers)
+        self._channel = Channel.to(supervisors)
         try:
             self._ask(
                 "opened",
@@ -134,13 +108,16 @@ class Enclosure:
             self._channel.close()
             raise
 
-    def box(self, name: str, binds: Sequence[Bind] = (), *, scratch: bool = True) -> Box:
-        """Make an empty box, for a warm process's child to enter.
+    def box(
+        self, name: str, binds: Sequence[Bind] = (), *, scratch: bool = True, guarded: bool = False
+    ) -> Box:
+        """Make an empty box, for a fork server's child to enter.
 
         Args:
             name: Not yet used in this enclosure.
             binds: What it is to see beside the system, Python and the course's package.
             scratch: Give it the enclosure's scratch; else it has a small one of its own.
+            guarded: Its first processes have the limits of the guard, too: who is in a box can make them do anything.
 
         Raises:
             NoSandbox: It could not be made.
@@ -151,6 +128,7 @@ class Enclosure:
             name=name,
             arguments=box_arguments(self._scratch, binds, scratch_visible=scratch),
             command=[],
+            **(self._guarded() if guarded else {}),
         )
         box = Box(name, message["pid"], descriptors[0])
         self._boxes[name] = box
@@ -221,9 +199,7 @@ class Enclosure:
                 name=name,
                 arguments=[*words, "--chdir", str(cwd)],
                 command=list(command),
-                cgroups=self._guard.cgroups if self._guard else [],
-                rlimits={**(self._guard.rlimits if self._guard else {}), **(rlimits or {})},
-                hidden_memory=self._guard.hidden_memory if self._guard else True,
+                **self._guarded(rlimits),
             )
         except BaseException:
             os.close(reading)
@@ -232,6 +208,11 @@ class Enclosure:
             close_all([nothing, writing])
         close_all(descriptors)
         return Running(self, name, message["pid"], reading, output_bytes)
+
+    @property
+    def lost(self) -> bool:
+        """Whether the supervisor is gone, and all boxes with it: then no end of a process says anything."""
+        return self._channel.hung_up
 
     def end(self, name: str) -> int:
         """Kill a box and wait until no process of it is alive.
@@ -242,13 +223,13 @@ class Enclosure:
         with self._turn:
             if name not in self._ended:
                 self._channel.send({"say": "kill", "name": name})
-            return self.wait_end(name, _ANSWER_SECONDS)
+            return self.wait_end(name, ANSWER_SECONDS)
 
     def wait_end(self, name: str, within: float) -> int:
         """Wait until a box has ended of its own.
 
         Raises:
-            ChannelClosed: It did not end in time, or the keeper is gone.
+            ChannelClosed: It did not end in time, or the supervisor is gone.
         """
         with self._turn:
             while name not in self._ended:
@@ -264,7 +245,7 @@ class Enclosure:
             for name in list(self._boxes):
                 self.end(name)
         except ChannelClosed:
-            pass  # the keeper is gone, and with it what it kept
+            pass  # the supervisor is gone, and with it what it kept
         finally:
             self._channel.close()
             for box in self._boxes.values():
@@ -279,6 +260,15 @@ class Enclosure:
     ) -> None:
         self.close()
 
+    def _guarded(self, rlimits: Mapping[str, int] | None = None) -> dict[str, Any]:
+        if self._guard is None:
+            return {"rlimits": dict(rlimits or {})}
+        return {
+            "cgroups": self._guard.cgroups,
+            "rlimits": {**self._guard.rlimits, **(rlimits or {})},
+            "hidden_memory": self._guard.hidden_memory,
+        }
+
     def _ask(
         self, expected: str, descriptors: Sequence[int] = (), **message: Any
     ) -> tuple[dict[str, Any], list[int]]:
@@ -286,12 +276,12 @@ class Enclosure:
             with self._turn:
                 self._channel.send(message, descriptors)
                 while True:
-                    answer, received = self._channel.receive(_ANSWER_SECONDS)
+                    answer, received = self._channel.receive(ANSWER_SECONDS)
                     if answer["say"] == expected:
                         return answer, received
                     self._take(answer, received)
         except ChannelClosed as error:
-            raise NoSandbox(f"the keeper of the boxes is gone: {error}") from error
+            raise NoSandbox(f"the supervisor of the boxes is gone: {error}") from error
 
     def _take(self, message: dict[str, Any], descriptors: Sequence[int]) -> None:
         close_all(descriptors)
@@ -299,75 +289,6 @@ class Enclosure:
             self._ended[message["name"]] = message["status"]
         elif message["say"] == "failed":
             raise NoSandbox(message["why"])
-
-
-class Running:
-    """A command that runs in a box; leaving the context ends it and all that it has started."""
-
-    def __init__(self, enclosure: Enclosure, name: str, pid: int, output: int, most: int) -> None:
-        self._enclosure, self._name, self._output, self._most = enclosure, name, output, most
-        self._began = time.monotonic()
-        self._kept = bytearray()
-        self._cut = False
-        self.pid = pid
-        """The first process of the box, as the host counts."""
-
-    def fileno(self) -> int:
-        """Readable when it has said something, or when it and all that hold its output have ended."""
-        return self._output
-
-    def read(self, within: float) -> bool:
-        """Take up what it says; False once it has ended.
-
-        Args:
-            within: Seconds to wait for something to read.
-        """
-        if not select.select([self._output], [], [], max(0.0, within))[0]:
-            return True
-        piece = os.read(self._output, 1 << 16)
-        room = self._most - len(self._kept)
-        self._kept += piece[:room]
-        self._cut = self._cut or len(piece) > room
-        return bool(piece)
-
-    @property
-    def said(self) -> bytes:
-        """What it has said so far, as far as it was taken up and is kept."""
-        return bytes(self._kept)
-
-    def wait(self, limit: float) -> Finished:
-        """Wait until it ends, and end it at its limit.
-
-        Args:
-            limit: Seconds of wall time from its start.
-        """
-        deadline = self._began + limit
-        running = True
-        while running and time.monotonic() < deadline:
-            running = self.read(deadline - time.monotonic())
-        if running:
-            self._enclosure.end(self._name)
-            return self._finished(None)
-        status = self._enclosure.wait_end(self._name, _ANSWER_SECONDS)
-        return self._finished(status if status < 128 else 128 - status)
-
-    def end(self) -> None:
-        """Kill it and all that it has started; may be called twice."""
-        if self._output >= 0:
-            self._enclosure.end(self._name)
-            os.close(self._output)
-            self._output = -1
-
-    def _finished(self, returncode: int | None) -> Finished:
-        return Finished(returncode, self.said, self._cut, time.monotonic() - self._began)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.end()
 
 
 @functools.cache
@@ -381,11 +302,11 @@ def why_impossible() -> str:
             "bubblewrap is not installed: ./course setup installs it as root on Debian or Ubuntu, "
             "otherwise type: sudo apt-get install -y bubblewrap"
         )
-    with tempfile.TemporaryDirectory(prefix="box-") as name:
-        folder = Path(name)
-        keepers = WarmProcess(BESIDE, KEEPER_MODULE, folder / "keepers")
+    with HeldFolder("autograder-try-") as held:
+        folder = held.path
+        supervisors = ForkServer(BESIDE, SUPERVISOR_MODULE, folder / "supervisors")
         try:
-            with Enclosure(keepers.address, folder / "try") as enclosure:
+            with Enclosure(supervisors.address, folder / "try") as enclosure:
                 done = enclosure.run(["/bin/sh", "-c", f"test -d {HOME}"], limit=20.0)
             return (
                 ""
@@ -395,7 +316,7 @@ def why_impossible() -> str:
         except (NoSandbox, OSError) as error:
             return f"{_reason(str(error))} ({error})"
         finally:
-            keepers.stop()
+            supervisors.stop()
 
 
 def _reason(error: str) -> str:

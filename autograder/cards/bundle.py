@@ -4,16 +4,35 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.cards.html import card_html, templates
+from autograder.cards.html import card_html, templates, waiting_html
 from autograder.cards.text import card_text
 
 if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 
-def mimebundle(verdict: Verdict) -> dict[str, str]:
-    """The card for ``display(..., raw=True)``: HTML for the browser, text for what shows no HTML."""
-    return {"text/html": card_html(verdict), "text/plain": card_text(verdict)}
+def mimebundle(verdict: Verdict, *, before: float | None = None, notice: str = "") -> dict[str, str]:
+    """The card for ``display(..., raw=True)``: HTML for the browser, text for what shows no HTML.
+
+    Args:
+        verdict: What the judge found.
+        before: The points of the try before this one, where there was one.
+        notice: Why the card is out of date; it is then dimmed. Empty for one that is not.
+    """
+    return {
+        "text/html": card_html(verdict, before=before, notice=notice),
+        "text/plain": card_text(verdict, before=before, notice=notice),
+    }
+
+
+def waiting_bundle(title: str, doing: str) -> dict[str, str]:
+    """What stands in a card's place while there is none.
+
+    Args:
+        title: The exercise.
+        doing: What goes on.
+    """
+    return {"text/html": waiting_html(title, doing), "text/plain": f"{title}: {doing}"}
 
 
 def prepare() -> None:

@@ -8,11 +8,12 @@ a Python programmer knows (``\x1b``), or cut in the middle with a mark.
 from __future__ import annotations
 
 import functools
-import re
 import unicodedata
 
+import re2
+
 # What ends a colour or style in a terminal; carries no text (ECMA-48, "SGR").
-_COLOUR_CODE = re.compile(r"\x1b\[[0-9;:]*m")
+_COLOUR_CODE = re2.compile(r"\x1b\[[0-9;:]*m")
 
 # Joiners shape Persian words and family emoji; the other format characters are invisible or reorder a line.
 _HARMLESS_FORMAT = frozenset("\u200c\u200d\u00ad")

@@ -9,8 +9,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from autograder.cards import wording
+from autograder.cards.differences import difference, marked
 from autograder.cards.readable import block, one_line, paragraph, wrap
 from autograder.cards.readable import width as columns
+from autograder.cards.tracebacks import place
 from autograder.cards.traffic import Part, Traffic, traffic
 from autograder.verdict import State
 
@@ -28,24 +30,30 @@ _COLOURS = {State.PASSED: "32", State.FAILED: "33", State.NOT_CHECKED: "34"}
 _NARROWEST = 40
 
 
-def card_text(verdict: Verdict, *, width: int = 88, color: bool = False) -> str:
+def card_text(
+    verdict: Verdict, *, width: int = 88, color: bool = False, before: float | None = None, notice: str = ""
+) -> str:
     """Show a verdict in a terminal.
 
     Args:
         verdict: What the judge found.
         width: Columns of a line; 40 at least. Lines of a traceback may be longer.
         color: Whether to add ANSI codes (bold, and a colour for the state); they carry no meaning.
+        before: The points of the try before this one, where there was one.
+        notice: Why the card is out of date; empty for one that is not.
 
     Returns:
         Lines without a newline at the end.
     """
-    return "\n".join(_Writer(max(width, _NARROWEST), color).card(verdict))
+    return "\n".join(_Writer(max(width, _NARROWEST), color, before, notice).card(verdict))
 
 
 class _Writer:
-    def __init__(self, width: int, color: bool) -> None:
+    def __init__(self, width: int, color: bool, before: float | None, notice: str) -> None:
         self._width = width
         self._color = color
+        self._before = before
+        self._notice = notice
 
     def card(self, verdict: Verdict) -> Iterator[str]:
         yield from self._head(verdict)
@@ -71,17 +79,23 @@ class _Writer:
         yield from (self._styled(line, "1") for line in self._wrapped(title))
         tally = wording.tally(verdict)
         state = wording.STATE_WORDS[verdict.state].upper()
-        how = f"{state}: {wording.score_line(verdict)}" + (f", {tally}" if tally else "")
+        how = f"{state}: {wording.score_line(verdict, self._before)}" + (f", {tally}" if tally else "")
         first, *rest = self._wrapped(how, "", "  ")
         yield self._styled(state, f"1;{_COLOURS[verdict.state]}") + first.removeprefix(state)
         yield from rest
         yield "-" * min(self._width, max(columns(how), columns(title)))
+        if self._notice:
+            yield from self._wrapped(one_line(self._notice, 200, mark=_MARK))
 
     def _advice(self, verdict: Verdict) -> Iterator[str]:
         advice = wording.advice(verdict)
         if advice.heading:
             yield self._heading(advice.heading)
         yield from self._wrapped(paragraph(advice.text, 1200, mark=_MARK), "  " if advice.heading else "")
+        found = place(verdict.detail)
+        if found:
+            where = f"{one_line(found.where, 120, mark=_MARK)}: {one_line(found.quote, 200, mark=_MARK)}"
+            yield from self._wrapped(where.rstrip(": "), "  ", "    ")
         if advice.next_step:
             yield ""
             yield self._heading("What to do next")
@@ -98,6 +112,8 @@ class _Writer:
         if not criterion.passed:
             yield from self._named("expected", criterion.expected)
         yield from self._named("seen", criterion.seen)
+        if pieces := difference(criterion):
+            yield from self._named(wording.DIFFERENCE, marked(pieces))
 
     def _named(self, name: str, value: str) -> Iterator[str]:
         text = one_line(value, 240, mark=_MARK) or "-"
@@ -124,11 +140,11 @@ class _Writer:
             arrow = _ARROWS.get(moment.direction, " * ")
             lane = lanes[moment.lane]
             padding = " " * (lane_columns - columns(lane))
-            start = f"  {moment.t:9.3f} s  {lane}{padding} {arrow} "
+            start = f"  {part.when(index):>11}  {lane}{padding} {arrow} "
             label = one_line(moment.label, self._width - columns(start), mark=_MARK)
             yield from (line.rstrip() for line in self._wrapped(label, start, " " * columns(start)))
-            if part.left_out and index == part.after:
-                yield f"            {_MARK} {part.left_out} more left out here"
+            if index in part.gaps:
+                yield f"            {_MARK} {part.gaps[index]} more left out here"
 
     def _detail(self, detail: str) -> Iterator[str]:
         if not detail.strip():

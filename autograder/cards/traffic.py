@@ -6,44 +6,75 @@ share, and what was left out is counted, never hidden.
 
 from __future__ import annotations
 
+import functools
 import math
-from dataclasses import dataclass, replace
+from collections import Counter
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from autograder.verdict import Moment
 
 OTHER_LANES = "other names"
-"""The lane that collects what happened beyond the first `MAX_LANES` names of a part."""
+"""The lane that collects what happened where least did, in a part with more than `MAX_LANES` lanes."""
+
+OWN_LANE = "your code"
+"""The lane of what the program itself did, such as to end."""
 
 MAX_LANES = 8
 _MAX_PARTS = 12
+_LAST = {OTHER_LANES: 1, "log": 2, OWN_LANE: 3}
+_TOGETHER = 3
+"""Moments of a lane at one simulated time beyond which the clock was not what made them happen."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """One part of the check on one time axis.
+    """One part of the check on one axis.
 
     Attributes:
         title: The part's name; empty where the check has one part only.
         simulated: Whether the times are simulated seconds.
         moments: In order of time.
-        left_out: How many moments are not among ``moments``.
-        after: Index of the moment after which the left-out ones belong.
+        gaps: Index of a moment -> how many are left out behind it.
     """
 
     title: str
     simulated: bool
     moments: tuple[Moment, ...]
-    left_out: int = 0
-    after: int = 0
+    gaps: Mapping[int, int] = field(default_factory=dict)
+
+    @property
+    def left_out(self) -> int:
+        """How many moments are not among ``moments``."""
+        return sum(self.gaps.values())
 
     @property
     def lanes(self) -> tuple[str, ...]:
-        """The lanes, in order of their first moment."""
-        return tuple(dict.fromkeys(moment.lane for moment in self.moments))
+        """The lanes: names on the graph in order of their first moment, then what was said of it."""
+        found = dict.fromkeys(moment.lane for moment in self.moments)
+        return tuple(sorted(found, key=lambda lane: _LAST.get(lane, 0)))
+
+    @functools.cached_property
+    def stands_still(self) -> bool:
+        """Whether time says nothing about the order: all at once or, by a clock that was moved, nearly so."""
+        if len({moment.t for moment in self.moments}) == 1:
+            return True
+        together = Counter((moment.lane, moment.t) for moment in self.moments)
+        return self.simulated and max(together.values(), default=0) > _TOGETHER
+
+    def when(self, index: int) -> str:
+        """When a moment was: ``"0.500 s"``; its turn, such as ``"no. 3"``, where time stood still."""
+        if self.stands_still and len(self.moments) > 1:
+            return f"no. {index + 1}"
+        return f"{self.moments[index].t:.3f} s"
+
+    @property
+    def is_worth_a_picture(self) -> bool:
+        """Whether anything was on the graph or in the log: that a program ended is told elsewhere."""
+        return any(moment.lane != OWN_LANE for moment in self.moments)
 
 
 @dataclass(frozen=True)
@@ -88,22 +119,28 @@ def _part(title: str, simulated: bool, moments: list[Moment], share: int) -> Par
     ordered = _few_lanes(sorted(moments, key=lambda moment: moment.t))
     if len(ordered) <= share + 2:  # to leave out one or two saves nothing
         return Part(title, simulated, tuple(ordered))
-    # The beginning shows the pattern and the end how it went out; the middle repeats.
+    # The beginning shows the pattern and the end how it went out; the middle repeats, but for what the story is about.
     tail = share // 3
     head = share - tail
-    kept = [*ordered[:head], *ordered[-tail:]]
-    return Part(title, simulated, tuple(kept), left_out=len(ordered) - len(kept), after=head - 1)
+    kept: list[Moment] = []
+    gaps: dict[int, int] = {}
+    for index, moment in enumerate(ordered):
+        if index < head or index >= len(ordered) - tail or moment.key:
+            kept.append(moment)
+        else:
+            gaps[len(kept) - 1] = gaps.get(len(kept) - 1, 0) + 1
+    return Part(title, simulated, tuple(kept), gaps)
 
 
 def _few_lanes(moments: list[Moment]) -> list[Moment]:
-    lanes = list(dict.fromkeys(moment.lane for moment in moments))
-    if len(lanes) <= MAX_LANES:
+    counts = Counter(moment.lane for moment in moments)
+    if len(counts) <= MAX_LANES:
         return moments
-    own = set(lanes[: MAX_LANES - 1])
+    own = {lane for lane, _ in counts.most_common(MAX_LANES - 1)}
     return [
         moment
         if moment.lane in own
-        else replace(moment, lane=OTHER_LANES, label=f"{moment.lane}: {moment.label}")
+        else replace(moment, lane=OTHER_LANES, label=f"{moment.lane}: {moment.label}", key=False)
         for moment in moments
     ]
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from autograder.cards.readable import one_line
+from autograder.cards.tracebacks import TRACEBACK
 from autograder.verdict import State
 
 if TYPE_CHECKING:
@@ -81,11 +82,24 @@ def points_of(earned: float, possible: float) -> str:
     return f"{points(earned)} of {points(possible)} {'point' if possible == 1 else 'points'}"
 
 
-def score_line(verdict: Verdict) -> str:
-    """The points in words; what could not be checked has none, not zero."""
+def score_line(verdict: Verdict, before: float | None = None) -> str:
+    """The points in words; what could not be checked has none, not zero.
+
+    Args:
+        verdict: What the judge found.
+        before: The points of the try before this one, where there was one.
+    """
     if verdict.state is State.NOT_CHECKED:
         return f"no points counted (of {points(verdict.max_score)})"
-    return points_of(verdict.score, verdict.max_score)
+    earlier = points_before(verdict, before)
+    return points_of(verdict.score, verdict.max_score) + (f", {earlier} before" if earlier else "")
+
+
+def points_before(verdict: Verdict, before: float | None) -> str:
+    """The points of the try before, where they were others; else empty."""
+    if before is None or verdict.state is State.NOT_CHECKED or before == verdict.score:
+        return ""
+    return points(before)
 
 
 def tally(verdict: Verdict) -> str:
@@ -119,7 +133,7 @@ def duration(seconds: float) -> str:
 def detail_heading(detail: str) -> str:
     """What the detail is, with its most telling line: the exception at the end of a traceback."""
     last = next((line for line in reversed(detail.splitlines()) if line.strip()), "").strip()
-    if "Traceback (most recent call last)" in detail:
+    if TRACEBACK in detail:
         return f"The traceback, ending in: {last}"
     return "The last lines of output"
 
@@ -138,15 +152,24 @@ def traffic_notes(shown: Traffic) -> str:
     return " ".join(notes)
 
 
+DIFFERENCE = "the difference ([ ] is missing, { } is too much)"
+
+
 def direction(key: str) -> str:
     """A moment's direction in words."""
     return DIRECTION_WORDS.get(key) or one_line(key, 40)
 
 
-def moment_in_words(moment: Moment) -> str:
-    """``"at 0.500 s on chatter, from your code: Hello, world! 0"``."""
+def moment_in_words(moment: Moment, when: str) -> str:
+    """``"at 0.500 s on chatter, from your code: Hello, world! 0"``.
+
+    Args:
+        moment: What happened.
+        when: Its time, or its turn where time stood still.
+    """
     where = one_line(moment.lane, 60)
-    return f"at {moment.t:.3f} s on {where}, {direction(moment.direction)}: {one_line(moment.label, 200)}"
+    at = when if when.startswith("no.") else f"at {when}"
+    return f"{at} on {where}, {direction(moment.direction)}: {one_line(moment.label, 200)}"
 
 
 def part_in_words(part: Part) -> str:
@@ -155,10 +178,12 @@ def part_in_words(part: Part) -> str:
 
 
 def _lane_in_words(part: Part, lane: str) -> str:
-    moments = [moment for moment in part.moments if moment.lane == lane]
-    counts = Counter(direction(moment.direction) for moment in moments)
+    members = [index for index, moment in enumerate(part.moments) if moment.lane == lane]
+    counts = Counter(direction(part.moments[index].direction) for index in members)
     listed = ", ".join(f"{count} {words}" for words, count in counts.items())
-    times = f"at {moments[0].t:.2f} s"
-    if len(moments) > 1:
-        times = f"from {moments[0].t:.2f} s to {moments[-1].t:.2f} s"
+    times = part.when(members[0])
+    if len(members) > 1:
+        times = f"from {times} to {part.when(members[-1])}"
+    elif not part.stands_still:
+        times = f"at {times}"
     return f"{one_line(lane, 60)}: {listed}, {times}."

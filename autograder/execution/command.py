@@ -15,9 +15,9 @@ from autograder.boxes.execution import Kind
 from autograder.execution.findings import Finding, findings
 from autograder.execution.plan import Planned, plan
 from autograder.execution.report import write_report
-from autograder.grading import engine
-from autograder.grading.progress import BatchProgress
-from autograder.grading.worker import JUDGE
+from autograder.grading.running import engine
+from autograder.grading.running.progress import BatchProgress
+from autograder.grading.running.worker import JUDGE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -115,7 +115,7 @@ def execute_all(
             [item.task for item in _longest_first(planned)],
             scratch,
             jobs,
-            on_start=lambda _: progress.started(),
+            on_start=lambda task: progress.started(task.label),
             judge=judge,
         )
         with contextlib.closing(running):
@@ -124,7 +124,8 @@ def execute_all(
                 found = tuple(findings(item, done.execution))
                 page = write_report(reports, item, done.execution, found) if found else None
                 results[id(done.task)] = Executed(item, done.execution, found, page)
-                progress.finished(f"{item.label} ({done.execution.seconds:.1f} s)", failed=bool(found))
+                note = f" ({done.execution.seconds:.1f} s)"
+                progress.finished(done.task.label, failed=bool(found), note=note)
     return [results[id(item.task)] for item in planned]
 
 

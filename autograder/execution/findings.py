@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import re
+import re  # noqa: TID251  (the course's own notebooks)
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 

@@ -7,10 +7,10 @@ from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from autograder.boxes.limits import Limits
-from autograder.grading import nodes
-from autograder.grading.preparing import cells_of
+from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding.task_making import cells_of
 from autograder.grading.task import Task
-from autograder.masters.layout import chapter_path, masters
+from autograder.masters.layout import chapter_path, lab_name, masters
 from autograder.masters.source import source_notebook
 
 if TYPE_CHECKING:
@@ -70,19 +70,21 @@ def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
         autograder.masters.MasterError: A master cannot be used.
     """
     found = masters(root)
-    known = [master.stem for master in found]
+    known = [lab_name(master) for master in found]
     for name in only:
         if name not in known:
             raise NothingToExecuteError(f"there is no notebook {name!r}. There are: {', '.join(known)}.")
     planned = []
     for master in found:
-        if only and master.stem not in only:
+        if only and lab_name(master) not in only:
             continue
         chapter = chapter_path(root, master)
         if not chapter.is_file():
             raise NothingToExecuteError(f"{chapter.relative_to(root)} is not there: run `autograder build`.")
-        planned.append(_planned(Kind.MASTER, master.stem, source_notebook(master)))
-        planned.append(_planned(Kind.CHAPTER, master.stem, nodes.read(chapter.read_text(encoding="utf-8"))))
+        planned.append(_planned(Kind.MASTER, lab_name(master), source_notebook(master)))
+        planned.append(
+            _planned(Kind.CHAPTER, lab_name(master), nodes.read(chapter.read_text(encoding="utf-8")))
+        )
     return planned
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from nbconvert import HTMLExporter
 
 from autograder.boxes.execution import Kind as CellKind
-from autograder.grading import nodes
+from autograder.grading.rebuilding import nodes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

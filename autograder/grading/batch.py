@@ -12,22 +12,33 @@ from __future__ import annotations
 import contextlib
 import functools
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from autograder.grading import gradebook, places
-from autograder.grading.class_directory import ClassDirectory, Refused, Submission
-from autograder.grading.errors import GradingError, clear_disk_errors, is_disk_full
-from autograder.grading.fingerprints import Fingerprints
-from autograder.grading.journal import Journal
-from autograder.grading.progress import BatchProgress
-from autograder.grading.records import Records
-from autograder.grading.released import check_release, graded_cells
-from autograder.grading.report import NOT_GRADED, NOT_SUBMITTED, GradeReport, Row, rows_of, write_csv
-from autograder.grading.timings import Timings
+from autograder.grading.classes.class_directory import ClassDirectory, Refused, Submission
+from autograder.grading.classes.timestamps import handed_in_at, is_not_believed
+from autograder.grading.collecting.tidying import Tidied, tidy
+from autograder.grading.entering import gradebook
+from autograder.grading.entering.attempts import Attempt, note, now
+from autograder.grading.entering.journal import Journal
+from autograder.grading.entering.records import Records
+from autograder.grading.errors import MasterUnusable, clear_disk_errors, is_disk_full
+from autograder.grading.following.origins import moved_on, warning
+from autograder.grading.rebuilding.course_version import course_version
+from autograder.grading.rebuilding.fingerprints import Fingerprints
+from autograder.grading.rebuilding.source_points import check_release, read_released
+from autograder.grading.reporting.report import GradeReport, rows_of, write_csv
+from autograder.grading.running import places
+from autograder.grading.running.progress import BatchProgress
+from autograder.grading.running.timings import Timings
+from autograder.grading.table.differences import Difference, Runs
+from autograder.grading.table.entries import SubmissionEntry, read_entries, read_students
+from autograder.grading.table.roster import enter_roster
+from autograder.grading.table.true_rows import true_rows
+from autograder.grading.work import Work, check_known, without_grade, would_change
 
 # What only a class with something to grade needs is imported where it is used: nbgrader alone takes a second.
 
@@ -35,39 +46,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from autograder.boxes.execution import Execution
-    from autograder.grading.places import Execute
-    from autograder.grading.released import GradedCell
+    from autograder.grading.entering.writer import Writer
+    from autograder.grading.rebuilding.source_points import GradedCell
+    from autograder.grading.running.places import Execute
+    from autograder.grading.table.entries import Entries
     from autograder.grading.task import Task
-    from autograder.grading.writer import Writer
-
-
-@dataclass
-class _Work:
-    """A submission on its way through the batch.
-
-    Attributes:
-        submission: Where it lies.
-        fingerprint: Of what it is made from, as it was at the start.
-        notebooks: The names of its notebooks.
-        results: What is known of the notebooks that are not written down yet, by notebook.
-        rows: What the gradebook has for it, or why it has nothing; None while nothing is known.
-        written: Whether the gradebook holds exactly these results.
-    """
-
-    submission: Submission
-    fingerprint: str
-    notebooks: Sequence[str]
-    results: dict[str, tuple[Task, Execution]] = field(default_factory=dict)
-    rows: tuple[Row, ...] | None = None
-    written: bool = False
-
-    @property
-    def complete(self) -> bool:
-        return len(self.results) == len(self.notebooks)
-
-    @property
-    def pairs(self) -> list[tuple[Task, Execution]]:
-        return [self.results[notebook] for notebook in self.notebooks]
 
 
 def grade(
@@ -81,6 +64,7 @@ def grade(
     console: Console | None = None,
     judge: str = "",
     scheduler: str | None = None,
+    dry_run: bool = False,
 ) -> GradeReport:
     """Grade what was submitted in a class.
 
@@ -94,6 +78,8 @@ def grade(
         console: Where progress is shown; standard error by default.
         judge: What makes a judge, as ``module:class``; the real one by default.
         scheduler: The address of a Dask scheduler whose workers execute the notebooks; this machine by default.
+        dry_run: Enter nothing: execute what would be executed and say who would get other points. What was executed
+            is kept for the run that enters it.
 
     Returns:
         The report. Submissions that could not be graded are in it, with zero points and the reason.
@@ -105,7 +91,7 @@ def grade(
     console = console or Console(stderr=True)
     directory = ClassDirectory(Path(path))
     if scheduler is None:
-        from autograder.grading import sandboxing
+        from autograder.grading.running import sandboxing
 
         sandboxing.require(directory)
         place = places.here(directory, jobs, judge)
@@ -117,30 +103,40 @@ def grade(
         tell = functools.partial(console.print, markup=False, highlight=False, soft_wrap=True)
         place = places.on_cluster(directory, scheduler, judge, tell)
     with directory.lock(), clear_disk_errors(directory.path), contextlib.ExitStack() as stack:
-        batch = _Batch(directory, console, feedback=feedback)
+        places.remove_leftovers(directory)
+        batch = _Batch(directory, console, feedback=feedback, dry_run=dry_run)
         batch.collect(assignments, students)
         batch.plan(again)
         # Before anything is taken back: where nobody can execute anything, all stays as it is.
         execute = stack.enter_context(place) if batch.unsettled else None
-        batch.take_back()
+        if not dry_run:
+            batch.take_back()
         batch.run(execute)
         return batch.report(time.monotonic() - began)
 
 
 class _Batch:
-    def __init__(self, directory: ClassDirectory, console: Console, *, feedback: bool) -> None:
+    def __init__(self, directory: ClassDirectory, console: Console, *, feedback: bool, dry_run: bool) -> None:
+        self._dry_run = dry_run
         self._directory = directory
         self._console = console
         self._feedback = feedback
         self._fingerprints = Fingerprints(directory)
-        self._cells: dict[str, tuple[GradedCell, ...]] = graded_cells(directory, self._fingerprints)
+        released = read_released(directory, self._fingerprints)
+        self._cells: dict[str, tuple[GradedCell, ...]] = released.cells
+        self._not_usable = released.unusable
+        if not released.cells and released.unusable:
+            raise MasterUnusable(next(iter(released.unusable.values())))
         check_release(directory, self._cells)
         self._journal = Journal(directory.state / "journal")
         self._records = Records(directory)
-        self._works: list[_Work] = []
-        self._others: list[_Work] = []
+        self._works: list[Work] = []
+        self._others: list[Work] = []
         self._refused: list[Refused] = []
         self._problems: list[str] = []
+        self._notices: list[str] = []
+        self._entries: Entries = {}
+        self._chosen: tuple[Sequence[str], Sequence[str]] = (), ()
         self._timings = Timings()
         self._began = time.monotonic()
         self._executed = 0
@@ -149,22 +145,53 @@ class _Batch:
 
     @functools.cached_property
     def _writer(self) -> Writer:
-        from autograder.grading.writer import Writer
+        from autograder.grading.entering.writer import Writer
 
         return Writer(self._directory, self._records)
 
     def collect(self, assignments: Sequence[str], students: Sequence[str]) -> None:
         """Find the submissions."""
+        tidied = Tidied()
+        if not self._dry_run:
+            enter_roster(self._directory)
+            tidied = tidy(self._directory)
+        self._notices += tidied.notices
+        for name in moved_on(self._directory, assignments or self._cells):
+            self._notices.append(warning(self._directory, name))
+            self._console.print(f"note: {self._notices[-1]}", markup=False, highlight=False, soft_wrap=True)
         found, refused = self._directory.submissions()
-        _check_known(assignments, self._directory.assignments(), "assignment")
-        _check_known(students, sorted({submission.student for submission in found}), "student")
+        refused += [*tidied.refused, *self._unusable(assignments)]
+        found = [submission for submission in found if submission.assignment in self._cells]
+        check_known(assignments, self._directory.assignments(), "assignment")
+        there = {submission.student for submission in found}
+        check_known(students, sorted(there | read_students(self._directory.gradebook_url).keys()), "student")
+        self._chosen = assignments, students
         self._refused = refused
         names = {assignment: self._directory.notebooks(assignment) for assignment in self._cells}
         for submission in found:
-            work = _Work(submission, self._fingerprints.of(submission), names[submission.assignment])
+            work = Work(submission, self._fingerprints.of(submission), names[submission.assignment])
+            if is_not_believed(submission.folder):
+                self._notices.append(
+                    f"{submission.student}/{submission.assignment}: its timestamp.txt was not written by "
+                    "`autograder collect`, as the others of this class were, and is not believed"
+                )
             chosen = not assignments or submission.assignment in assignments
             chosen = chosen and (not students or submission.student in students)
             (self._works if chosen else self._others).append(work)
+
+    def _unusable(self, assignments: Sequence[str]) -> Iterator[Refused]:
+        """The assignments that cannot be graded, which hold up no other.
+
+        Raises:
+            MasterUnusable: It was asked for by name.
+        """
+        for name, reason in self._not_usable.items():
+            if name in assignments:
+                raise MasterUnusable(reason)
+            if not assignments:
+                yield Refused(
+                    self._directory.path / "source" / name, f"{reason} The other assignments are graded."
+                )
 
     def plan(self, again: bool) -> None:
         """Settle what is known already."""
@@ -172,8 +199,18 @@ class _Batch:
             assignment: gradebook.scores(self._directory.gradebook_url, assignment)
             for assignment in sorted({work.submission.assignment for work in [*self._works, *self._others]})
         }
+        self._entries = read_entries(self._directory.gradebook_url)
         for work in self._others:
             self._settle(work, in_gradebook)
+        older = sum(
+            record is not None and record.course not in ("", course_version())
+            for record in (self._records.get(work.submission) for work in self._works)
+        )
+        if older:
+            self._notices.append(
+                f"{older} submissions had been graded with another version of the course; `autograder compare` says "
+                "who has other points since, and `autograder grade --dry-run` says it before a run"
+            )
         for work in self._works:
             if again:
                 self._journal.forget(work.submission, work.notebooks)
@@ -199,7 +236,8 @@ class _Batch:
         for work in self._works:
             if work.written:
                 self._reused += len(work.notebooks)
-                self._make_pages(work)
+                if not self._dry_run:
+                    self._make_pages(work, self._keep_time(work.submission))
             else:
                 self._take_known(work)
         waiting = [work for work in self._works if work.rows is None]
@@ -207,9 +245,12 @@ class _Batch:
             return
         works = {(work.submission.student, work.submission.assignment): work for work in waiting}
         missing = sum(len(work.notebooks) - len(work.results) for work in waiting)
-        with BatchProgress(self._console, missing) as progress:
+        from autograder.grading.rebuilding.task_making import limits_of
+
+        longest = limits_of(self._directory).longest
+        with BatchProgress(self._console, missing, longest=longest) as progress:
             self._timings.first_started = time.monotonic() - self._began
-            results = execute(self._tasks(waiting), lambda _: progress.started())
+            results = execute(self._tasks(waiting), lambda task: progress.started(task.label))
             with contextlib.closing(results):
                 for done in results:
                     self._timings.last_ended = time.monotonic() - self._began
@@ -221,13 +262,42 @@ class _Batch:
 
     def report(self, seconds: float) -> GradeReport:
         """The report on what was asked for; ``grades.csv``, written here, has the whole class."""
-        rows = self._rows(self._works)
-        write_csv(self._directory.path / "grades.csv", self._rows([*self._works, *self._others]))
+        url = self._directory.gradebook_url
+        works = {
+            (work.submission.student, work.submission.assignment): work
+            for work in (*self._works, *self._others)
+        }
+        entries = read_entries(url)
+        judged = {key: work.rows for key, work in works.items() if work.rows is not None}
+        for student, assignment in sorted(entries.keys() - works.keys()):
+            folder = self._directory.path / "submitted" / student / assignment
+            record = self._records.get(Submission(student, assignment, folder))
+            if record is not None:
+                judged[student, assignment] = record.rows
+                self._notices.append(
+                    f"{student}/{assignment} is not in submitted any more; its points stay in the gradebook"
+                )
+        rows = true_rows(read_students(url), self._cells, judged, entries, works)
+        changes: list[Difference] = []
+        if self._dry_run:
+            changes = would_change(self._works, entries, self._cells)
+        else:
+            write_csv(self._directory.path / "grades.csv", rows)
+            Runs(self._directory.state).keep(course_version(), rows)
+        assignments, students = self._chosen
+        chosen = [
+            row
+            for row in rows
+            if (not assignments or row.assignment in assignments)
+            and (not students or row.student in students)
+        ]
         return GradeReport(
             path=self._directory.path,
-            rows=tuple(rows),
-            refused=tuple(self._refused),
+            rows=tuple(chosen),
+            refused=tuple(refused for refused in self._refused if self._is_asked_for(refused)),
             problems=tuple(self._problems),
+            notices=tuple(self._notices),
+            would_change=tuple(changes) if self._dry_run else None,
             executed=self._executed,
             reused=self._reused,
             written=self._written,
@@ -235,12 +305,27 @@ class _Batch:
             timings=self._timings,
         )
 
-    def _settle(self, work: _Work, in_gradebook: dict[str, dict[str, dict[str, gradebook.Scores]]]) -> None:
+    def _is_asked_for(self, refused: Refused) -> bool:
+        """Whether it belongs to the students and assignments that were named."""
+        submitted = self._directory.path / "submitted"
+        if not refused.path.is_relative_to(submitted):
+            return True
+        parts = refused.path.relative_to(submitted).parts
+        assignments, students = self._chosen
+        return (not students or parts[0] in students) and (
+            not assignments or len(parts) < 3 or parts[1] in assignments
+        )
+
+    def _settle(self, work: Work, in_gradebook: dict[str, dict[str, dict[str, gradebook.Scores]]]) -> None:
         """Find out whether the gradebook has the grades of exactly this submission."""
         record = self._records.get(work.submission)
         scores = in_gradebook[work.submission.assignment].get(work.submission.student, {})
         if record is None or not self._records.holds(work.submission, record, scores):
             return
+        try:
+            handed_in_at(work.submission.folder)
+        except ValueError:
+            return  # the writer refuses it, with the reason
         if record.fingerprint != work.fingerprint:
             # Other bytes, but perhaps the same work: saved again, or the course was changed elsewhere.
             keys = {task.notebook: task.key() for task in self._tasks_of(work.submission)}
@@ -250,7 +335,7 @@ class _Batch:
         work.rows = record.rows
         work.written = True
 
-    def _take_known(self, work: _Work) -> None:
+    def _take_known(self, work: Work) -> None:
         """Take over what the journal knows; write the submission down where that is all of it."""
         if not self._journal.has(work.submission, work.notebooks):
             return
@@ -262,7 +347,7 @@ class _Batch:
         if work.complete:
             self._write(work)
 
-    def _tasks(self, works: Sequence[_Work]) -> Iterator[Task]:
+    def _tasks(self, works: Sequence[Work]) -> Iterator[Task]:
         """What has to be executed, made when it is its turn."""
         for work in works:
             for task in self._tasks_of(work.submission):
@@ -272,12 +357,12 @@ class _Batch:
                     yield task
 
     def _tasks_of(self, submission: Submission) -> list[Task]:
-        from autograder.grading.preparing import tasks_of
+        from autograder.grading.rebuilding.task_making import tasks_of
 
         with self._timings.measure("rebuild"):
             return tasks_of(self._directory, submission)
 
-    def _take(self, work: _Work, task: Task, execution: Execution) -> None:
+    def _take(self, work: Work, task: Task, execution: Execution) -> None:
         """Keep a result, and write its submission where it is complete now."""
         self._executed += 1
         self._timings.count(task.cells, execution)
@@ -288,9 +373,13 @@ class _Batch:
         if work.complete:
             self._write(work)
 
-    def _write(self, work: _Work) -> None:
+    def _write(self, work: Work) -> None:
         rows = tuple(row for pair in work.pairs for row in rows_of(*pair))
-        from autograder.grading.writer import NotWritten
+        if self._dry_run:
+            work.rows = rows
+            work.results.clear()
+            return
+        from autograder.grading.entering.writer import NotWritten
 
         try:
             with self._timings.measure("gradebook"):
@@ -303,65 +392,48 @@ class _Batch:
             if is_disk_full(error):
                 raise
             self._problem(str(error))
-            work.rows = tuple(_without_grade(row) for row in rows)
+            work.rows = tuple(without_grade(row) for row in rows)
         else:
             work.rows = rows
             work.written = True
             self._written += 1
-            self._make_pages(work)
+            attempt = Attempt(
+                now(), work.submission.assignment, work.fingerprint, course_version(), tuple(rows)
+            )
+            note(self._directory, work.submission.student, attempt)
+            self._make_pages(work, self._read(work.submission))
         work.results.clear()
 
-    def _make_pages(self, work: _Work) -> None:
-        """Make the pages of a submission that has none."""
+    def _keep_time(self, submission: Submission) -> SubmissionEntry:
+        """Follow what is written now about when a submission was handed in, and when it was due."""
+        entry = self._entries.get((submission.student, submission.assignment), SubmissionEntry())
+        at = handed_in_at(submission.folder)
+        moved = at is not None and at != entry.handed_in
+        if not (moved or entry.is_late or entry.penalty):
+            return entry
+        with self._timings.measure("gradebook"):
+            self._writer.enter_time(submission, at if moved else None)
+        return self._read(submission)
+
+    def _read(self, submission: Submission) -> SubmissionEntry:
+        key = (submission.student, submission.assignment)
+        entries = read_entries(self._directory.gradebook_url, student=key[0], assignment=key[1])
+        return entries.get(key, SubmissionEntry())
+
+    def _make_pages(self, work: Work, entry: SubmissionEntry) -> None:
+        """Make the pages of a submission that has none, or whose pages say what the gradebook said before."""
         submission = work.submission
-        if not self._feedback or self._records.has_pages(submission, work.notebooks):
+        if not self._feedback:
+            return
+        record = self._records.get(submission)
+        if self._records.has_pages(submission, work.notebooks) and record and record.shown == entry.shown():
             return
         with self._timings.measure("feedback"):
             self._writer.write_feedback(submission)
         if not self._records.has_pages(submission, work.notebooks):
             self._problem(f"feedback for {submission.student}/{submission.assignment} could not be made")
+        elif record:
+            self._records.put(submission, replace(record, shown=entry.shown()))
 
     def _problem(self, text: str) -> None:
         self._problems.append(f"{text} (see {self._directory.state / 'nbgrader.log'})")
-
-    def _rows(self, works: Sequence[_Work]) -> list[Row]:
-        found = {(work.submission.student, work.submission.assignment): work for work in works}
-        students = sorted({student for student, _ in found})
-        assignments = sorted({assignment for _, assignment in found})
-        return [
-            row
-            for student in students
-            for assignment in assignments
-            for row in self._rows_of(student, assignment, found.get((student, assignment)))
-        ]
-
-    def _rows_of(self, student: str, assignment: str, work: _Work | None) -> Sequence[Row]:
-        if work is not None and work.rows is not None:
-            return work.rows
-        state = NOT_SUBMITTED if work is None else NOT_GRADED
-        return [
-            Row(student, assignment, cell.exercise, 0.0, cell.worth, state)
-            for cell in self._cells[assignment]
-        ]
-
-
-def _without_grade(row: Row) -> Row:
-    reason = "The result could not be entered into the gradebook; it has zero points there."
-    return Row(
-        row.student,
-        row.assignment,
-        row.exercise,
-        0.0,
-        row.max_score,
-        "not_checked",
-        "not_written_down",
-        reason,
-    )
-
-
-def _check_known(wanted: Sequence[str], known: Sequence[str], what: str) -> None:
-    for name in wanted:
-        if name not in known:
-            raise GradingError(
-                f"There is no {what} named {name} here. There is: {', '.join(known) or 'none'}."
-            )

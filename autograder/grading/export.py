@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from nbgrader.api import MissingEntry
 from nbgrader.plugins import ExportPlugin
 
-from autograder.grading.journal import write_whole
-from autograder.grading.spreadsheet import csv_text
+from autograder.grading.entering.journal import write_whole
+from autograder.grading.reporting.spreadsheet import csv_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -34,7 +34,7 @@ class SafeCsvExport(ExportPlugin):
         """
         to = Path(self.to or "grades.csv")
         self.log.info("Exporting grades to %s", to)
-        write_whole(to, csv_text([(*_ABOUT, *_NUMBERS), *self._rows(gradebook)]).encode())
+        write_whole(to, csv_text([(*_ABOUT, *_NUMBERS), *self._rows(gradebook)]).encode("utf-8-sig"))
 
     def _rows(self, gradebook: Gradebook) -> Iterator[tuple[str | float, ...]]:
         for assignment in gradebook.assignments:

@@ -12,10 +12,10 @@ from typing import Any
 
 from nbconvert.exporters import NotebookExporter
 
-from autograder.grading import gradebook
-from autograder.grading.class_directory import ClassDirectory
-from autograder.grading.nbgrader_guard import guard
-from autograder.grading.preparing import rebuilt_notebook
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.entering import gradebook
+from autograder.grading.entering.nbgrader_guard import guard
+from autograder.grading.rebuilding.task_making import rebuilt_notebook
 
 
 class SubmissionExporter(NotebookExporter):

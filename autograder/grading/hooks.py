@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from autograder.grading import gradebook
-from autograder.grading.class_directory import ClassDirectory
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.entering import gradebook
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

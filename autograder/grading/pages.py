@@ -7,7 +7,7 @@ formgrader all come through here.
 from __future__ import annotations
 
 import functools
-import re
+import re  # noqa: TID251  (a trusted template)
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,8 +16,10 @@ from jinja2 import pass_context
 from nbconvert.exporters import HTMLExporter
 from traitlets.config import Config
 
-from autograder.grading.harmless import clean, is_the_masters, make_harmless
-from autograder.grading.nbgrader_guard import guard
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.entering.nbgrader_guard import guard
+from autograder.grading.returning.page_head import mark_waiting, with_summary, without_dead_links
+from autograder.grading.returning.sanitize import clean, is_the_masters, make_harmless
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -67,11 +69,16 @@ class FeedbackExporter(HTMLExporter):
         yield "markdown2html", markdown_to_html
         yield "without_scripts", without_scripts
         yield "part_of_page", part_of_page
+        yield "with_summary", with_summary
 
     def from_notebook_node(  # type: ignore[override]
         self, nb: NotebookNode, resources: dict[str, Any] | None = None, **kw: Any
     ) -> tuple[str, dict[str, Any]]:
         """Make the page of one notebook."""
+        names = (resources or {}).get("nbgrader", {})
+        if {"student", "assignment", "notebook"} <= set(names):
+            converter: Any = self.parent
+            mark_waiting(nb, ClassDirectory(Path(converter.coursedir.root)).gradebook_url, names)
         page: tuple[str, dict[str, Any]] = super().from_notebook_node(make_harmless(nb), resources, **kw)
         return page
 
@@ -83,7 +90,7 @@ def markdown_to_html(context: Any, source: str) -> str:
     In ``nbgrader_config.py`` it is ``HTMLExporter.filters["markdown2html"]``, for formgrader.
     """
     rendered: str = _NBCONVERTS.markdown2html(context, source)
-    return rendered if is_the_masters(context.get("cell", {})) else clean(rendered)
+    return without_dead_links(rendered if is_the_masters(context.get("cell", {})) else clean(rendered))
 
 
 def part_of_page(render: Callable[[], str], depends_on: Any) -> str:

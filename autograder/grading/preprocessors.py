@@ -15,15 +15,19 @@ from traitlets import Bool, Float, Integer
 from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution, Kind
 from autograder.boxes.limits import Limits
 from autograder.cards.bundle import mimebundle
-from autograder.grading import engine, nodes, sandboxing
-from autograder.grading.class_directory import ClassDirectory
-from autograder.grading.demonstrations import LEFT_OUT
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.entering.journal import Journal
+from autograder.grading.entering.points import points
 from autograder.grading.exporter import SubmissionExporter
-from autograder.grading.journal import Journal
-from autograder.grading.points import points
-from autograder.grading.preparing import task_of
+from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding.demonstrations import LEFT_OUT
+from autograder.grading.rebuilding.task_making import task_of
+from autograder.grading.returning.sanitize import harmless_output, make_harmless
+from autograder.grading.running import engine, sandboxing
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
     from nbformat import NotebookNode
 
     from autograder.grading.task import Task
@@ -99,24 +103,55 @@ def with_results(nb: NotebookNode, task: Task, execution: Execution) -> Notebook
             count += 1
             node.execution_count = count
         if cell.check is not None:
-            node.outputs = _graded_outputs(cell.check, execution.verdicts[index])
+            node.outputs = _graded_outputs(cell.check, execution.verdicts[index], run.outputs)
         else:
             node.outputs = [nodes.output(**output) for output in run.outputs]
             node.outputs += _remark(node, cell, run.ended, task.limits) if execution.cells else []
+    # Here and not on the page: formgrader shows what lies in autograded/, and it cleans nothing.
+    make_harmless(nb, range(len(nb.cells)) if execution.trouble else execution.as_typed)
+    nb.cells = list(_with_rubrics(nb.cells))
     if not task.boxed:
         nb.cells.insert(0, nodes.cell(Kind.MARKDOWN, f"**{sandboxing.NOTE}**"))
     return nb
 
 
-def _graded_outputs(check: Check, verdict: Verdict) -> list[NotebookNode]:
-    """The card, and as the cell's value the score: nbgrader gives a cell that number of points."""
+def _with_rubrics(cells: Sequence[NotebookNode]) -> Iterator[NotebookNode]:
+    """The cells, and below each question that a person grades what the instructor wrote for that person."""
+    for cell in cells:
+        rubric = cell.metadata.pop("autograder", {}).get("rubric", "")
+        yield cell
+        if rubric:
+            text = f"**How this answer is graded**\n\n{rubric}"
+            yield nodes.cell(Kind.MARKDOWN, text, f"rubric-{cell.id}"[:64])
+
+
+def _graded_outputs(
+    check: Check, verdict: Verdict, outputs: Sequence[Mapping[str, Any]]
+) -> list[NotebookNode]:
+    """The card, or what tests said, and as the cell's value the score: nbgrader gives a cell that number of points."""
     score = points(check, verdict)
+    card = nodes.output(output_type="display_data", data=mimebundle(verdict), metadata={})
     return [
-        nodes.output(output_type="display_data", data=mimebundle(verdict), metadata={}),
+        *([card, *_of_tests(outputs)] if check.asserts else [card]),
         nodes.output(
             output_type="execute_result", data={"text/plain": f"{score:g}"}, metadata={}, execution_count=None
         ),
     ]
+
+
+def _of_tests(outputs: Sequence[Mapping[str, Any]]) -> Iterator[NotebookNode]:
+    """What tests printed or raised, in a form by which nbgrader decides nothing.
+
+    It takes an error and a line on standard error for zero points, and the first value for the points.
+    """
+    for one in outputs:
+        if one["output_type"] == "error":
+            text = "\n".join(one["traceback"]) or f"{one['ename']}: {one['evalue']}"
+            yield harmless_output(nodes.output(output_type="stream", name="stdout", text=text))
+        elif one["output_type"] == "stream":
+            yield harmless_output(nodes.output(output_type="stream", name="stdout", text=one["text"]))
+        elif one["output_type"] == "display_data":
+            yield harmless_output(nodes.output(**one))
 
 
 def _remark(node: NotebookNode, cell: Cell, ended: Ended, limits: Limits) -> list[NotebookNode]:

@@ -10,7 +10,7 @@ import msgspec
 
 from autograder.boxes.execution import Cell, Execution
 from autograder.boxes.limits import Limits
-from autograder.boxes.zero import zero
+from autograder.boxes.missing_verdict import zero_points
 
 UNREADABLE = "unreadable"
 """The diagnosis of what was handed in and is no notebook."""
@@ -57,7 +57,9 @@ class Task:
     def without_execution(self) -> Execution:
         """The result of a task with a problem: no cell runs, every check is zero with the reason."""
         verdicts = {
-            index: zero(cell.check, UNREADABLE, self.problem, "Hand in the notebook as JupyterLab saves it.")
+            index: zero_points(
+                cell.check, UNREADABLE, self.problem, "Hand in the notebook as JupyterLab saves it."
+            )
             for index, cell in enumerate(self.cells)
             if cell.check is not None
         }

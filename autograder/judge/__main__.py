@@ -18,13 +18,13 @@ def main() -> None:
         "--attached", type=int, nargs=2, metavar=("LISTENER", "ORDERS"), help="descriptors of two sockets"
     )
     arguments = parser.parse_args()
-    from autograder.judge import attached
+    from autograder.judge.serving import attached
 
     attached.prepare()
     if arguments.attached:
         attached.run({}, arguments.attached)
         return
-    from autograder.judge import server
+    from autograder.judge.serving import server
 
     server.run(arguments.socket)
 

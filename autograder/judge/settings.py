@@ -1,10 +1,8 @@
 """The environment that a judge's or a subject's process needs before ROS is imported.
 
-Measured on Fast DDS of Jazzy: a participant announces itself every 3 s, so one that is older than about a
-second
-often meets a new process only seconds later. The profile beside this file lets the judge's participants
-announce
-themselves every 100 ms; no subject needs it.
+Measured on Fast DDS of Jazzy: a participant announces itself every 3 s, so one that is older than about a second often
+meets a new process only seconds later. The profile beside this file lets the judge's participants announce themselves
+every 100 ms; no subject needs it.
 """
 
 from __future__ import annotations
@@ -19,8 +17,7 @@ PROFILE = Path(__file__).with_name("fastdds_profile.xml")
 def ros_environment() -> dict[str, str]:
     """Variables that both sides of a check share: loopback only, plain logs, no shared memory.
 
-    Shared memory is left out because it is lost between sandboxes, and because a killed subject would leave
-    its
+    Shared memory is left out because it is lost between sandboxes, and because a killed subject would leave its
     segments behind.
     """
     return {
@@ -41,21 +38,25 @@ def boxed_ros_environment() -> dict[str, str]:
     return {**ros_environment(), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
 
 
-def prepare_judge() -> None:
-    """Set this process up as a judge. Must run before rclpy is imported."""
-    os.environ.update(ros_environment())
+def prepare_judge(*, boxed: bool = False) -> None:
+    """Set this process up as a judge. Must run before rclpy is imported.
+
+    Args:
+        boxed: On a network with nobody on it but its subject.
+    """
+    os.environ.update(boxed_ros_environment() if boxed else ros_environment())
     os.environ["FASTDDS_DEFAULT_PROFILES_FILE"] = str(PROFILE)
     os.environ["FASTRTPS_DEFAULT_PROFILES_FILE"] = str(PROFILE)
     os.environ.pop("RMW_IMPLEMENTATION", None)
     os.environ.setdefault("ROS_LOG_DIR", log_folder())
 
 
-def subject_environment(domain_id: int) -> dict[str, str]:
+def subject_environment(domain_id: int, *, boxed: bool = False) -> dict[str, str]:
     """The environment of a command that is a subject: the user's own, on the check's domain."""
     environment = dict(os.environ)
     for name in ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE"):
         environment.pop(name, None)
-    environment.update(ros_environment())
+    environment.update(boxed_ros_environment() if boxed else ros_environment())
     environment["ROS_DOMAIN_ID"] = str(domain_id)
     environment["PYTHONUNBUFFERED"] = "1"
     # A Python program that hangs can be asked where: it prints its stacks when it is aborted.

@@ -5,7 +5,7 @@
 
 from autograder.masters.chapters import BuildReport, build, build_command
 from autograder.masters.errors import MasterError
-from autograder.masters.layout import chapter_path, find_root, masters
+from autograder.masters.layout import chapter_path, find_root, lab_name, masters
 from autograder.masters.reference import Reference, reference_source
 from autograder.masters.release import release_notebook, release_preprocessors, release_text
 from autograder.masters.source import source_notebook
@@ -18,6 +18,7 @@ __all__ = [
     "build_command",
     "chapter_path",
     "find_root",
+    "lab_name",
     "masters",
     "reference_source",
     "release_notebook",

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from autograder.masters.errors import MasterError
+from autograder.masters.layout import lab_name
 from autograder.masters.naming import grade_id_of_exercise
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
 FORM = (
     "A check cell is one line such as: "
-    'check("lab_1_2.talker", TalkerNode) or check("lab_1_1.hello", "ros2_ws")'
+    'check("lab_9_1.battery", BatteryNode) or check("lab_9_1.workspace", "ros2_ws")'
 )
 
 
@@ -47,12 +48,12 @@ def read_check(master: Path, cell: Cell) -> CheckCall:
         MasterError: The cell has another form, names another notebook's exercise, or has a wrong grade_id.
     """
     exercise, subject, is_path = _call(master, cell)
-    if exercise.partition(".")[0] != master.stem:
+    if exercise.partition(".")[0] != lab_name(master):
         raise MasterError(
             master,
             cell.line,
             f"The exercise '{exercise}' does not belong to this notebook.",
-            f"Exercises of this master begin with '{master.stem}.'.",
+            f"Exercises of this master begin with '{lab_name(master)}.'.",
         )
     expected = grade_id_of_exercise(exercise)
     if cell.grade_id is not None and cell.grade_id != expected:
@@ -90,7 +91,7 @@ def exercise_points(check: CheckCall) -> float:
     """The points of the exercise that a check cell names.
 
     Raises:
-        MasterError: There is no such exercise, or it is worth nothing.
+        MasterError: There is no such exercise, it is broken, or it is worth nothing.
     """
     # Imported late: building a notebook for a test with its own points needs no exercises.
     from autograder import exercises
@@ -103,13 +104,15 @@ def exercise_points(check: CheckCall) -> float:
             check.master,
             check.line,
             f"There is no exercise '{check.exercise}'.",
-            f"Add it to autograder/exercises, or name one that is there: {', '.join(near)}.",
+            f"Add it to the lab's folder, or name one that is there: {', '.join(near)}.",
         ) from error
+    except exercises.BrokenExercise as error:
+        raise MasterError(check.master, check.line, f"{error}.", "Mend that file.") from error
     if points <= 0:
         raise MasterError(
             check.master,
             check.line,
             f"The exercise '{check.exercise}' has no points.",
-            "Give its criteria points in autograder/exercises.",
+            "Give its criteria points in the exercise's file.",
         )
     return points

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from autograder import course
+from autograder.course import CHAPTERS, COPY, LAB, SOLUTIONS
 from autograder.masters.errors import MasterError
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-SOLUTIONS = "solutions"
-CHAPTERS = "chapters"
-
 
 def masters(root: Path) -> list[Path]:
-    """The masters of the course in ``root``, in order: every ``solutions/<chapter>/<name>.md``.
+    """The masters of the course in ``root``, in the order in which they are read: ``solutions/<chapter>/<lab>/lab.md``.
 
     Raises:
-        MasterError: ``root`` holds no ``solutions`` folder, or there is no master in it.
+        MasterError: ``root`` holds no ``solutions`` folder, a chapter's description cannot be used, or there is no
+            master.
     """
     folder = root / SOLUTIONS
     if not folder.is_dir():
@@ -27,23 +27,35 @@ def masters(root: Path) -> list[Path]:
             "There is no folder 'solutions' here.",
             "Name the folder that holds 'solutions' and 'chapters'.",
         )
-    found = sorted(path for path in folder.glob("*/*.md") if path.name != "README.md")
+    try:
+        labs = [lab for chapter in course.chapters(root) for lab in chapter.labs]
+    except course.BrokenChapter as error:
+        raise MasterError(folder, None, f"{error}.", "Mend that file.") from error
+    found = [lab / LAB for lab in labs if (lab / LAB).is_file()]
     if not found:
         raise MasterError(
-            folder, None, "No master was found.", "Masters are files such as solutions/<chapter>/<name>.md."
+            folder,
+            None,
+            "No master was found.",
+            f"Masters are files such as solutions/<chapter>/<lab>/{LAB}.",
         )
     return found
 
 
+def lab_name(master: Path) -> str:
+    """The name of a master's lab, such as ``"lab_1_2"``: that of its notebook and of its folder."""
+    return master.parent.name
+
+
 def chapter_path(root: Path, master: Path) -> Path:
     """Where the chapter notebook of ``master`` belongs."""
-    return root / CHAPTERS / master.parent.name / f"{master.stem}.ipynb"
+    return root / CHAPTERS / master.parents[1].name / f"{lab_name(master)}.ipynb"
 
 
 def chapter_notebooks(root: Path) -> list[Path]:
-    """The notebooks that are in the chapters now, in order; JupyterLab's checkpoints are not counted."""
-    folder = root / CHAPTERS
-    return sorted(path for path in folder.rglob("*.ipynb") if ".ipynb_checkpoints" not in path.parts)
+    """The notebooks that are in the chapters now, in order, without JupyterLab's checkpoints and copies of a reset."""
+    found = sorted((root / CHAPTERS).rglob("*.ipynb"))
+    return [path for path in found if ".ipynb_checkpoints" not in path.parts and COPY not in path.name]
 
 
 def find_root(start: Path) -> Path:

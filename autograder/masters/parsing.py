@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +10,7 @@ from jupytext.myst import MystMetadataParsingError, myst_to_notebook
 from nbformat import ValidationError
 
 from autograder.masters.errors import CellError, MasterError
+from autograder.masters.figures import attach_figures
 from autograder.masters.hints import nest_hints
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ kernelspec:
 
 
 class Kind(StrEnum):
-    """What a cell is for. The values of the last three are tags; an author types the last two."""
+    """What a cell is for. The values but the first are tags; of code, an author types two."""
 
     TEXT = "text"
     """Markdown; students may write into it."""
@@ -36,12 +37,16 @@ class Kind(StrEnum):
     """Code that is part of the explanation: locked and tracked. Code without a tag is this."""
     SOLUTION = "solution"
     """Code in which a region is the student's to write."""
+    MANUAL = "manual"
+    """A question in text that a person grades."""
     CHECK = "check"
     """The one line that asks for a verdict: locked, graded, carries the exercise's points."""
 
 
 TAGS = {kind.value: kind for kind in (Kind.GIVEN, Kind.SOLUTION, Kind.CHECK)}
 OPTIONS = {"tags", "grade_id"}
+MANUAL_FORM = '+++ {"tags": ["manual"], "points": 5, "grade_id": "some_name"}'
+"""The line above a question that a person grades."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +59,8 @@ class Cell:
         line: Where it begins in the master, counted from 1.
         body_line: Where ``source`` begins in the master, counted from 1.
         grade_id: The name that the author gave it, or None.
+        attachments: The figures of a text cell, as nbformat keeps them, by their names.
+        points: What a question that a person grades can earn; None for any other cell.
     """
 
     kind: Kind
@@ -61,6 +68,8 @@ class Cell:
     line: int
     body_line: int
     grade_id: str | None = None
+    attachments: dict[str, dict[str, str]] = field(default_factory=dict)
+    points: float | None = None
 
 
 def parse_master(path: Path) -> list[Cell]:
@@ -96,7 +105,10 @@ def _cell(path: Path, node: Any, place: int, lines: list[str]) -> Cell:
     if node.cell_type == "markdown":
         first = next(number for number in range(place, len(lines)) if lines[number].strip()) + 1
         try:
-            return Cell(Kind.TEXT, nest_hints(node.source), first, first)
+            text, figures = attach_figures(path.parent, nest_hints(node.source))
+            if node.metadata:
+                return _question(path, node.metadata, text, first, figures)
+            return Cell(Kind.TEXT, text, first, first, attachments=figures)
         except CellError as error:
             raise error.at(path, first) from error
     if node.cell_type == "raw":
@@ -107,6 +119,24 @@ def _cell(path: Path, node: Any, place: int, lines: list[str]) -> Cell:
     return Cell(kind, node.source, place, _body_line(node.source, place, lines), grade_id)
 
 
+def _question(path: Path, metadata: Any, text: str, line: int, figures: dict[str, dict[str, str]]) -> Cell:
+    """A text cell with options, which only a question has that a person grades."""
+    points, name = metadata.get("points"), metadata.get("grade_id")
+    is_worth = isinstance(points, int | float) and not isinstance(points, bool) and points > 0
+    if (
+        set(metadata) != {"tags", "points", "grade_id"}
+        or list(metadata["tags"]) != [Kind.MANUAL]
+        or not is_worth
+    ):
+        raise MasterError(
+            path,
+            line,
+            "Text has options only where a person grades it, and this cell's are not those.",
+            f"Write them so: '{MANUAL_FORM}'.",
+        )
+    return Cell(Kind.MANUAL, text, line, line, str(name), figures, float(points))
+
+
 def _options(path: Path, metadata: Any, line: int) -> tuple[Kind, str | None]:
     for option in sorted(set(metadata) - OPTIONS):
         raise MasterError(
@@ -115,6 +145,8 @@ def _options(path: Path, metadata: Any, line: int) -> tuple[Kind, str | None]:
     tags = metadata.get("tags", [])
     tags = [tags] if isinstance(tags, str) else list(tags)
     for tag in tags:
+        if tag == Kind.MANUAL:
+            raise MasterError(path, line, "A person grades text, not code.", f"Begin with '{MANUAL_FORM}'.")
         if tag not in TAGS:
             raise MasterError(path, line, f"Unknown tag '{tag}'.", f"Known are: {', '.join(TAGS)}.")
     if len(tags) > 1:

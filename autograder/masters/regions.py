@@ -74,6 +74,24 @@ def find_region(source: str) -> Region:
     )
 
 
+def find_model_answer(source: str) -> str:
+    """What stands in the region of a question that a person grades: its model answer, and how points are given.
+
+    Raises:
+        CellError: There is not exactly one well-formed region with something in it, and a question above it.
+    """
+    lines = source.split("\n")
+    begin, end = _marker(lines, BEGIN), _marker(lines, END)
+    if end < begin:
+        raise CellError(end, f"'{END}' stands before '{BEGIN}'.", "Put the two lines in order.")
+    answer = "\n".join(lines[begin + 1 : end]).strip()
+    if not answer:
+        raise CellError(begin + 1, "The region holds no answer.", "Write a good one, and what earns points.")
+    if not "".join(lines[:begin]).strip():
+        raise CellError(begin, "There is no question.", f"Ask it above '{BEGIN}'.")
+    return answer
+
+
 def _marker(lines: list[str], marker: str) -> int:
     """Where ``marker`` stands; it must be there once, on a line of its own, spelt as it is here."""
     words = marker.removeprefix("### ")

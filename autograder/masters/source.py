@@ -15,10 +15,11 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from autograder.masters import naming
 from autograder.masters.checks import CheckCall, exercise_points, read_check
+from autograder.masters.copies import with_copies
 from autograder.masters.errors import CellError, MasterError
 from autograder.masters.magics import has_magic
 from autograder.masters.parsing import Cell, Kind, parse_master
-from autograder.masters.regions import find_region, mentions_a_region
+from autograder.masters.regions import find_model_answer, find_region, mentions_a_region
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -51,7 +52,7 @@ class NamedCell:
         cell: The cell as the author wrote it.
         name: The grade_id of a tracked cell; the cell's id in any case.
         check: What a check cell asks for, else None.
-        points: What a check cell can earn, else None.
+        points: What a check cell, or a question that a person grades, can earn, else None.
     """
 
     cell: Cell
@@ -82,7 +83,7 @@ def named_cells(master: Path, *, points: Points = exercise_points) -> list[Named
     Raises:
         MasterError: As for :func:`source_notebook`.
     """
-    cells = parse_master(master)
+    cells = with_copies(master, parse_master(master))
     named = list(_name_all(master, cells, points))
     _unique(master, named)
     _subjects_are_solutions(master, named)
@@ -98,7 +99,9 @@ def _name_all(master: Path, cells: list[Cell], points: Points) -> Iterator[Named
             yield NamedCell(cell, numbering.name(naming.text_id(cell.source)))
             continue
         _region_where_it_belongs(master, cell)
-        if cell.kind is Kind.CHECK:
+        if cell.kind is Kind.MANUAL:
+            yield NamedCell(cell, str(cell.grade_id), points=cell.points)
+        elif cell.kind is Kind.CHECK:
             check = read_check(master, cell)
             yield NamedCell(cell, naming.grade_id_of_exercise(check.exercise), check, points(check))
         elif cell.kind is Kind.SOLUTION:
@@ -108,6 +111,12 @@ def _name_all(master: Path, cells: list[Cell], points: Points) -> Iterator[Named
 
 
 def _region_where_it_belongs(master: Path, cell: Cell) -> None:
+    if cell.kind is Kind.MANUAL:
+        try:
+            find_model_answer(cell.source)
+        except CellError as error:
+            raise error.at(master, cell.body_line) from error
+        return
     if cell.kind is not Kind.SOLUTION:
         if mentions_a_region(cell.source):
             raise MasterError(
@@ -203,20 +212,24 @@ def _subjects_are_solutions(master: Path, named: list[NamedCell]) -> None:
 def _node(named: NamedCell) -> NotebookNode:
     cell = named.cell
     if cell.kind is Kind.TEXT:
-        return new_markdown_cell(cell.source, id=named.name)
+        figures = {"attachments": from_dict(cell.attachments)} if cell.attachments else {}
+        return new_markdown_cell(cell.source, id=named.name, **figures)
     metadata = {"nbgrader": _nbgrader(named)}
+    if cell.kind is Kind.MANUAL:
+        figures = {"attachments": from_dict(cell.attachments)} if cell.attachments else {}
+        return new_markdown_cell(cell.source, id=named.name, metadata=from_dict(metadata), **figures)
     return new_code_cell(cell.source, id=named.name, metadata=from_dict(metadata))
 
 
 def _nbgrader(named: NamedCell) -> dict[str, Any]:
     kind = named.cell.kind
     metadata: dict[str, Any] = {
-        "cell_type": "code",
-        "grade": kind is Kind.CHECK,
+        "cell_type": "markdown" if kind is Kind.MANUAL else "code",
+        "grade": kind in (Kind.CHECK, Kind.MANUAL),
         "grade_id": named.name,
-        "locked": kind is not Kind.SOLUTION,
+        "locked": kind not in (Kind.SOLUTION, Kind.MANUAL),
         "schema_version": SCHEMA_VERSION,
-        "solution": kind is Kind.SOLUTION,
+        "solution": kind in (Kind.SOLUTION, Kind.MANUAL),
         "task": False,
     }
     if named.points is not None:

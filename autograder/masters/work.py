@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 def holds_work(path: Path) -> bool:
     """Whether the notebook differs from what a build once wrote, in a way that a person meant.
 
-    A release carries the checksum of each code cell in its metadata: a cell that no longer matches was
-    edited, one without was added. The output of cells is no work. A file that is no notebook counts as work:
-    better to ask than to overwrite it.
+    A release carries the checksum of each code cell, and of each question, in its metadata: a cell that no longer
+    matches was edited, code without one was added. The output of cells is no work. A file that is no notebook counts
+    as work: better to ask than to overwrite it.
     """
     if not path.exists():
         return False
@@ -25,7 +25,9 @@ def holds_work(path: Path) -> bool:
     except Exception:
         # nbformat raises whatever its JSON and schema libraries do.
         return True
-    return any(_edited(cell) for cell in notebook.cells if cell.cell_type == "code")
+    return any(
+        _edited(cell) for cell in notebook.cells if cell.cell_type == "code" or "nbgrader" in cell.metadata
+    )
 
 
 def _edited(cell: Any) -> bool:

@@ -8,9 +8,26 @@ from __future__ import annotations
 from autograder.notebook import executors, judge_link
 from autograder.notebook.check import check
 from autograder.notebook.executors import spin_in_background, spinning
+from autograder.notebook.graph_picture import draw_graph
+from autograder.notebook.graph_watch import watch_graph
+from autograder.notebook.plots import plot
+from autograder.notebook.recordings import read_recording, recording
+from autograder.notebook.robot import start_robot
 from autograder.notebook.ros_session import RosSession
 
-__all__ = ["RosSession", "check", "spin_in_background", "spinning", "start_ros"]
+__all__ = [
+    "RosSession",
+    "check",
+    "draw_graph",
+    "plot",
+    "read_recording",
+    "recording",
+    "spin_in_background",
+    "spinning",
+    "start_robot",
+    "start_ros",
+    "watch_graph",
+]
 
 
 def start_ros() -> RosSession:

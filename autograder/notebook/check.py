@@ -3,18 +3,31 @@
 from __future__ import annotations
 
 import inspect
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from autograder.cards import bundle
+from autograder.messages import checks as messages
+from autograder.notebook.captured_output import CapturedOutput
+from autograder.notebook.card_display import CardDisplay, is_validating
 from autograder.notebook.check_context import CheckContext
-from autograder.notebook.hurry import Hurry
+from autograder.notebook.graph_questions import GraphQuestions
 from autograder.notebook.judge_link import JudgeLink, JudgeUnreachable
-from autograder.notebook.looking import Looking
-from autograder.notebook.overhearing import Overhearing
+from autograder.notebook.kept_checks import keep
 from autograder.notebook.path_run import PathRun, is_path, send_sources
 from autograder.notebook.ros_session import prepare_environment
-from autograder.notebook.subject_run import SubjectRun
-from autograder.verdict import Verdict, from_builtins, not_checked
+from autograder.notebook.score import Score
+from autograder.notebook.shorter_waits import ShorterWaits
+from autograder.notebook.subject_run import SubjectRun, Tell
+from autograder.notebook.validating import raise_unless_full
+from autograder.verdict import Verdict, not_checked
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.messages.lines import Message
+
+LINE = 70
+"""Characters of a line of output that are shown while a check goes on."""
 
 
 def check(exercise: str, subject: Any) -> float:
@@ -34,99 +47,105 @@ def check(exercise: str, subject: Any) -> float:
     if not (inspect.isclass(subject) or callable(subject) or is_path(subject)):
         raise TypeError(_what_to_pass(exercise, subject))
     prepare_environment()
-    verdict = _ask(exercise, subject)
-    _show(verdict)
-    return verdict.score
+    with CardDisplay(exercise, subject) as place:
+        verdict = _ask(exercise, subject, place)
+        place.show(verdict)
+    keep(verdict)
+    if is_validating():
+        raise_unless_full(verdict)
+    return Score(verdict.score)
 
 
-def _ask(exercise: str, subject: Any) -> Verdict:
+def _ask(exercise: str, subject: Any, place: CardDisplay) -> Verdict:
     try:
         link = JudgeLink()
     except JudgeUnreachable as error:
         return not_checked(exercise, exercise, 0.0, str(error))
     try:
-        return _converse(link, exercise, subject)
+        return _converse(link, exercise, subject, place)
     except JudgeUnreachable as error:
         return not_checked(exercise, exercise, 0.0, str(error), "Run the cell again.")
     finally:
         link.close()
 
 
-def _converse(link: JudgeLink, exercise: str, subject: Any) -> Verdict:
+def _converse(link: JudgeLink, exercise: str, subject: Any, card: CardDisplay) -> Verdict:
     """Do what the judge says until it has a verdict."""
-    link.say("check", exercise=exercise, kind="class" if inspect.isclass(subject) else "function")
+    link.say(messages.Check(exercise, kind="class" if inspect.isclass(subject) else "function"))
     bundle.prepare()  # while the judge makes its node
     first = link.hear()
-    if first["say"] == "collect":
+    if isinstance(first, messages.Collect):
         # A grader builds and runs what a path leads to by itself.
         send_sources(link.say, subject)
         return _last_words(exercise, link.hear())
-    if first["say"] != "begin":
+    if not isinstance(first, messages.Begin):
         return _last_words(exercise, first)
     run: SubjectRun | PathRun | None = None
     number = 0
 
-    def tell_output(line: str) -> None:
-        link.say("output", run=number, text=line)
-
-    def tell_look() -> None:
-        link.say("looked", run=number)
+    def tell(kind: Callable[..., Message], **data: Any) -> None:
+        link.say(kind(number, **data))
 
     with (
-        CheckContext(int(first["domain"])) as place,
-        Overhearing(tell_output) as hearing,
-        Hurry(hearing.overhears) as hurry,
-        Looking(tell_look, hearing.overhears) as looking,
+        CheckContext(first.domain, first.keeper) as place,
+        CapturedOutput(lambda line, logged: tell(messages.Output, text=line, logged=logged)) as captured,
+        ShorterWaits(captured.is_captured, tell) as waits,
+        GraphQuestions(lambda: tell(messages.Looked), captured.is_captured) as questions,
     ):
-        link.say("ready")
+        link.say(messages.Ready())
         try:
             while True:
-                words = link.hear()
-                say = words["say"]
-                if say == "start":
-                    place.ensure(fresh=bool(words.get("fresh")))
-                    number = int(words["run"])
-                    run = (
-                        PathRun(number, exercise, subject, int(first["domain"]), link.say)
-                        if is_path(subject)
-                        else SubjectRun(number, subject, place.context, link.say)
-                    )
-                    hurry.factor = float(words.get("hurry", 1.0))
-                    looking.begin_run()
-                    run.start(words["arguments"], words["options"])
-                elif say == "release" and run is not None:
-                    run.release()
-                elif say == "stack" and run is not None:
-                    link.say("stack", run=number, text=hearing.stacks())
-                elif say == "stop" and run is not None:
-                    if not run.stop():
-                        place.renew()  # what will not end keeps the old context and is no longer heard
-                    link.say("stopped", run=number)
-                    run = None
-                elif say in ("verdict", "refused"):
-                    return _last_words(exercise, words)
+                match order := link.hear():
+                    case messages.Meet():
+                        place.ensure(fresh=order.fresh)
+                        link.say(messages.Met(place.sees(order.there, order.gone, order.within)))
+                    case messages.Start():
+                        place.ensure(fresh=order.fresh)
+                        number = order.run
+                        card.doing(f"run {number} of your code")
+                        run = (
+                            PathRun(number, exercise, subject, first.domain, _retold(link.say, card))
+                            if is_path(subject)
+                            else SubjectRun(number, subject, place.context, link.say)
+                        )
+                        waits.begin_run(factor=order.hurry, spare=order.spare)
+                        questions.begin_run()
+                        run.start(order.arguments, order.options)
+                    case messages.Release() if run is not None:
+                        run.release()
+                    case messages.Stack() if run is not None:
+                        link.say(messages.Stacks(number, captured.stacks()))
+                    case messages.Stop() if run is not None:
+                        if not run.stop():
+                            place.renew()  # what will not end keeps the old context and is no longer heard
+                        link.say(messages.Stopped(number))
+                        card.doing(f"the judge looks at run {number}")
+                        run = None
+                    case messages.Judged() | messages.Refused():
+                        return _last_words(exercise, order)
         finally:
             if run is not None:
                 run.stop()
 
 
-def _last_words(exercise: str, words: dict[str, Any]) -> Verdict:
-    if words["say"] == "verdict":
-        return from_builtins(words["verdict"])
-    return not_checked(exercise, exercise, 0.0, str(words.get("why", "the judge refused")))
+def _last_words(exercise: str, words: messages.FromJudge) -> Verdict:
+    if isinstance(words, messages.Judged):
+        return words.verdict
+    why = words.why if isinstance(words, messages.Refused) else "the judge refused"
+    return not_checked(exercise, exercise, 0.0, why)
 
 
-def _show(verdict: Verdict) -> None:
-    from IPython.core.getipython import get_ipython
-    from IPython.display import display
+def _retold(tell: Tell, card: CardDisplay) -> Tell:
+    """What a program says goes to the judge; its last line tells who waits what goes on, such as a build."""
 
-    card = bundle.mimebundle(verdict)
-    if get_ipython() is None:
-        print(card["text/plain"])
-    else:
-        display(card, raw=True)  # type: ignore[no-untyped-call]
+    def told(message: Message) -> None:
+        if isinstance(message, messages.Output) and message.text.strip() and not message.text.startswith("@"):
+            card.doing(message.text.strip()[:LINE])
+        tell(message)
+
+    return told
 
 
 def _what_to_pass(exercise: str, subject: Any) -> str:
     kind = type(subject).__name__
-    return f"check({exercise!r}, …) takes your class or function itself, without brackets behind it, not a {kind}"
+    return f"check({exercise!r}, …) takes your class or function itself, without parentheses after it, not a {kind}"

@@ -1,7 +1,6 @@
 """A ROS context for checks alone: fresh, on the judge's domain, and rclpy's default for as long as a check runs.
 
-A student's class says ``super().__init__("talker_node")`` and means the default context. While a check runs,
-that is
+A student's class says ``super().__init__("talker_node")`` and means the default context. While a check runs, that is
 this one, so that nodes of the notebook's demonstrations are neither heard nor disturbed.
 """
 
@@ -21,12 +20,14 @@ from autograder.ros_domain import DOMAIN_VARIABLE
 from autograder.ros_participant import receivers_wait
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from types import TracebackType
+
+    Endpoint = Sequence[str]
+    """A topic of the middleware and the identifier of a reader or writer on it, as the judge names them."""
 
 _GLOBAL_EXECUTOR = "__executor"
 """The name in ``rclpy/__init__.py``."""
-KEEPER = "_check_keeper"
-"""The node that keeps the check's participant; hidden, as ``ros2 node list`` hides names with this beginning."""
 MEETING = 0.5
 """Seconds of wall time for which a run waits until the judge is met. Without it, it is only met later."""
 MEETING_POLL = 0.002
@@ -34,10 +35,17 @@ MEETING_POLL = 0.002
 
 
 class CheckContext:
-    """Swaps rclpy's default context within a ``with`` block."""
+    """Swaps rclpy's default context within a ``with`` block.
 
-    def __init__(self, domain_id: int) -> None:
+    Args:
+        domain_id: The judge's domain.
+        keeper: The name of the node that keeps the check's participant, as the judge knows it. It begins with an
+            underscore, so that ``ros2 node list`` hides it.
+    """
+
+    def __init__(self, domain_id: int, keeper: str) -> None:
         self._domain_id = domain_id
+        self._name = keeper
         self._usual: Context | None = None
         self._keeper: Node | None = None
         self.context = Context()
@@ -89,7 +97,7 @@ class CheckContext:
         self._put(self.context)
         with receivers_wait():
             self._keeper = Node(
-                KEEPER,
+                self._name,
                 context=self.context,
                 use_global_arguments=False,
                 enable_rosout=False,
@@ -98,6 +106,33 @@ class CheckContext:
         deadline = time.monotonic() + MEETING
         while len(self._keeper.get_node_names()) < 2 and time.monotonic() < deadline:
             time.sleep(MEETING_POLL)
+
+    def sees(self, there: Sequence[Endpoint], gone: Sequence[Endpoint], within: float) -> bool:
+        """Wait until this participant knows all of the first and none of the second; whether that came.
+
+        Args:
+            there: Endpoints that are on the graph.
+            gone: Endpoints that were.
+            within: Seconds of wall time.
+        """
+        deadline = time.monotonic() + within
+        while True:
+            known = self._known({topic for topic, _ in [*there, *gone]})
+            if known.issuperset(map(tuple, there)) and known.isdisjoint(map(tuple, gone)):
+                return True
+            if time.monotonic() > deadline:
+                return False
+            time.sleep(MEETING_POLL)
+
+    def _known(self, topics: set[str]) -> set[tuple[str, ...]]:
+        node = self._keeper
+        assert node is not None
+        return {
+            (topic, bytes(info.endpoint_gid).hex())
+            for topic in topics
+            for infos in (node.get_publishers_info_by_topic, node.get_subscriptions_info_by_topic)
+            for info in infos(topic, no_mangle=True)
+        }
 
     def _end(self) -> None:
         keeper, self._keeper = self._keeper, None

@@ -1,200 +1,139 @@
-"""Where the boxes and lines of a graph go: in columns, from what gives to what takes.
+"""Where the boxes and arrows of a graph go: in columns, from what gives to what takes.
 
-The steps are those of Sugiyama's layered drawing: turn lines round that would close a circle, give each box
-a column behind all that lead to it, put a place holder into each column that a long line crosses, and order
-every column so that lines cross little.
+igraph decides which arrows close a circle, which box is in which column, in which order, and by which way a long arrow
+passes the columns between (Sugiyama's layered drawing). Here it becomes pixels: each arrow has a point of its own on
+the edge of a box, so that one that closes a circle never begins where another one ends.
 """
 
 from __future__ import annotations
 
 import itertools
-import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-SWEEPS = 16
-"""How often the columns are gone through; a few times is enough for graphs of a lab."""
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
 
+Point = tuple[float, float]
+"""Pixels along the way that most arrows take, and beside it."""
+
+SWEEPS = 100
+"""How often igraph goes through the columns to have fewer arrows cross."""
 GAP_BESIDE = 24
 """Pixels between two boxes of a column."""
+_PORTS = 0.72
+"""The part of a box's edge along which arrows begin and end."""
 
 
 @dataclass(frozen=True)
-class Line:
-    """An arrow between two boxes, with the boxes and place holders on its way.
-
-    Attributes:
-        start: The box it leaves.
-        end: The box it points to.
-        way: From left to right, the first and last are the two boxes.
-        turned: It points to the left.
-    """
+class Arrow:
+    """A line from box to box: its corners in pixels, the first on the edge of ``start``, the last on ``end``'s."""
 
     start: str
     end: str
-    way: tuple[str, ...]
-    turned: bool
+    points: tuple[Point, ...]
 
 
 @dataclass(frozen=True)
 class Layout:
-    """Boxes in columns.
+    """Boxes and arrows in pixels.
 
     Attributes:
-        columns: From left to right, each from top to bottom; place holders begin with a space.
-        lines: The arrows.
+        centres: The middle of each box.
+        arrows: In the order in which they were given.
+        extent: What all of it takes, along and beside.
     """
 
-    columns: tuple[tuple[str, ...], ...]
-    lines: tuple[Line, ...]
+    centres: Mapping[str, Point]
+    arrows: tuple[Arrow, ...]
+    extent: Point
 
 
-def is_place_holder(name: str) -> bool:
-    """Whether it keeps a place free for a line and is no box."""
-    return name.startswith(" ")
-
-
-def lay_out(boxes: list[str], arrows: list[tuple[str, str]]) -> Layout:
-    """Place boxes and arrows.
+def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: float) -> Layout:
+    """Place boxes and arrows, from 0 on.
 
     Args:
-        boxes: Their names, each once, none of them beginning with a space.
-        arrows: Pairs of names of boxes, from and to.
+        sizes: For each box how much it takes, along and beside.
+        arrows: Pairs of boxes, from and to. What leads from a box to itself is left out.
+        gap: Pixels between two columns.
     """
-    turned = _closing_a_circle(boxes, arrows)
-    forward = [(b, a) if (a, b) in turned else (a, b) for a, b in arrows]
-    column = _columns(boxes, forward)
-    table = _Table([[] for _ in range(max(column.values(), default=-1) + 1)])
-    for box in boxes:
-        table.columns[column[box]].append(box)
-    lines = []
-    for arrow, (left, right) in zip(arrows, forward, strict=True):
-        way = table.connect(left, right, column[left], column[right])
-        lines.append(Line(*arrow, way=way, turned=arrow in turned))
-    table.order()
-    return Layout(tuple(map(tuple, table.columns)), tuple(lines))
+    import igraph  # at the first picture: a notebook without one need not wait for it
+
+    boxes = list(sizes)
+    drawn = [(a, b) for a, b in dict.fromkeys(arrows) if a != b]
+    if not boxes:
+        return Layout({}, (), (0.0, 0.0))
+    number = {box: index for index, box in enumerate(boxes)}
+    edges = [(number[a], number[b]) for a, b in drawn]
+    # Turned round before: of those that igraph 1.0 turns itself, it gives the ways of other arrows.
+    back = set(igraph.Graph(n=len(boxes), edges=edges, directed=True).feedback_arc_set(method="eades"))
+    onward = [(b, a) if index in back else (a, b) for index, (a, b) in enumerate(edges)]
+    graph = igraph.Graph(n=len(boxes), edges=onward, directed=True)
+    found = graph.layout_sugiyama(hgap=1, vgap=1, maxiter=SWEEPS)
+    places = [list(place) for place in found.coords]
+    routing = [way[::-1] if index in back else way for index, way in enumerate(found.edge_routing)]
+    _push_apart([*places, *itertools.chain(*routing)])
+    columns = [round(layer) for _, layer in places]
+    unit = max(beside for _, beside in sizes.values()) + GAP_BESIDE
+    along = _columns(columns, [sizes[box][0] for box in boxes], gap)
+    first = min(place for place, _ in (*places, *itertools.chain(*routing)))
+    start = max(beside for _, beside in sizes.values()) / 2
+
+    def middle(place: float, layer: float) -> Point:
+        return along[round(layer)], (place - first) * unit + start
+
+    centres = {box: middle(*places[index]) for box, index in number.items()}
+    ways = [
+        [centres[a], *(middle(*point) for point in routed), centres[b]]
+        for (a, b), routed in zip(drawn, routing, strict=True)
+    ]
+    extent = (
+        max(centres[box][0] + sizes[box][0] / 2 for box in boxes),
+        max(beside for way in (*ways, [*centres.values()]) for _, beside in way) + start,
+    )
+    return Layout(centres, _with_ports(drawn, ways, sizes), extent)
 
 
-def place_beside(layout: Layout, sizes: dict[str, float]) -> dict[str, float]:
-    """Where the middle of each box goes in its column, so that most lines are straight. In pixels, from 0.
-
-    Each box is drawn to the mean of its neighbours, as far as the others in its column leave room.
-
-    Args:
-        layout: The boxes and lines.
-        sizes: How much of its column each box and place holder takes, in pixels.
-    """
-    neighbours: dict[str, list[str]] = {name: [] for column in layout.columns for name in column}
-    for line in layout.lines:
-        for a, b in itertools.pairwise(line.way):
-            neighbours[a].append(b)
-            neighbours[b].append(a)
-    place: dict[str, float] = {}
-    for column in layout.columns:
-        place |= _pushed_apart(column, dict.fromkeys(column, 0.0), sizes)
-    for sweep in range(SWEEPS):
-        for column in layout.columns if sweep % 2 == 0 else reversed(layout.columns):
-            wanted = {
-                name: sum(place[other] for other in neighbours[name]) / len(neighbours[name])
-                if neighbours[name]
-                else place[name]
-                for name in column
-            }
-            place |= _pushed_apart(column, wanted, sizes)
-    first = min((place[name] - sizes[name] / 2 for name in place), default=0.0)
-    return {name: where - first for name, where in place.items()}
+def _push_apart(places: Sequence[list[float]]) -> None:
+    """Let no two in a column be nearer than one: igraph's gap is not always kept."""
+    last: dict[int, float] = {}
+    for place in sorted(places):
+        column = round(place[1])
+        place[0] = max(place[0], last.get(column, place[0] - 1) + 1)
+        last[column] = place[0]
 
 
-def _pushed_apart(
-    column: tuple[str, ...], wanted: dict[str, float], sizes: dict[str, float]
-) -> dict[str, float]:
-    """The places nearest to the wanted ones, on the whole, where no two boxes overlap."""
-    found: dict[str, float] = {}
-    edge = -math.inf
-    for name in column:
-        found[name] = max(wanted[name], edge + GAP_BESIDE + sizes[name] / 2)
-        edge = found[name] + sizes[name] / 2
-    shift = sum(wanted[name] - found[name] for name in column) / len(column)
-    return {name: where + shift for name, where in found.items()}
+def _columns(columns: Sequence[int], widths: Sequence[float], gap: float) -> list[float]:
+    """The middle of each column: as wide as its widest box."""
+    middles = []
+    edge = 0.0
+    for column in range(max(columns) + 1):
+        width = max((w for c, w in zip(columns, widths, strict=True) if c == column), default=0.0)
+        middles.append(edge + width / 2)
+        edge += width + gap
+    return middles
 
 
-def _closing_a_circle(boxes: list[str], arrows: list[tuple[str, str]]) -> set[tuple[str, str]]:
-    """The arrows that lead back to where a walk along the arrows has come from."""
-    targets: dict[str, list[str]] = {box: [] for box in boxes}
-    for start, end in arrows:
-        targets[start].append(end)
-    has_entry = {end for _, end in arrows}
-    found: set[tuple[str, str]] = set()
-    done: set[str] = set()
-
-    def walk(box: str, path: tuple[str, ...]) -> None:
-        for target in targets[box]:
-            if target == box or target in path:
-                found.add((box, target))
-            elif target not in done:
-                walk(target, (*path, box))
-        done.add(box)
-
-    # Begun at what nothing leads to, the walk goes the way that a reader expects.
-    for box in sorted(boxes, key=lambda box: box in has_entry):
-        if box not in done:
-            walk(box, ())
-    return found
-
-
-def _columns(boxes: list[str], forward: list[tuple[str, str]]) -> dict[str, int]:
-    """For each box the length of the longest way to it."""
-    sources: dict[str, list[str]] = {box: [] for box in boxes}
-    for left, right in forward:
-        if left != right:
-            sources[right].append(left)
-    column: dict[str, int] = {}
-
-    def place(box: str) -> int:
-        if box not in column:
-            column[box] = max((place(source) + 1 for source in sources[box]), default=0)
-        return column[box]
-
-    for box in boxes:
-        place(box)
-    return column
-
-
-@dataclass
-class _Table:
-    columns: list[list[str]]
-    neighbours: dict[str, list[str]] = field(default_factory=dict)
-
-    def connect(self, left: str, right: str, first: int, last: int) -> tuple[str, ...]:
-        """Put a place holder into each column between two boxes."""
-        way = [left]
-        for number in range(first + 1, last):
-            holder = f" {left} {right} {number}"
-            if holder not in self.columns[number]:
-                self.columns[number].append(holder)
-            way.append(holder)
-        way.append(right)
-        for a, b in itertools.pairwise(way):
-            self.neighbours.setdefault(a, []).append(b)
-            self.neighbours.setdefault(b, []).append(a)
-        return tuple(way)
-
-    def order(self) -> None:
-        """Move each box to the mean height of its neighbours in the column before, and behind, by turns."""
-        for sweep in range(SWEEPS):
-            rightwards = sweep % 2 == 0
-            order = range(1, len(self.columns)) if rightwards else range(len(self.columns) - 2, -1, -1)
-            for number in order:
-                self._order_column(number, number - 1 if rightwards else number + 1)
-
-    def _order_column(self, number: int, fixed: int) -> None:
-        # Relative, so that a column of two is as high as one of five.
-        size = max(len(self.columns[fixed]), 1)
-        height = {name: (place + 0.5) / size for place, name in enumerate(self.columns[fixed])}
-        own = len(self.columns[number])
-
-        def mean(item: tuple[int, str]) -> float:
-            place, name = item
-            heights = [height[other] for other in self.neighbours.get(name, []) if other in height]
-            return sum(heights) / len(heights) if heights else (place + 0.5) / own
-
-        self.columns[number] = [name for _, name in sorted(enumerate(self.columns[number]), key=mean)]
+def _with_ports(
+    drawn: Sequence[tuple[str, str]], ways: Sequence[list[Point]], sizes: Mapping[str, Point]
+) -> tuple[Arrow, ...]:
+    """The arrows with their ends on the edges of boxes, spread in the order in which they leave to other places."""
+    ends: dict[tuple[str, bool], list[tuple[float, int, bool]]] = {}
+    for index, ((a, b), way) in enumerate(zip(drawn, ways, strict=True)):
+        onward = way[-1][0] > way[0][0]
+        ends.setdefault((a, onward), []).append((way[1][1], index, True))
+        ends.setdefault((b, not onward), []).append((way[-2][1], index, False))
+    ports: dict[tuple[int, bool], Point] = {}
+    for (box, after), there in ends.items():
+        width, height = sizes[box]
+        for place, (_, index, leaves) in enumerate(sorted(there)):
+            centre = ways[index][0 if leaves else -1]
+            share = (place + 1) / (len(there) + 1) - 0.5
+            ports[index, leaves] = (
+                centre[0] + (width / 2 if after else -width / 2),
+                centre[1] + share * height * _PORTS,
+            )
+    return tuple(
+        Arrow(a, b, (ports[index, True], *ways[index][1:-1], ports[index, False]))
+        for index, (a, b) in enumerate(drawn)
+    )

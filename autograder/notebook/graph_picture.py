@@ -9,11 +9,15 @@ from __future__ import annotations
 
 import base64
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from html import escape
+from typing import TYPE_CHECKING
 
-from autograder.notebook.graph_layout import Layout, Line, is_place_holder, lay_out, place_beside
+from autograder.notebook.graph_layout import Arrow, Point, lay_out
 from autograder.notebook.ros_graph import Channel, Kind, RosGraph, read_graph
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
 
 # Pixels.
 _LETTER = 7.3
@@ -35,6 +39,10 @@ text.type { font-size: 10.5px; fill: #555; }
 .action rect { stroke-dasharray: 1.5 2.5; }
 path.line { fill: none; stroke: #555; stroke-width: 1.5; }
 path.head { fill: #555; }
+text.rate { font-size: 10.5px; fill: #0b5cad; paint-order: stroke; stroke: #fff; stroke-width: 4px; text-anchor: end; }
+path.flows { stroke: #0b5cad; stroke-dasharray: 7 5; animation: flow 0.8s linear 16; }
+@keyframes flow { to { stroke-dashoffset: -12; } }
+@media (prefers-reduced-motion: reduce) { path.flows { animation: none; } }
 """
 
 
@@ -49,16 +57,22 @@ def draw_graph() -> GraphPicture:
 
 @dataclass(frozen=True, repr=False)
 class GraphPicture:
-    """A graph that JupyterLab shows as a picture and that reads as text anywhere else."""
+    """A graph that JupyterLab shows as a picture and that reads as text anywhere else.
+
+    Attributes:
+        graph: What runs.
+        rates: Messages in a second on topics, where that is known.
+    """
 
     graph: RosGraph
+    rates: Mapping[Channel, float] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """The graph in words."""
-        return "\n".join(self.graph.sentences())
+        return "\n".join(self.sentences())
 
     def _repr_html_(self) -> str:
-        sentences = self.graph.sentences()
+        sentences = self.sentences()
         data = base64.b64encode(self.svg().encode()).decode()
         words = "".join(f"<li>{escape(sentence)}</li>" for sentence in sentences)
         return (
@@ -70,8 +84,22 @@ class GraphPicture:
         """The picture alone."""
         labels = {_node_key(node): _Label("node", node) for node in self.graph.nodes}
         labels |= {_channel_key(c): _Label(c.kind, c.name, c.type) for c in self.graph.channels}
-        layout = lay_out(list(labels), _arrows(self.graph))
-        return _Drawing(layout, labels, " ".join(self.graph.sentences())).svg()
+        rates = {_channel_key(channel): f"{rate:g}/s" for channel, rate in self.rates.items() if rate}
+        return _Drawing(labels, _arrows(self.graph), rates, " ".join(self.sentences())).svg()
+
+    @property
+    def is_moving(self) -> bool:
+        """Whether anything flows in it."""
+        return any(self.rates.values())
+
+    def sentences(self) -> list[str]:
+        """The graph in words, a sentence for each node and for each topic with traffic."""
+        moving = [
+            f"{channel.name} carries {rate:g} messages per second."
+            for channel, rate in self.rates.items()
+            if rate
+        ]
+        return [*self.graph.sentences(), *moving]
 
 
 @dataclass(frozen=True)
@@ -109,69 +137,37 @@ def _arrows(graph: RosGraph) -> list[tuple[str, str]]:
     ]
 
 
-Point = tuple[float, float]
-
-
 class _Drawing:
-    """Turns columns into coordinates, and coordinates into SVG.
+    """Turns a layout into SVG.
 
     *Along* is the way that the arrows take, *beside* is across it. Along runs to the right, or down where the
     picture would be too wide.
     """
 
-    def __init__(self, layout: Layout, labels: dict[str, _Label], words: str) -> None:
-        self._layout = layout
+    def __init__(
+        self,
+        labels: Mapping[str, _Label],
+        arrows: Sequence[tuple[str, str]],
+        rates: Mapping[str, str],
+        words: str,
+    ) -> None:
         self._labels = labels
+        self._rates = rates
         self._words = words
         self._down = False
-        self._down = self._length() > _PAGE
-        self._centres = self._place()
-
-    def _box_size(self, name: str) -> Point:
-        """Along and beside."""
-        if is_place_holder(name):
-            return (0.0, _HEIGHT / 2)
-        width = self._labels[name].width
-        return (_HEIGHT, width) if self._down else (width, _HEIGHT)
-
-    def _thickness(self) -> list[float]:
-        """How much each column takes along."""
-        return [max(self._box_size(name)[0] for name in column) for column in self._layout.columns]
-
-    def _gap(self) -> float:
-        return _GAP_ALONG_DOWN if self._down else _GAP_ALONG
-
-    def _length(self) -> float:
-        """Of the picture, along."""
-        gaps = self._gap() * max(len(self._layout.columns) - 1, 0)
-        return sum(self._thickness()) + gaps + 2 * _MARGIN
-
-    def _place(self) -> dict[str, Point]:
-        beside = place_beside(self._layout, {name: self._box_size(name)[1] for name in self._names()})
-        centres = {}
-        along = float(_MARGIN)
-        for column, thickness in zip(self._layout.columns, self._thickness(), strict=True):
-            for name in column:
-                centres[name] = (along + thickness / 2, beside[name] + _MARGIN)
-            along += thickness + self._gap()
-        return centres
-
-    def _names(self) -> list[str]:
-        return [name for column in self._layout.columns for name in column]
-
-    def _extent(self) -> Point:
-        """Of the picture, along and beside."""
-        edges = [self._centres[name][1] + self._box_size(name)[1] / 2 for name in self._names()]
-        return self._length(), max(edges, default=0.0) + _MARGIN
-
-    def _xy(self, point: Point) -> Point:
-        return (point[1], point[0]) if self._down else point
+        self._layout = lay_out(
+            {key: (label.width, _HEIGHT) for key, label in labels.items()}, arrows, _GAP_ALONG
+        )
+        if self._layout.extent[0] + 2 * _MARGIN > _PAGE:
+            self._down = True
+            sizes = {key: (float(_HEIGHT), label.width) for key, label in labels.items()}
+            self._layout = lay_out(sizes, arrows, _GAP_ALONG_DOWN)
 
     def svg(self) -> str:
         """The whole picture."""
-        width, height = self._xy(self._extent())
-        boxes = "".join(self._box(name) for name in self._centres if not is_place_holder(name))
-        lines = "".join(self._line(line) for line in self._layout.lines)
+        width, height = (extent + 2 * _MARGIN for extent in self._turned(self._layout.extent))
+        boxes = "".join(self._box(name) for name in self._layout.centres)
+        lines = "".join(self._line(arrow) for arrow in self._layout.arrows)
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" role="img" width="{width:.0f}" height="{height:.0f}" '
             f'viewBox="0 0 {width:.0f} {height:.0f}">'
@@ -179,9 +175,16 @@ class _Drawing:
             f'<rect class="ground" width="100%" height="100%" rx="6"/>{lines}{boxes}</svg>'
         )
 
+    def _turned(self, point: Point) -> Point:
+        return (point[1], point[0]) if self._down else point
+
+    def _xy(self, point: Point) -> Point:
+        x, y = self._turned(point)
+        return x + _MARGIN, y + _MARGIN
+
     def _box(self, name: str) -> str:
         label = self._labels[name]
-        x, y = self._xy(self._centres[name])
+        x, y = self._xy(self._layout.centres[name])
         round_corners = _HEIGHT / 2 if label.shape == "node" else 3
         rect = (
             f'<rect x="{x - label.width / 2:.1f}" y="{y - _HEIGHT / 2:.1f}" width="{label.width:.1f}" '
@@ -191,31 +194,23 @@ class _Drawing:
         texts = f'<text x="{x:.1f}" y="{y - above:.1f}">{escape(label.name)}</text>'
         if label.type:
             texts += f'<text class="type" x="{x:.1f}" y="{y + 10:.1f}">{escape(label.small_print)}</text>'
+        if rate := self._rates.get(name):
+            edge = (x + label.width / 2 - 8, y - _HEIGHT / 2)
+            texts += f'<text class="rate" x="{edge[0]:.1f}" y="{edge[1]:.1f}">{escape(rate)}</text>'
         return f'<g class="box {label.shape}">{rect}{texts}</g>'
 
-    def _line(self, line: Line) -> str:
-        """A curve from box to box, along the places that were kept free, with a head where it points to."""
-        points = self._points(line)
-        path = "M{:.1f},{:.1f}".format(*self._xy(points[0]))
-        for (a1, b1), (a2, b2) in itertools.pairwise(points):
+    def _line(self, arrow: Arrow) -> str:
+        """A curve from box to box, by the way that was kept free, with a head where it points to."""
+        path = "M{:.1f},{:.1f}".format(*self._xy(arrow.points[0]))
+        for (a1, b1), (a2, b2) in itertools.pairwise(arrow.points):
             middle = (a1 + a2) / 2
             corners = ((middle, b1), (middle, b2), (a2, b2))
             path += " C" + " ".join("{:.1f},{:.1f}".format(*self._xy(corner)) for corner in corners)
-        return f'<path class="line" d="{path}"/><path class="head" d="{self._head(points, line.turned)}"/>'
+        flows = " flows" if {arrow.start, arrow.end} & self._rates.keys() else ""
+        return f'<path class="line{flows}" d="{path}"/><path class="head" d="{self._head(arrow)}"/>'
 
-    def _head(self, points: list[Point], turned: bool) -> str:
-        (along, beside), back = (points[0], 8) if turned else (points[-1], -8)
+    def _head(self, arrow: Arrow) -> str:
+        (before, _), (along, beside) = arrow.points[-2:]
+        back = -8 if along > before else 8
         corners = ((along, beside), (along + back, beside - 4.5), (along + back, beside + 4.5))
         return "M" + " L".join("{:.1f},{:.1f}".format(*self._xy(corner)) for corner in corners) + " z"
-
-    def _points(self, line: Line) -> list[Point]:
-        """Where the curve leaves and enters boxes."""
-        points = []
-        for place, name in enumerate(line.way):
-            along, beside = self._centres[name]
-            half = self._box_size(name)[0] / 2
-            if place > 0:
-                points.append((along - half, beside))
-            if place < len(line.way) - 1:
-                points.append((along + half, beside))
-        return points

@@ -1,27 +1,31 @@
 """The notebook's end of the conversation with the judge, and the judge process where nobody has given one.
 
-It speaks the words that ``autograder/judge/link.py`` lists, and shares no code with the judge on purpose:
-what runs
-here is in the student's hands.
+What both say is in :mod:`autograder.messages.checks`. It shares no more code with the judge, on purpose: what runs here
+is in the student's hands.
 """
 
 from __future__ import annotations
 
 import atexit
 import contextlib
-import json
 import os
 import secrets
-import socket
 import subprocess
 import sys
 import tempfile
-import threading
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
+
+from autograder.messages.checks import FromJudge
+from autograder.messages.lines import Hangup, Lines, NotUnderstood
+
+if TYPE_CHECKING:
+    from autograder.messages.lines import Message
 
 SOCKET_VARIABLE = "AUTOGRADER_JUDGE_SOCKET"
 """Where a grader tells the kernel which judge to use."""
+MAX_TEXT = 4_000
+"""Characters of one text of the subject's that the judge looks at; more at once would end the conversation."""
 START_LIMIT = 60.0
 """Seconds of wall time in which a judge of one's own must be up."""
 
@@ -40,36 +44,31 @@ class JudgeLink:
             JudgeUnreachable: There is none and none could be started.
         """
         path = os.environ.get(SOCKET_VARIABLE) or own_judge().path()
-        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         try:
-            self._socket.connect(path)
-        except OSError as error:
+            self._lines = Lines.to(path)
+        except Hangup as error:
             raise JudgeUnreachable(f"the judge cannot be reached ({error})") from error
-        self._stream = self._socket.makefile("rb")
-        self._lock = threading.Lock()
 
-    def say(self, word: str, **rest: Any) -> None:
+    def say(self, message: Message) -> None:
         """Say one thing; nothing happens when the judge is gone, which :meth:`hear` tells."""
-        line = json.dumps({"say": word, **rest}, default=str).encode() + b"\n"
-        with self._lock, contextlib.suppress(OSError):
-            self._socket.sendall(line)
+        with contextlib.suppress(Hangup):
+            self._lines.say(message)
 
-    def hear(self) -> dict[str, Any]:
-        """The judge's next words.
+    def hear(self) -> FromJudge:
+        """The judge's next message.
 
         Raises:
             JudgeUnreachable: The judge is gone.
         """
-        line = self._stream.readline()
-        if not line:
-            raise JudgeUnreachable("the judge ended before it had a verdict")
-        message: dict[str, Any] = json.loads(line)
+        try:
+            message: FromJudge = self._lines.hear(FromJudge)
+        except (Hangup, NotUnderstood) as error:
+            raise JudgeUnreachable("the judge ended before it had a verdict") from error
         return message
 
     def close(self) -> None:
         """Hang up."""
-        self._stream.close()
-        self._socket.close()
+        self._lines.close()
 
 
 class OwnJudge:

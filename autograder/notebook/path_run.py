@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import os
-import signal
-import subprocess
 import sys
 import threading
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
-from autograder.workspaces.finding import workspace_of
-from autograder.workspaces.processes import descendants
-from autograder.workspaces.sources import BadSources, Source, collect_launch, collect_workspace
+from autograder.messages.checks import Exited, Output, Sources
+from autograder.messages.workspaces import Source
+from autograder.short_lines import short_lines
+from autograder.workspaces.running.own_session import OwnSession
+from autograder.workspaces.sources.collecting import BadSources, collect_launch, collect_workspace
+from autograder.workspaces.sources.finding import workspace_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -34,23 +35,16 @@ class PathRun:
         self._number = number
         self._command = [sys.executable, "-m", "autograder.workspaces", exercise, os.fspath(path)]
         self._domain = domain
-        self._tell_judge = tell
-        self._process: subprocess.Popen[bytes] | None = None
+        self._tell = tell
+        self._program: OwnSession | None = None
         self._reader: threading.Thread | None = None
 
     def start(self, arguments: Sequence[Any], options: Mapping[str, Any]) -> None:
         """Start the process; a path takes no arguments and no options."""
         del arguments, options
-        self._process = subprocess.Popen(
-            self._command,
-            env=_environment(self._domain),
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            # Interrupting the kernel must not end it halfway: the judge says when it ends.
-            start_new_session=True,
-        )
-        self._reader = threading.Thread(target=self._follow, args=(self._process,), daemon=True)
+        # Interrupting the kernel must not end it halfway: the judge says when it ends.
+        self._program = OwnSession(self._command, _environment(self._domain))
+        self._reader = threading.Thread(target=self._follow, args=(self._program,), daemon=True)
         self._reader.start()
 
     def release(self) -> None:
@@ -58,36 +52,21 @@ class PathRun:
 
     def stop(self) -> bool:
         """End the process with all that it started."""
-        process = self._process
-        if process is None:
-            return True
-        family = [process.pid, *descendants(process.pid)] if process.poll() is None else []
-        if family:
-            _signal(-process.pid, signal.SIGINT)
-            try:
-                process.wait(timeout=POLITE)
-            except subprocess.TimeoutExpired:
-                family += descendants(process.pid)
-        # Also what has moved into a process group of its own, as a launch's nodes do.
-        for pid in family:
-            if _is_session_of(pid, process.pid):
-                _signal(pid, signal.SIGKILL)
-        _signal(-process.pid, signal.SIGKILL)
-        process.wait()
+        if self._program is not None:
+            self._program.end(POLITE)
         if self._reader is not None:
             self._reader.join(timeout=POLITE)
         return True
 
-    def _follow(self, process: subprocess.Popen[bytes]) -> None:
-        assert process.stdout is not None
-        with process.stdout as stream:
+    def _follow(self, program: OwnSession) -> None:
+        with program.output as stream:
             self._pass_on(stream)
-        self._tell_judge("exited", run=self._number, code=process.wait())
+        self._tell(Exited(self._number, program.wait()))
 
     def _pass_on(self, stream: IO[bytes]) -> None:
-        while line := stream.readline(MAX_LINE):
+        for line in short_lines(stream, MAX_LINE):
             text = line.decode("utf-8", "replace").rstrip("\r\n")
-            self._tell_judge("output", run=self._number, text=text)
+            self._tell(Output(self._number, text))
 
 
 def is_path(subject: object) -> bool:
@@ -114,8 +93,8 @@ def send_sources(tell: Tell, subject: object) -> None:
     except (BadSources, OSError) as error:
         trouble = str(error)
     for source in sent:
-        tell("source", **source.as_words())
-    tell("sources", path=path, trouble=trouble)
+        tell(source)
+    tell(Sources(path, trouble))
 
 
 def _environment(domain: int) -> dict[str, str]:
@@ -126,21 +105,3 @@ def _environment(domain: int) -> dict[str, str]:
         "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
         "PYTHONUNBUFFERED": "1",
     }
-
-
-def _signal(pid: int, number: int) -> None:
-    try:
-        if pid < 0:
-            os.killpg(-pid, number)
-        else:
-            os.kill(pid, number)
-    except (ProcessLookupError, PermissionError):
-        pass
-
-
-def _is_session_of(pid: int, leader: int) -> bool:
-    """Whether a process still belongs to the session: its number may be another program's by now."""
-    try:
-        return os.getsid(pid) == leader
-    except OSError:
-        return False

@@ -7,17 +7,17 @@ A launch file starts programs of packages. A student who has written the nodes i
 from __future__ import annotations
 
 import os
-import re
+import re  # noqa: TID251  (in the student's own kernel)
 import shutil
 from pathlib import Path
 
 from autograder import course
-from autograder.workspaces.finding import PACKAGE_VARIABLE
+from autograder.notebook.package_files import PACKAGE, add_entry_points
+from autograder.workspaces.sources.finding import PACKAGE_VARIABLE
 
-PACKAGE = "my_robot_pkg"
 PROGRAMS = ("talker", "listener")
 
-_LIST_OF_PROGRAMS = re.compile(r"""(["'])console_scripts\1\s*:\s*\[""")
+_CLASS = re.compile(r"^class ", re.MULTILINE)
 
 
 def complete_package(workspace: str | Path = "ros2_ws", source: Path | None = None) -> str:
@@ -35,13 +35,25 @@ def complete_package(workspace: str | Path = "ros2_ws", source: Path | None = No
     """
     source = source or _courses_own()
     package = Path(workspace) / "src" / PACKAGE
+    if not source.is_dir():  # in what students are handed there is no solution
+        return _what_is_missing(package)
     if not (package / "package.xml").is_file():
         shutil.copytree(source, package, dirs_exist_ok=True)
         return f"There was no {PACKAGE} in {workspace}. The course's own has been put there."
-    missing = [name for name in PROGRAMS if not _has_program(package / "setup.py", name)]
+    missing = [name for name in PROGRAMS if not _has_program(package, name)]
     if not missing:
         return f"Your {PACKAGE} has the programs {' and '.join(PROGRAMS)}. Nothing was changed."
     return _add(missing, package, source)
+
+
+def _what_is_missing(package: Path) -> str:
+    missing = [name for name in PROGRAMS if not _has_program(package / "setup.py", name)]
+    if not missing:
+        return f"Your {PACKAGE} has the programs {' and '.join(PROGRAMS)}."
+    return (
+        f"{package} has no program {' and no program '.join(missing)} yet. "
+        "Do Lab 1.2 first: its nodes become programs of that package, and they are what is launched here."
+    )
 
 
 def _courses_own() -> Path:
@@ -49,24 +61,26 @@ def _courses_own() -> Path:
     return Path(handed_out) if handed_out else course.root() / "solutions" / "ros2_ws" / "src" / PACKAGE
 
 
-def _has_program(setup: Path, name: str) -> bool:
+def _has_program(package: Path, name: str) -> bool:
+    setup = package / "setup.py"
     text = setup.read_text(encoding="utf-8") if setup.is_file() else ""
-    return re.search(rf"""^[^#\n]*["']\s*{name}\s*=""", text, re.MULTILINE) is not None
+    declared = re.search(rf"""^[^#\n]*["']\s*{name}\s*=""", text, re.MULTILINE) is not None
+    return declared and not _is_empty(package / PACKAGE / f"{name}.py")
+
+
+def _is_empty(module: Path) -> bool:
+    """Whether a module is what Lab 1.2's cell writes before anything has been copied into it."""
+    return module.is_file() and not _CLASS.search(module.read_text(encoding="utf-8"))
 
 
 def _add(missing: list[str], package: Path, source: Path) -> str:
-    setup = package / "setup.py"
-    text = setup.read_text(encoding="utf-8") if setup.is_file() else ""
-    place = _LIST_OF_PROGRAMS.search(text)
-    entries = [f'"{name} = {PACKAGE}.{name}:main",' for name in missing]
-    if place is None:
-        wanted = " ".join(entries)
-        return f"{setup} has no list of console_scripts. Give it one (Lab 1.1, step 2), with: {wanted}"
+    entries = [f"{name} = {PACKAGE}.{name}:main" for name in missing]
+    said = add_entry_points(package.parents[1], entries)
+    if not said.startswith("Executables"):
+        return said
     for name in missing:
         module = package / PACKAGE / f"{name}.py"
-        if not module.exists():
+        if not module.exists() or _is_empty(module):
             module.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(source / PACKAGE / f"{name}.py", module)
-    lines = "".join(f"\n            {entry}" for entry in entries)
-    setup.write_text(text[: place.end()] + lines + text[place.end() :], encoding="utf-8")
     return f"Added to your {PACKAGE}: {' and '.join(missing)}."

@@ -115,46 +115,71 @@ def read_graph(patience: float = 2.0) -> RosGraph:
     """
     deadline = time.monotonic() + patience
     with _reader() as node:
-        seen = _look(node)
+        seen = look(node)
         while True:
             time.sleep(SETTLING)
-            before, seen = seen, _look(node)
+            before, seen = seen, look(node)
             if seen == before or time.monotonic() > deadline:
                 return seen
 
 
 @contextmanager
 def _reader() -> Iterator[Node]:
-    node = rclpy.create_node(READER, enable_rosout=False, start_parameter_services=False)
+    node = hidden_node(READER)
     try:
         yield node
     finally:
         node.destroy_node()
 
 
-def _look(node: Node) -> RosGraph:
+def hidden_node(name: str) -> Node:
+    """A node that looks, and that no list of nodes shows, as its name begins with an underscore."""
+    return rclpy.create_node(name, enable_rosout=False, start_parameter_services=False)
+
+
+def look(node: Node) -> RosGraph:
+    """What one node knows of the graph at this moment, hidden nodes left out."""
     pairs = [
         (name, space) for name, space in node.get_node_names_and_namespaces() if not name.startswith("_")
     ]
-    ends = {end for name, space in pairs for end in _ends(node, name, space)}
-    return RosGraph(tuple(sorted({_full(*pair) for pair in pairs})), tuple(sorted(ends)))
+    nodes = {_full(*pair) for pair in pairs}
+    ends = {end for end in _topic_ends(node) if end.node in nodes}
+    ends |= {end for name, space in pairs for end in _service_and_action_ends(node, name, space)}
+    return RosGraph(tuple(sorted(nodes)), tuple(sorted(ends)))
 
 
 def _full(name: str, space: str) -> str:
     return f"{space.rstrip('/')}/{name}"
 
 
-def _ends(node: Node, name: str, space: str) -> Iterator[End]:
-    """The ends of one node. A node that has just gone has none."""
-    topics, services = Kind.TOPIC, Kind.SERVICE
+def _topic_ends(node: Node) -> Iterator[End]:
+    """The publishers and subscribers of all topics.
+
+    They are asked for by topic: where two nodes have one name, a question by the node's name is answered for one of
+    them only.
+    """
+    for topic, types in node.get_topic_names_and_types():
+        # A topic that belongs to every node, or to an action, is no channel: nobody has to be asked about it.
+        if not list(_channels(Kind.TOPIC, [(topic, types)])):
+            continue
+        for gives, infos in (
+            (True, node.get_publishers_info_by_topic(topic)),
+            (False, node.get_subscriptions_info_by_topic(topic)),
+        ):
+            for info in infos:
+                full = _full(info.node_name, info.node_namespace)
+                yield End(full, Channel(Kind.TOPIC, topic, info.topic_type), gives)
+
+
+def _service_and_action_ends(node: Node, name: str, space: str) -> Iterator[End]:
+    """The services and actions of one node. A node that has just gone has none."""
+    services, actions = Kind.SERVICE, Kind.ACTION
     try:
         found = [
-            (topics, True, node.get_publisher_names_and_types_by_node(name, space)),
-            (topics, False, node.get_subscriber_names_and_types_by_node(name, space)),
             (services, True, node.get_client_names_and_types_by_node(name, space)),
             (services, False, node.get_service_names_and_types_by_node(name, space)),
-            (Kind.ACTION, True, get_action_client_names_and_types_by_node(node, name, space)),
-            (Kind.ACTION, False, get_action_server_names_and_types_by_node(node, name, space)),
+            (actions, True, get_action_client_names_and_types_by_node(node, name, space)),
+            (actions, False, get_action_server_names_and_types_by_node(node, name, space)),
         ]
     except NodeNameNonExistentError:
         return

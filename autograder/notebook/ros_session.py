@@ -87,11 +87,9 @@ def _check_fields_of_imported_messages() -> None:
 def start_ros() -> RosSession:
     """Start ROS in this kernel; where it is up already, only say so.
 
-    The domain is the one in ``ROS_DOMAIN_ID``. Where that is not set, a domain nobody uses is picked, held
-    until the kernel ends, and exported, so that processes started from the notebook join it. ROS installs no
-    signal
-    handlers: interrupting the kernel stops the cell and leaves the nodes alone. After ``rclpy.shutdown()`` it
-    starts ROS again.
+    The domain is the one in ``ROS_DOMAIN_ID``. Where that is not set, a domain nobody uses is picked, held until the
+    kernel ends, and exported, so that processes started from the notebook join it. ROS installs no signal handlers:
+    interrupting the kernel stops the cell and leaves the nodes alone. After ``rclpy.shutdown()`` it starts ROS again.
 
     Raises:
         ValueError: ``ROS_DOMAIN_ID`` is set to something that is no domain.

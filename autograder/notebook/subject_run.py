@@ -13,14 +13,18 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Empty
 
+from autograder.messages.checks import Constructed, Raised, Returned, Started
+from autograder.notebook.judge_link import MAX_TEXT
 from autograder.notebook.spin_threads import Failure, SpinThreads
 from autograder.notebook.student_tracebacks import student_frames
 
 if TYPE_CHECKING:
     from rclpy.context import Context
 
-Tell = Callable[..., None]
-"""Tells the judge one word with its data."""
+    from autograder.messages.lines import Message
+
+Tell = Callable[["Message"], None]
+"""Tells the judge something."""
 
 END_LIMIT = 1.5
 """Seconds of wall time in which a stopped subject must have left its thread."""
@@ -33,7 +37,7 @@ class SubjectRun:
         self._number = number
         self._subject = subject
         self._context = context
-        self._tell_judge = tell
+        self._tell = tell
         self._released = threading.Event()
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._live, name=f"subject {number}", daemon=True)
@@ -46,9 +50,8 @@ class SubjectRun:
 
         Args:
             arguments: What the class or function is called with.
-            options: Passed on where a function has parameters of these names; for a class, ``threads`` says
-                how
-                many threads spin it.
+            options: Passed on where a function has parameters of these names; for a class, ``threads`` says how many
+                threads spin it.
         """
         self._arguments, self._options = arguments, options
         self._thread.start()
@@ -67,21 +70,20 @@ class SubjectRun:
             self._thread.join(timeout=END_LIMIT)
         return not self._thread.is_alive()
 
-    def _tell(self, word: str, **rest: Any) -> None:
-        self._tell_judge(word, run=self._number, **rest)
-
     def _live(self) -> None:
         try:
             if inspect.isclass(self._subject):
                 self._make_and_spin()
             else:
-                value = self._subject(*self._arguments, **_accepted(self._subject, self._options))
-                self._tell("returned", value=None if value is None else repr(value))
+                accepted = _accepted(self._subject, self._options)
+                self._tell(Started(self._number, sorted(accepted)))
+                value = self._subject(*self._arguments, **accepted)
+                self._tell(Returned(self._number, None if value is None else repr(value)[:MAX_TEXT]))
         except ExternalShutdownException:
             pass
         except BaseException as error:
             if not (self._stopping.is_set() and isinstance(error, SystemExit)):
-                self._tell("raised", traceback=formatted(error))
+                self._tell(Raised(self._number, formatted(error)))
 
     def _make_and_spin(self) -> None:
         node = self._subject(*self._arguments)
@@ -89,7 +91,7 @@ class SubjectRun:
             raise TypeError(
                 f"{self._subject.__name__} is no Node: write class {self._subject.__name__}(Node)"
             )
-        self._tell("constructed", marker=_mark(node, self._number))
+        self._tell(Constructed(self._number, _mark(node, self._number)))
         self._released.wait()
         threads = SpinThreads(
             [node],
@@ -105,7 +107,7 @@ class SubjectRun:
     def _callback_raised(self, failure: Failure) -> None:
         # In a program, rclpy.spin ends with the first exception of a callback; so does the subject here.
         if not self._stopping.is_set():
-            self._tell("raised", traceback=formatted(failure.error))
+            self._tell(Raised(self._number, formatted(failure.error)))
 
 
 def formatted(error: BaseException) -> str:
@@ -116,9 +118,10 @@ def formatted(error: BaseException) -> str:
     collected = getattr(error, "errors", ())
     if collected and isinstance(getattr(collected[0], "error", None), BaseException):
         error = collected[0].error
-    return "".join(
-        traceback.format_exception(type(error), error, student_frames(error.__traceback__))
-    ).strip()
+    shown = traceback.format_exception(type(error), error, student_frames(error.__traceback__))
+    text = "".join(shown).strip()
+    # The beginning says where it began, the end what was raised.
+    return text if len(text) <= MAX_TEXT else f"{text[: MAX_TEXT // 2]}\n{text[-MAX_TEXT // 2 + 1 :]}"
 
 
 def _mark(node: Node, number: int) -> str:

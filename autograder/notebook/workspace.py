@@ -15,10 +15,14 @@ import os
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from autograder.workspaces.building import Build, build
-from autograder.workspaces.placing import CannotPlace, place
-from autograder.workspaces.prefixes import package_prefixes, python_folders, with_prefixes
+from autograder.workspaces.building.colcon import build
+from autograder.workspaces.building.placing import CannotPlace, place
+from autograder.workspaces.running.prefixes import package_prefixes, python_folders, with_prefixes
+
+if TYPE_CHECKING:
+    from autograder.workspaces.building.result import Build
 
 MAX_LOG = 4_000
 """Characters of a failed build's log that are shown."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from autograder.workspaces.running import main
+from autograder.workspaces.running.running import main
 
 if __name__ == "__main__":
     sys.exit(main(sys.argv[1:]))

@@ -21,7 +21,7 @@ def _list_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _list(args: argparse.Namespace) -> Outcome:
-    with graph_node(args, names=False) as node:
+    with graph_node(args) as node:
         from rclpy.action.graph import get_action_names_and_types
 
         actions = get_action_names_and_types(node)

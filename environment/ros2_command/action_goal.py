@@ -94,7 +94,7 @@ def _send_goal(args: argparse.Namespace) -> Outcome:
         return f"Failed to populate message fields: {error!r}"
     name = f"{NAME_PREFIX}_send_goal_{args.action_type.replace('/', '_')}"
     # ROS must survive Ctrl-C here, or the goal could not be canceled.
-    with graph_node(name=name, names=False, handle_interrupt=False) as node:
+    with graph_node(name=name, handle_interrupt=False) as node:
         from rclpy.action.client import ActionClient
 
         client = ActionClient(node, action, args.action_name)

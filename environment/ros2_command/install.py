@@ -23,12 +23,20 @@ _LONGEST_SHEBANG = 120  # bytes: older kernels cut a longer first line
 _PROGRAM = '''\
 """The course's own ros2 (environment.ros2_command). A real one, where there is one, runs instead."""
 
+import os
+import signal
 import sys
 
+# Ctrl-C while the command is still being loaded ends it without a traceback, with the exit code of every Ctrl-C.
+heard = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+if heard:
+    signal.signal(signal.SIGINT, lambda *_: os._exit(2))
 sys.path.insert(0, {root!r})
 from environment.ros2_command.main import main
 
 sys.path.remove({root!r})
+if heard:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 sys.exit(main())
 '''
 

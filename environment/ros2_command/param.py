@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 # Seconds.
 _POLL = 0.01
 _SERVICE_LIMIT = 5.0
+_ASK_AGAIN = 1.0
 
 # By the numbers of rcl_interfaces/msg/ParameterType: its name, the words before its value, the value's field.
 _TYPES = (
@@ -37,7 +38,11 @@ _TYPES = (
 
 
 def _call(node: Node, node_name: str, service: str, request: Any, kind: Any) -> Any | None:
-    """Call a parameter service; return None when the service does not appear."""
+    """Call a parameter service; return None when the service does not appear.
+
+    A server drops its answer where it does not know the client yet (rmw_fastrtps waits 0.1 s), so whoever gets
+    none asks again: parameters are the same after a second request as after the first.
+    """
     import rclpy
 
     client = node.create_client(kind, f"{node_name}/{service}")
@@ -46,9 +51,11 @@ def _call(node: Node, node_name: str, service: str, request: Any, kind: Any) -> 
         if time.monotonic() > limit:
             return None
         time.sleep(_POLL)
-    future = client.call_async(request)
-    rclpy.spin_until_future_complete(node, future)
-    return future.result()
+    while True:
+        future = client.call_async(request)
+        rclpy.spin_until_future_complete(node, future, timeout_sec=_ASK_AGAIN)
+        if future.done():
+            return future.result()
 
 
 def _timed_out(node_name: str) -> str:

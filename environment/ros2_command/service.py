@@ -25,7 +25,7 @@ def _count_option(parser: argparse.ArgumentParser) -> None:
 
 
 def _services(args: argparse.Namespace) -> list[tuple[str, list[str]]]:
-    with graph_node(args, names=False) as node:
+    with graph_node(args) as node:
         return [
             (name, types)
             for name, types in node.get_service_names_and_types()

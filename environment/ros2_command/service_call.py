@@ -48,7 +48,7 @@ def _call(args: argparse.Namespace) -> Outcome:
     except Exception as error:
         return f"Failed to populate field: {error}"
     name = f"{NAME_PREFIX}_requester_{args.service_type.replace('/', '_')}"
-    with graph_node(name=name, names=False) as node:
+    with graph_node(name=name) as node:
         client = node.create_client(service, args.service_name)
         if not client.service_is_ready():
             print("waiting for service to become available...")

@@ -46,7 +46,7 @@ def _details(title: str, noun: str, counted: list[tuple[str, list[str], int]]) -
 
 
 def _list(args: argparse.Namespace) -> Outcome:
-    with graph_node(args, names=False) as node:
+    with graph_node(args) as node:
         topics = names_and_types(node, hidden=args.include_hidden_topics)
         publishers = [(name, types, node.count_publishers(name)) for name, types in topics]
         subscribers = [(name, types, node.count_subscribers(name)) for name, types in topics]
@@ -75,7 +75,7 @@ def _info_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _info(args: argparse.Namespace) -> Outcome:
     end = "\n\n" if args.verbose else "\n"
-    with graph_node(args, names=args.verbose) as node:
+    with graph_node(args) as node:
         types = dict(names_and_types(node, hidden=True)).get(args.topic_name)
         if types is None:
             return f"Unknown topic '{args.topic_name}'"
@@ -97,7 +97,7 @@ def _type_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _type(args: argparse.Namespace) -> Outcome:
-    with graph_node(args, names=False) as node:
+    with graph_node(args) as node:
         types = dict(names_and_types(node, hidden=args.include_hidden_topics)).get(args.topic_name)
     for name in types or ():
         print(name)
@@ -116,7 +116,7 @@ def _find_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _find(args: argparse.Namespace) -> Outcome:
-    with graph_node(args, names=False) as node:
+    with graph_node(args) as node:
         topics = names_and_types(node, hidden=args.include_hidden_topics)
     found = [name for name, types in topics if args.topic_type in types]
     if args.count_topics:

@@ -149,7 +149,7 @@ def _echo(args: argparse.Namespace) -> Outcome:
 
     if args.field is not None and not args.field.strip("."):
         return f"Invalid field value '{args.field}'"
-    with graph_node(args, names=False) as node:
+    with graph_node(args) as node:
         if args.message_type is None:
             message_type = message_class(node, args.topic_name)
             if message_type is None:

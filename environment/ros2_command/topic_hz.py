@@ -99,7 +99,7 @@ def _hz(args: argparse.Namespace) -> Outcome:
 
     passes = message_filter(args.filter_expr)
     intervals = Intervals(args.window_size)
-    with graph_node(args, names=False) as node:
+    with graph_node(args) as node:
         message_type = message_class(node, args.topic_name, wait=True)
         clock = Clock(clock_type=ClockType.SYSTEM_TIME) if args.use_wtime else node.get_clock()
 

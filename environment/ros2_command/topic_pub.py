@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 # Seconds.
 _POLL = 0.01
 _TELL_EVERY = 1.0
+_ACKNOWLEDGED = 5.0
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:
@@ -101,6 +102,7 @@ def _publish(
     node: Node, publisher: Any, message: Any, values: Any, times: int, args: argparse.Namespace
 ) -> None:
     import rclpy
+    from rclpy.duration import Duration
 
     stamp_setters = fill(message, values)
     print("publisher: beginning loop")
@@ -121,7 +123,8 @@ def _publish(
         node.create_timer(1 / args.rate, publish)
         while times == 0 or count < times:
             rclpy.spin_once(node)
-    # The last message needs a moment to reach the others before this node is gone.
+    # The last message must reach the others before this node is gone: who reads reliably says so.
+    publisher.wait_for_all_acked(Duration(seconds=_ACKNOWLEDGED))
     time.sleep(args.keep_alive)
 
 
@@ -144,7 +147,7 @@ def _pub(args: argparse.Namespace) -> Outcome:
         fill(type(message)(), values)
     except Exception as error:
         return f"Failed to populate field: {error}"
-    with graph_node(args, name=args.node_name, names=False) as node:
+    with graph_node(args, name=args.node_name) as node:
         publisher = node.create_publisher(type(message), args.topic_name, given_profile(args))
         if trouble := _wait_for_subscriptions(publisher, wanted, args.max_wait_time_secs):
             return trouble

@@ -23,7 +23,7 @@ In a file of `bank/*/*.py` cells follow:
     # %% extra              a cell of the student's own in front of the next solution cell (or at the end)
 
 What is not mentioned stays as it was handed out. Words in double angle brackets are things that an attacker might know,
-filled in by `attack_class.py`.
+filled in by `attack_class.py`, or the name of a file of `parts/`, whose text stands there.
 
 A file of `doors/` is a program of the tests' own that makes a submission which no notebook file could hold: its
 function `hand_in(folder, notebook)` writes into the submission's folder.
@@ -49,6 +49,7 @@ FAMILIES = {
     "reading": "reading what is not one's own",
     "writing": "writing what is not one's own",
     "breaking": "breaking the grader out or down",
+    "crowding": "using up what all boxes of a user share",
     "network": "reaching beyond the box",
     "shadowing": "replacing modules",
     "doors": "submissions that are no notebooks, or too much of one",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import csv
 import hashlib
+import inspect
 import os
 import re
 import secrets
@@ -16,10 +17,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Self
 
 import nbformat
+import ordinary_user
 from attack_bank import HERE, USUAL, Attack
 
 from autograder import course
-from autograder.grading.new_class import new_class
+from autograder.grading.classes.new_class import new_class
+from autograder.kit.recipes import subscriber
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -133,17 +136,26 @@ class Graded:
         return "\n".join(f.read_text(errors="replace") for f in sorted(files) if f.is_file())
 
 
+def _listeners_texts() -> str:
+    """Python that draws the texts which the judge sends to a listener: the course is public, its boxes are not."""
+    known = ("SINGLY", "AT_PACE", "TRIES", "SIMULATED", "GREETING", "_WORDS")
+    lines = [f"{name} = {getattr(subscriber, name)!r}" for name in known]
+    return "\n".join(["from random import Random", *lines, inspect.getsource(subscriber.random_texts)])
+
+
 class AttackClass:
     """Makes the class, hands everything in and grades it.
 
     Args:
         folder: An empty folder.
         traps: What lies around it.
+        as_user: Let somebody without any right of root's grade it, with the number of open files that a login has.
     """
 
-    def __init__(self, folder: Path, traps: Traps) -> None:
+    def __init__(self, folder: Path, traps: Traps, *, as_user: bool = False) -> None:
         self.path = folder / "class"
         self._traps = traps
+        self._as_user = as_user
         new_class(self.path, HERE / "course", cell_seconds=CELL_SECONDS, notebook_seconds=NOTEBOOK_SECONDS)
         with (self.path / "nbgrader_config.py").open("a") as config:
             config.writelines(f"c.WireExecute.{name} = {value}\n" for name, value in LIMITS.items())
@@ -156,17 +168,20 @@ class AttackClass:
         folder.mkdir(parents=True)
         if attack.is_program:
             attack.program().hand_in(folder, notebook)
-            return
-        self._fill(notebook, attack.assignment, self._known(attack.cells()))
-        nbformat.write(notebook, folder / f"{attack.assignment}.ipynb")
+        else:
+            self._fill(notebook, attack.assignment, self._known(attack.cells()))
+            nbformat.write(notebook, folder / f"{attack.assignment}.ipynb")
+        self._give(folder)
 
     def grade(self, *options: str) -> Graded:
         """Run ``autograder grade`` as an instructor does, in a process of its own."""
+        self._give(self.path.parent)
         before = self._digests()
         began = os.times().elapsed
         done = subprocess.run(
             # Attackers mostly wait, for a limit or for a second look: two at once keep a processor busy.
             [
+                *([sys.executable, ordinary_user.__file__] if self._as_user else []),
                 sys.executable,
                 "-m",
                 "autograder",
@@ -211,6 +226,14 @@ class AttackClass:
             folder = self.path / "submitted" / student / USUAL
             folder.mkdir(parents=True)
             nbformat.write(notebook, folder / f"{USUAL}.ipynb")
+            self._give(folder)
+
+    def _give(self, folder: Path) -> None:
+        """Let the grader own a folder and what is in it. At once: who was first is told from times of change."""
+        if self._as_user:
+            for place in (folder, *folder.rglob("*")):
+                if place.lstat().st_uid != ordinary_user.USER:
+                    os.chown(place, ordinary_user.USER, ordinary_user.USER, follow_symlinks=False)
 
     def _released(self, assignment: str) -> Any:
         return nbformat.read(self.path / "release" / assignment / f"{assignment}.ipynb", as_version=4)
@@ -252,7 +275,10 @@ class AttackClass:
             "<<udp_port>>": str(self._traps.udp_port),
             "<<abstract>>": self._traps.abstract,
             "<<mark>>": self._traps.mark,
+            "<<listeners_texts>>": _listeners_texts(),
         }
+        # First, because there are words of the others in them.
+        words = {**{f"<<{part.stem}>>": part.read_text() for part in HERE.glob("parts/*.py")}, **words}
         for kind, name, source in cells:
             for word, meaning in words.items():
                 source = source.replace(word, meaning)
@@ -260,7 +286,10 @@ class AttackClass:
 
     def _rows(self) -> dict[str, dict[str, dict[str, str]]]:
         found: dict[str, dict[str, dict[str, str]]] = {}
-        with contextlib.suppress(FileNotFoundError), (self.path / "grades.csv").open(newline="") as file:
+        with (
+            contextlib.suppress(FileNotFoundError),
+            (self.path / "grades.csv").open(newline="", encoding="utf-8-sig") as file,
+        ):
             for row in csv.DictReader(file):
                 found.setdefault(row["student"], {})[row["exercise"]] = row
         return found

@@ -1,6 +1,7 @@
 """Run the bank of attacks by hand: all of it several times in a row, or single attacks without their defence.
 
 python tests/attacks/run.py --repeat 3
+python tests/attacks/run.py --repeat 3 --as-user
 python tests/attacks/run.py gradebook neighbours --unsafe-no-sandbox
 """
 
@@ -16,6 +17,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from attack_bank import Attack, attacks
 from attack_class import AttackClass, Traps
 from attack_demands import general_objections, objections, traces
+from ordinary_user import OPEN_FILES
 
 UNSAFE = "--unsafe-no-sandbox"
 
@@ -36,6 +38,11 @@ def main() -> int:
     options.add_argument("--option", action="append", default=[], help="one more option for autograder grade")
     options.add_argument("--show", action="store_true", help="print what the grader printed")
     options.add_argument("--keep", type=Path, help="keep the class in this folder")
+    options.add_argument(
+        "--as-user",
+        action="store_true",
+        help=f"as root: let a user without any right grade, with a soft limit of {OPEN_FILES:,} open files",
+    )
     given = options.parse_args()
     chosen = [
         attack for attack in attacks() if not given.names or {attack.name, attack.family} & set(given.names)
@@ -47,18 +54,18 @@ def main() -> int:
         extra.append(UNSAFE)
     failed = 0
     for number in range(given.repeat):
-        failed += _run(chosen, extra, given.show, given.keep)
+        failed += _run(chosen, extra, given)
         print(f"run {number + 1} of {given.repeat} is over", flush=True)
     return 1 if failed else 0
 
 
-def _run(chosen: list[Attack], extra: list[str], show: bool, keep: Path | None) -> int:
+def _run(chosen: list[Attack], extra: list[str], given: argparse.Namespace) -> int:
     with tempfile.TemporaryDirectory(prefix="attacks-") as folder, Traps(Path(folder)) as traps:
-        made = AttackClass(keep or Path(folder), traps)
+        made = AttackClass(given.keep or Path(folder), traps, as_user=given.as_user)
         for attack in chosen:
             made.hand_in(attack)
         graded = made.grade(*extra)
-        if show or graded.exit_code:
+        if given.show or graded.exit_code:
             print(graded.output[-4000:])
         failed = 0
         for attack in chosen:

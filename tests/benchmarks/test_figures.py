@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.grading.class_directory import ClassDirectory
+from autograder.grading.classes.class_directory import ClassDirectory
 from benchmarks import figures, results
 from benchmarks.__main__ import PAGE, RESULTS
 from benchmarks.classes import bank_variants, make_class

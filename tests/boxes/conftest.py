@@ -1,4 +1,4 @@
-"""Warm processes for all tests of boxes."""
+"""Fork servers for all tests of boxes."""
 
 from __future__ import annotations
 
@@ -7,32 +7,32 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.boxes.forkserver import WarmProcesses
+from autograder.boxes.fork_server_client import ForkServers
 from autograder.boxes.sandbox import why_impossible
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from autograder.boxes.forkserver import Addresses
+    from autograder.boxes.fork_server_client import Addresses
 
-NO_JUDGE = "autograder.boxes.keeper"
+NO_JUDGE = "autograder.boxes.supervisor"
 """These tests need none: any module with a \"prepare\" will do."""
 
 
 @pytest.fixture(scope="session")
 def boxed() -> Iterator[Addresses]:
-    """The warm processes of a machine with a sandbox."""
+    """The fork servers of a machine with a sandbox."""
     why = why_impossible()
     if why and os.environ.get("CI"):
         pytest.fail(f"no sandbox is possible here, and this project's CI has one: {why}")
     if why:
         pytest.skip(f"no sandbox is possible here: {why}")
-    with WarmProcesses(NO_JUDGE, boxed=True) as warm:
+    with ForkServers(NO_JUDGE, boxed=True) as warm:
         yield warm.addresses
 
 
 @pytest.fixture(scope="session")
 def unboxed() -> Iterator[Addresses]:
-    """The warm processes where nothing is boxed."""
-    with WarmProcesses(NO_JUDGE, boxed=False) as warm:
+    """The fork servers where nothing is boxed."""
+    with ForkServers(NO_JUDGE, boxed=False) as warm:
         yield warm.addresses

@@ -1,4 +1,4 @@
-"""What the forks of a test's warm process become: two sleepers that obey nobody."""
+"""What the forks of a test's fork server become: two sleepers that obey nobody."""
 
 from __future__ import annotations
 

@@ -15,16 +15,16 @@ import pytest
 
 from autograder.boxes.entering import Entrance
 from autograder.boxes.environment import box_environment
+from autograder.boxes.fork_server import BESIDE, INSIDE
+from autograder.boxes.fork_server_client import SUPERVISOR_MODULE, ForkServer
 from autograder.boxes.forked import ForkedProcess
-from autograder.boxes.forkserver import KEEPER_MODULE, WarmProcess
+from autograder.boxes.mounts import WORK
 from autograder.boxes.sandbox import Enclosure
-from autograder.boxes.view import WORK
-from autograder.boxes.warm import BESIDE, INSIDE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from autograder.boxes.forkserver import Addresses
+    from autograder.boxes.fork_server_client import Addresses
 
 STUBBORN = "trap '' INT TERM HUP; (setsid sh -c \"trap '' INT TERM HUP; sleep 7654.5\" &); sleep 7654.5"
 WORKER = """
@@ -55,45 +55,45 @@ def await_sleepers() -> None:
 
 
 @pytest.fixture
-def keepers(boxed: Addresses, tmp_path: Path) -> Iterator[WarmProcess]:
-    process = WarmProcess(BESIDE, KEEPER_MODULE, tmp_path / "keepers")
+def supervisors(boxed: Addresses, tmp_path: Path) -> Iterator[ForkServer]:
+    process = ForkServer(BESIDE, SUPERVISOR_MODULE, tmp_path / "supervisors")
     yield process
     process.stop()
 
 
-def test_closing_ends_all(keepers: WarmProcess, tmp_path: Path) -> None:
-    with Enclosure(keepers.address, tmp_path / "box") as enclosure:
+def test_closing_ends_all(supervisors: ForkServer, tmp_path: Path) -> None:
+    with Enclosure(supervisors.address, tmp_path / "box") as enclosure:
         enclosure.start(["sh", "-c", STUBBORN])
         await_sleepers()
     assert gone()
 
 
-def kill_worker(keepers: WarmProcess, worker: subprocess.Popen[bytes]) -> None:
+def kill_worker(supervisors: ForkServer, worker: subprocess.Popen[bytes]) -> None:
     worker.kill()
 
 
-def kill_keeper(keepers: WarmProcess, worker: subprocess.Popen[bytes]) -> None:
-    for child in psutil.Process(keepers.pid).children():
+def kill_supervisor(supervisors: ForkServer, worker: subprocess.Popen[bytes]) -> None:
+    for child in psutil.Process(supervisors.pid).children():
         child.kill()
 
 
-def kill_warm(keepers: WarmProcess, worker: subprocess.Popen[bytes]) -> None:
-    os.kill(keepers.pid, signal.SIGKILL)
+def kill_fork_server(supervisors: ForkServer, worker: subprocess.Popen[bytes]) -> None:
+    os.kill(supervisors.pid, signal.SIGKILL)
 
 
-@pytest.mark.parametrize("kill", [kill_worker, kill_keeper, kill_warm])
+@pytest.mark.parametrize("kill", [kill_worker, kill_supervisor, kill_fork_server])
 def test_killing_anyone_ends_all(
-    keepers: WarmProcess, tmp_path: Path, kill: Callable[[WarmProcess, subprocess.Popen[bytes]], None]
+    supervisors: ForkServer, tmp_path: Path, kill: Callable[[ForkServer, subprocess.Popen[bytes]], None]
 ) -> None:
     worker = subprocess.Popen(
-        [sys.executable, "-c", WORKER, keepers.address, str(tmp_path / "box"), STUBBORN],
+        [sys.executable, "-c", WORKER, supervisors.address, str(tmp_path / "box"), STUBBORN],
         stdout=subprocess.PIPE,
     )
     try:
         assert worker.stdout is not None
         assert worker.stdout.readline() == b"up\n"
         await_sleepers()
-        kill(keepers, worker)
+        kill(supervisors, worker)
         assert gone()
     finally:
         worker.kill()
@@ -101,10 +101,10 @@ def test_killing_anyone_ends_all(
     assert str(tmp_path) not in Path("/proc/self/mountinfo").read_text()
 
 
-def test_a_process_that_entered_ends_with_its_box(keepers: WarmProcess, tmp_path: Path) -> None:
-    warm = WarmProcess(INSIDE, "tests.boxes.sleeping_module", tmp_path / "warm", extra={"PYTHONPATH": ROOT})
+def test_a_process_that_entered_ends_with_its_box(supervisors: ForkServer, tmp_path: Path) -> None:
+    warm = ForkServer(INSIDE, "tests.boxes.sleeping_module", tmp_path / "warm", extra={"PYTHONPATH": ROOT})
     try:
-        with Enclosure(keepers.address, tmp_path / "box") as enclosure:
+        with Enclosure(supervisors.address, tmp_path / "box") as enclosure:
             box = enclosure.box("student")
             entrance = Entrance(cwd=str(WORK), environment=box_environment(), boxed=True)
             process = ForkedProcess(warm.address, entrance, [box.pidfd])
@@ -119,16 +119,16 @@ def test_a_process_that_entered_ends_with_its_box(keepers: WarmProcess, tmp_path
         warm.stop()
 
 
-def test_a_process_whose_grader_hangs_up_is_killed(keepers: WarmProcess, tmp_path: Path) -> None:
-    warm = WarmProcess(INSIDE, "tests.boxes.sleeping_module", tmp_path / "warm", extra={"PYTHONPATH": ROOT})
+def test_a_process_whose_grader_hangs_up_is_killed(supervisors: ForkServer, tmp_path: Path) -> None:
+    warm = ForkServer(INSIDE, "tests.boxes.sleeping_module", tmp_path / "warm", extra={"PYTHONPATH": ROOT})
     try:
-        with Enclosure(keepers.address, tmp_path / "box") as enclosure:
+        with Enclosure(supervisors.address, tmp_path / "box") as enclosure:
             box = enclosure.box("student")
             entrance = Entrance(cwd=str(WORK), environment=box_environment(), boxed=True)
             process = ForkedProcess(warm.address, entrance, [box.pidfd])
             inside = psutil.Process(process.pid)
             process._channel.close()
-            psutil.wait_procs([inside], timeout=10.0)
+            psutil.wait_procs([inside], timeout=180)
             assert not inside.is_running()
     finally:
         warm.stop()

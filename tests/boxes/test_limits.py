@@ -20,7 +20,7 @@ from autograder.boxes.scratch import scratch_folder
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from autograder.boxes.forkserver import Addresses
+    from autograder.boxes.fork_server_client import Addresses
 
 CHECK = Cell("print('alive')", check=Check("lab.one", "One", points=10, worth=10, limit=2), name="lab-one")
 
@@ -156,7 +156,7 @@ def test_a_line_of_100_megabytes(run: Run) -> None:
 
 def test_an_error_of_a_limit_has_its_own_word() -> None:
     from autograder.boxes.execution import CellRun
-    from autograder.boxes.zero import without_verdict
+    from autograder.boxes.missing_verdict import without_verdict
 
     assert CHECK.check is not None
     full = CellRun(Ended.RAISED, error="OSError: [Errno 28] No space left on device: 'log'")
@@ -188,4 +188,4 @@ def test_many_small_processes_cannot_take_the_watcher_with_them(run: Run) -> Non
 
 
 def test_what_is_not_in_its_box_yet_is_not_taken_for_all_that_the_host_does() -> None:
-    assert guards.use_of(os.getpid(), None) == guards.Use(0, 0, 0.0)
+    assert guards.use_of(os.getpid(), None) == guards.Use(0, 0, 0.0, 0)

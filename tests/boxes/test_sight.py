@@ -14,19 +14,19 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from autograder import course
-from autograder.boxes import view
+from autograder.boxes import mounts
 from autograder.boxes.execution import Cell
 from autograder.boxes.limits import Limits
+from autograder.boxes.mounts import installation
 from autograder.boxes.place import BoxedPlace, JudgeSetting
 from autograder.boxes.runner import run_notebook
 from autograder.boxes.sandbox import Bind, Enclosure
 from autograder.boxes.scratch import scratch_folder
-from autograder.boxes.view import installation
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from autograder.boxes.forkserver import Addresses
+    from autograder.boxes.fork_server_client import Addresses
 
 Ask = Callable[[str], Any]
 
@@ -63,7 +63,7 @@ def ask(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses) -> Ask
     def command(code: str) -> Any:
         with (
             scratch_folder(tmp_path) as folder,
-            Enclosure(boxed.keepers, folder / "box", files={"data/a.txt": b"hello"}) as enclosure,
+            Enclosure(boxed.supervisors, folder / "box", files={"data/a.txt": b"hello"}) as enclosure,
         ):
             done = enclosure.run(["python", "-c", source.format(code=code)], limit=30.0)
         return answer(done.output.decode())
@@ -272,13 +272,13 @@ def test_a_sourced_ros_is_part_of_the_installation_and_a_workspace_is_not(tmp_pa
         "LD_LIBRARY_PATH": f"{ros}/lib/x86_64-linux-gnu:{workspace}/lib",
         "PATH": f"/usr/bin:{tmp_path}/home/bin:.",
     }
-    found = [path for path in view._installation(variables) if path.is_relative_to(tmp_path)]
+    found = [path for path in mounts._installation(variables) if path.is_relative_to(tmp_path)]
     assert found == [ros]
 
 
 @pytest.fixture
 def enclosure(tmp_path: Path, boxed: Addresses) -> Iterator[Enclosure]:
-    with scratch_folder(tmp_path) as folder, Enclosure(boxed.keepers, folder / "box") as made:
+    with scratch_folder(tmp_path) as folder, Enclosure(boxed.supervisors, folder / "box") as made:
         yield made
 
 
@@ -318,7 +318,7 @@ def test_boxes_of_one_submission_share_a_network_and_others_do_not(
     )
     knock = ["python", "-c", "import socket; socket.create_connection(('127.0.0.1', 4242), 5)"]
     with (
-        Enclosure(boxed.keepers, tmp_path / "neighbour") as neighbour,
+        Enclosure(boxed.supervisors, tmp_path / "neighbour") as neighbour,
         enclosure.start(["python", "-c", serve]) as server,
     ):
         while server.said != b"up\n":

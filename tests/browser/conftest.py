@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 ROOT = Path(__file__).resolve().parents[2]
-LIMIT = 60.0
+LIMIT = 180.0
 """Seconds after which a test gives up waiting for something that a quiet machine shows within ten."""
 CHROMIUM_OPTIONS = (
     "--headless",

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.cards.html import card_html
-from autograder.verdict import Criterion, Diagnosis, State, Verdict, not_checked
+from autograder.cards.text import card_text
+from autograder.verdict import Criterion, Diagnosis, Moment, State, Verdict, not_checked
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,7 +24,7 @@ GOLDEN = Path(__file__).parent / "golden"
 HTML_TAGS = "bdi code details div li p pre small span strong style summary table tbody td th thead tr ul"
 SVG_TAGS = "desc g line path svg text title"
 TAGS = set(f"{HTML_TAGS} {SVG_TAGS}".split())
-ARIA = "aria-hidden aria-label aria-level role scope tabindex"
+ARIA = "open aria-hidden aria-label aria-level role scope tabindex"
 PLAIN = "class colspan data-name hidden lang style"
 DRAWING = "d dx height text-anchor transform width x x1 x2 y y1 y2"
 ATTRIBUTES = set(f"{ARIA} {PLAIN} {DRAWING}".split())
@@ -65,6 +66,7 @@ class Tree(HTMLParser):
     def __init__(self, source: str) -> None:
         super().__init__(convert_charrefs=True)
         self.root = self._open = Element("root", {})
+        self._broken = False
         self.feed(source)
         self.close()
         assert self._open is self.root, f"<{self._open.tag}> is never closed"
@@ -76,6 +78,9 @@ class Tree(HTMLParser):
         self._open = element
 
     def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag == "wbr":  # a place where a word may be broken: it is still one word
+            self._broken = True
+            return
         self.handle_starttag(tag, attrs)
         self.handle_endtag(tag)
 
@@ -85,7 +90,12 @@ class Tree(HTMLParser):
         self._open = self._open.parent
 
     def handle_data(self, data: str) -> None:
-        self._open.children.append(data)
+        before = self._open.children[-1] if self._open.children else None
+        if self._broken and isinstance(before, str):
+            self._open.children[-1] = before + data
+        else:
+            self._open.children.append(data)
+        self._broken = False
 
     def handle_comment(self, data: str) -> None:
         raise AssertionError(f"a comment in the card: {data}")
@@ -217,21 +227,50 @@ def test_the_picture_has_its_twin_in_words(load: Callable[[str], Verdict]) -> No
     pictures = tree.all("svg", "agc-svg")
     assert len(pictures) == len({moment.part for moment in verdict.timeline})
     for picture in pictures:
-        assert picture.attributes["role"] == "img"
-        assert [child.tag for child in picture.children if isinstance(child, Element)][:2] == [
-            "title",
-            "desc",
-        ]
+        assert picture.attributes["role"] == "group"
+        assert picture.attributes["aria-label"].startswith("Traffic ")
     table = words(tree.all("table", "agc-moments")[0])
     for moment in verdict.timeline:
         assert moment.label in table
         assert moment.part in table
 
 
+def test_the_keyboard_reaches_what_is_labelled_and_a_screen_reader_says_it(verdict: Verdict) -> None:
+    for picture in Tree(card_html(verdict)).root.all("svg", "agc-svg"):
+        reached = [mark for mark in picture.all("svg", "agc-mark") if mark.attributes.get("tabindex") == "0"]
+        assert len(reached) == len(picture.all("text", "agc-label"))
+        for mark in reached:
+            assert mark.attributes["role"] == "img"
+            assert mark.attributes["aria-label"]
+            assert not (mark.parent and mark.parent.attributes.get("aria-hidden"))
+        # What is read with the eyes is the same, next to each mark.
+        tips = [tip.text().strip() for tip in picture.all("text", "agc-tip")]
+        assert len(tips) == len(picture.all("svg", "agc-mark"))
+        assert {mark.attributes["aria-label"] for mark in reached} <= set(tips)
+
+
+def test_no_picture_where_a_program_only_ended(load: Callable[[str], Verdict]) -> None:
+    ended = Moment(0.3, "your code", "note", "exited")
+    tree = Tree(card_html(replace(load("talker_passed"), timeline=(ended,)))).root
+    assert not tree.all("svg", "agc-svg")
+    assert "What was on the wire" not in words(tree)
+    assert "exited" in words(tree.all("table", "agc-moments")[0])
+
+
+def test_what_was_on_the_wrong_topic_is_grey_and_the_legend_says_why(load: Callable[[str], Verdict]) -> None:
+    wrong = Moment(0.3, "/chater", "note", "your publisher is here", key=True, stray=True)
+    meant = Moment(0.3, "/chatter", "note", "no publisher of yours", key=True)
+    tree = Tree(card_html(replace(load("talker_wrong_topic"), timeline=(wrong, meant)))).root
+    assert [text.text().strip() for text in tree.all("text", "agc-lane")] == ["/chater", "/chatter"]
+    grey = [text.text().strip() for text in tree.all("text", "agc-stray")]
+    assert grey == ["/chater", "your publisher is here"]
+    assert "where nobody asked for it" in words(tree)
+
+
 def test_a_long_timeline_is_cut_and_says_so(hostile: Verdict) -> None:
     tree = Tree(card_html(hostile)).root
     rows = tree.all("table", "agc-moments")[0].all("td")
-    assert 40 <= len(tree.all("svg", "agc-mark")) <= 62
+    assert 40 <= len(tree.all("svg", "agc-mark")) <= 82
     assert any("more left out here" in words(row) for row in rows)
     left_out = int(re.findall(r"(\d+) moments in between left out", words(tree))[0])
     assert left_out + len(tree.all("svg", "agc-mark")) == len(hostile.timeline)
@@ -254,6 +293,7 @@ def test_two_cards_share_a_page(load: Callable[[str], Verdict]) -> None:
 def test_the_traceback_is_folded_under_its_last_line(load: Callable[[str], Verdict]) -> None:
     verdict = load("crashed")
     folded = Tree(card_html(verdict)).root.all("details")[-1]
+    assert folded.attributes.get("open") == "open", "it is the diagnosis: nobody should have to look for it"
     summary = words(folded.all("summary")[0])
     assert summary == "The traceback, ending in: AttributeError: 'String' object has no attribute 'dta'"
     assert html.unescape(folded.all("pre")[0].text()).rstrip() == verdict.detail.rstrip()
@@ -276,3 +316,50 @@ def test_code_in_the_advice_is_set_as_code(
     (next_step,) = card.all(css_class="agc-next")
     assert [code.text() for code in next_step.all("code")] == codes
     assert ("`" in next_step.text()) == (not codes)
+
+
+def test_the_line_of_the_cell_stands_beside_the_diagnosis(load: Callable[[str], Verdict]) -> None:
+    trace = """Traceback (most recent call last):
+  File "/tmp/ipykernel_71/2831.py", line 11, in say_hello
+    msg.dta = "Hello"
+    ^^^^^^^
+AttributeError: 'String' object has no attribute 'dta'"""
+    (shown,) = Tree(card_html(replace(load("crashed"), detail=trace))).root.all(css_class="agc-place")
+    assert words(shown) == (
+        "Line 11 of your cell : msg.dta = \"Hello\" AttributeError: 'String' object has no attribute 'dta'"
+    )
+
+
+def test_a_second_try_shows_the_points_of_the_first(load: Callable[[str], Verdict]) -> None:
+    verdict = replace(load("talker_wrong_topic"), score=8.0, max_score=10.0)
+    (score,) = Tree(card_html(verdict, before=5.0)).root.all(css_class="agc-score")
+    assert words(score) == "5 → 8 of 10 points"
+    (same,) = Tree(card_html(verdict, before=8.0)).root.all(css_class="agc-score")
+    assert words(same) == "8 of 10 points"
+
+
+def test_a_card_that_is_out_of_date_says_why_and_is_dimmed(load: Callable[[str], Verdict]) -> None:
+    tree = Tree(card_html(load("talker_passed"), notice="TalkerNode has changed since.")).root
+    (card,) = tree.all(css_class="agc-dated")
+    (notice,) = card.all(css_class="agc-notice")
+    assert (words(notice), notice.attributes["role"]) == ("TalkerNode has changed since.", "status")
+
+
+def test_a_screen_reader_is_told_the_result(verdict: Verdict) -> None:
+    (spoken,) = Tree(card_html(verdict)).root.all(css_class="agc-spoken")
+    assert spoken.attributes["role"] == "status"
+    assert words(spoken)
+
+
+def test_texts_that_differ_are_shown_as_a_difference(load: Callable[[str], Verdict]) -> None:
+    text = Criterion("text", "Says the right text", 2.0, False, "“Hello, world! 0”, …", "“Hello world 0”")
+    tree = Tree(card_html(replace(load("talker_wrong_topic"), criteria=(text,)))).root
+    (shown,) = tree.all(css_class="agc-difference")
+    assert "".join(words(shown).split()) == "thedifference:Hello[,]world[!]0"
+    assert "missing" in card_text(replace(load("talker_wrong_topic"), criteria=(text,)))
+
+
+def test_long_names_break_at_their_slashes(load: Callable[[str], Verdict]) -> None:
+    name = Criterion("type", "Type", 1.0, False, "a/b", "my_robot_interfaces/srv/AddTwoInts")
+    source = card_html(replace(load("talker_wrong_topic"), criteria=(name,)))
+    assert "my_robot_interfaces/<wbr/>srv/<wbr/>AddTwoInts" in source

@@ -8,7 +8,8 @@ from itertools import pairwise
 import pytest
 
 from autograder.cards import readable
-from autograder.cards.timeline import HALF_WIDTH, WIDTH, Lane, Picture, picture
+from autograder.cards.axis import TURNS
+from autograder.cards.timeline import HALF_WIDTH, WIDTH, Lane, Mark, Picture, picture
 from autograder.cards.traffic import Part, traffic
 from autograder.verdict import Moment, Verdict
 
@@ -78,13 +79,78 @@ def test_any_traffic_is_legible(seed: int) -> None:
         assert_legible(picture(part, WIDTH), WIDTH)
 
 
+def marks_of(part: Part, width: int = WIDTH) -> list[Mark]:
+    """The marks in the order of the part's moments."""
+    drawn = picture(part, width)
+    in_lane = {name: iter(lane.marks) for name, lane in zip(part.lanes, drawn.lanes, strict=True)}
+    return [next(in_lane[moment.lane]) for moment in part.moments]
+
+
 def test_keeps_the_order_across_lanes(verdict: Verdict) -> None:
     for part in parts_of(verdict):
-        drawn = picture(part)
-        in_lane = {name: iter(lane.marks) for name, lane in zip(part.lanes, drawn.lanes, strict=True)}
-        xs = [next(in_lane[moment.lane]).x for moment in part.moments]
-        assert all(left < right for left, right in pairwise(xs))
+        xs = [mark.x for mark in marks_of(part)]
+        assert xs == sorted(xs)
         assert 0 <= xs[0] <= xs[-1] <= 100
+
+
+@pytest.mark.parametrize("width", [WIDTH, HALF_WIDTH])
+def test_the_x_of_a_mark_is_the_x_of_its_time(verdict: Verdict, width: int) -> None:
+    for part in parts_of(verdict):
+        if part.stands_still:
+            continue
+        first, last = part.moments[0].t, part.moments[-1].t
+        xs = [mark.x for mark in marks_of(part, width)]
+        for moment, x in zip(part.moments, xs, strict=True):
+            share = (moment.t - first) / (last - first)
+            assert x == pytest.approx(xs[0] + share * (xs[-1] - xs[0]), abs=0.02)
+
+
+def test_moments_of_one_time_stand_at_one_x_and_hide_each_other_not() -> None:
+    moments = (
+        Moment(0.0, "/chatter", "from_subject", "Hello, world! 0"),
+        Moment(0.0, "log", "from_subject", "Publishing"),
+        Moment(1.0, "/add", "to_subject", "a=1"),
+        Moment(1.0, "/add", "from_subject", "sum=1"),
+    )
+    one, two, three, four = marks_of(Part("", False, moments))
+    assert one.x == two.x
+    assert three.x == four.x
+    assert four.y - three.y >= 11
+
+
+def test_time_that_stands_still_has_an_order_and_no_seconds() -> None:
+    moments = tuple(Moment(0.0, "/chatter", "to_subject", f"text {n}", "", True) for n in range(6))
+    part = Part("", True, moments)
+    drawn = picture(part)
+    xs = [mark.x for mark in drawn.lanes[0].marks]
+    assert all(left < right for left, right in pairwise(xs))
+    assert [tick.text for tick in drawn.ticks] == [TURNS]
+    assert not any(" s" in mark.tooltip.split(" on ")[0] for mark in drawn.lanes[0].marks)
+    assert drawn.lanes[0].marks[2].tooltip.startswith("no. 3 on /chatter")
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_what_the_story_hangs_on_is_always_labelled(seed: int) -> None:
+    chance = random.Random(seed)
+    moments = tuple(
+        sorted(
+            (
+                Moment(
+                    t=chance.choice([0.0, 1.0, chance.random() * 3]),
+                    lane=chance.choice(["/fibonacci", "log"]),
+                    direction="from_subject",
+                    label=(words := chance.choice(["goal 20", "cancel request", "CANCELED [0, 1, 1]", "…"])),
+                    key=words != "…",
+                )
+                for _ in range(chance.randint(2, 50))
+            ),
+            key=lambda moment: moment.t,
+        )
+    )
+    for part in traffic(moments, at_most=20).parts:
+        assert_legible(picture(part, HALF_WIDTH), HALF_WIDTH)
+        for moment, mark in zip(part.moments, marks_of(part, HALF_WIDTH), strict=True):
+            assert mark.label == moment.label or not moment.key
 
 
 def test_draws_an_uncrowded_axis_true_to_time() -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from autograder.cards.traffic import MAX_LANES, OTHER_LANES, traffic
+from dataclasses import replace
+
+from autograder.cards.traffic import MAX_LANES, OTHER_LANES, OWN_LANE, traffic
 from autograder.verdict import Moment
 
 
@@ -27,9 +29,37 @@ def test_keeps_beginning_and_end_and_counts_the_rest() -> None:
     part = traffic(moments(300), at_most=60).parts[0]
     assert len(part.moments) == 60
     assert part.left_out == 240
-    assert part.after == 39  # two thirds of what is shown are the beginning
+    assert dict(part.gaps) == {39: 240}  # two thirds of what is shown are the beginning
     assert [part.moments[0].label, part.moments[-1].label] == ["0", "299"]
-    assert int(part.moments[part.after + 1].label) - int(part.moments[part.after].label) == 241
+    assert int(part.moments[40].label) - int(part.moments[39].label) == 241
+
+
+def test_never_leaves_out_what_the_story_hangs_on() -> None:
+    long = list(moments(300))
+    long[150] = replace(long[150], label="cancel request", key=True)
+    part = traffic(long, at_most=60).parts[0]
+    assert part.moments[40].label == "cancel request"
+    assert dict(part.gaps) == {39: 110, 40: 129}
+    assert len(part.moments) + part.left_out == 300
+
+
+def test_a_lane_that_is_full_of_life_keeps_its_name() -> None:
+    goals = [Moment(0.1 * n, f"/fibonacci, goal {n}", "to_subject", "goal") for n in range(12)]
+    canceled = [Moment(2.0 + n, "/fibonacci, goal 11", "from_subject", "x") for n in range(3)]
+    part = traffic([*goals, *canceled], at_most=60).parts[0]
+    assert "/fibonacci, goal 11" in part.lanes
+    assert part.lanes[-1] == OTHER_LANES
+
+
+def test_that_a_program_has_ended_needs_no_picture() -> None:
+    ended = Moment(1.0, OWN_LANE, "note", "exited")
+    assert not traffic([ended], at_most=60).parts[0].is_worth_a_picture
+    assert traffic([*moments(1), ended], at_most=60).parts[0].is_worth_a_picture
+
+
+def test_names_on_the_graph_come_before_what_was_said_of_it() -> None:
+    said = [Moment(float(n), lane, "note", "") for n, lane in enumerate((OWN_LANE, "log", "/chatter"))]
+    assert traffic(said, at_most=60).parts[0].lanes == ("/chatter", "log", OWN_LANE)
 
 
 def test_a_small_part_survives_beside_a_flood() -> None:

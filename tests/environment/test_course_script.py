@@ -72,6 +72,7 @@ def course(tmp_path: Path) -> Course:
     (root / "environment/ros2_ws/src/interfaces/srv").mkdir(parents=True)
     (root / "environment/ros2_command").mkdir()
     (root / "chapters").mkdir()
+    (root / "tests").mkdir()
     shutil.copy(ROOT / "course", root / "course")
     (root / "pyproject.toml").write_text("[project]\n")
     (root / "environment/__init__.py").write_text("")
@@ -110,11 +111,14 @@ def test_a_command_sets_up_once_and_then_is_only_run(course: Course) -> None:
         "environment/requirements/course.lock",
         "environment/ros2_ws/src/interfaces/package.xml",
         "environment/ros2_ws/src/interfaces/srv/A.srv",
+        "solutions/02_power/interfaces/power_interfaces/srv/B.srv",
+        "exercises/02_power/interfaces/power_interfaces/package.xml",
     ],
 )
 def test_a_change_of_what_it_is_made_from_sets_up_again(course: Course, changed: str) -> None:
     course.run("check")
     course.ran()
+    (course.root / changed).parent.mkdir(parents=True, exist_ok=True)
     with (course.root / changed).open("a") as file:
         file.write("# changed\n")
     course.run("check")

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import json
 import os
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
-from environment import doctor, jupyter_files, loopback, ros_flavour
+from environment import bootstrap, doctor, jupyter_files, loopback, ros_flavour
 from environment.findings import Finding, as_text, exit_code
+from environment.place import Place
 from environment.ros_flavour import Ros
 from environment.ros_report import INTERFACE_FIELDS
+from environment.setup_steps import SetupError
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from environment.findings import State
 
 HEALTHY = {"version": "7.1.6", "prefix": "/env", "rmw": "rmw_fastrtps_cpp", "fields": INTERFACE_FIELDS}
@@ -128,6 +129,30 @@ def test_room_in_a_folder(tmp_path: Path) -> None:
     full = doctor.folder_space("Disk", tmp_path, 10**18, "Make room.")
     assert (full.state, full.remedy) == ("missing", "Make room.")
     assert doctor.folder_space("Disk", tmp_path / "nowhere", 1, "Make room.").state == "missing"
+
+
+def test_a_folder_that_is_somebody_elses_is_no_matter_of_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("environment.ownership.may_write", lambda _: False)
+    found = doctor.space()[0]
+    assert found.state == "missing"
+    assert "Make room" not in found.remedy
+    assert f"Have {doctor.ROOT.owner()}, whose folder it is" in found.remedy
+
+
+@pytest.mark.parametrize(
+    ("is_set_up", "words"), [(True, "was changed since it was set up"), (False, "is not set up yet")]
+)
+def test_in_a_shared_course_the_set_up_says_who_has_to_run_what(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_set_up: bool, words: str
+) -> None:
+    place = Place(tmp_path, Path("/usr/bin/python3"))
+    if is_set_up:
+        place.notes.mkdir(parents=True)
+    monkeypatch.setattr("environment.ownership.may_write", lambda _: False)
+    with pytest.raises(SetupError, match=words) as error:
+        bootstrap.set_up(place, {}, with_tests=False)
+    assert f"Have {tmp_path.owner()}" in str(error.value)
+    assert f"{tmp_path}/course setup" in str(error.value)
 
 
 def test_a_sandbox_that_is_not_there_is_optional(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

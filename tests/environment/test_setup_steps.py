@@ -83,10 +83,23 @@ def test_the_interfaces_are_made_from_every_file_of_their_package() -> None:
     assert {
         "AddTwoInts.srv",
         "Fibonacci.action",
+        "WalkTo.action",
         "CMakeLists.txt",
         "package.xml",
         "repair_wheels.py",
     } == names
+
+
+def test_a_package_in_a_chapters_folder_is_one_of_them(tmp_path: Path) -> None:
+    usual = steps(Place(tmp_path, PLACE.base_python))["interfaces"]
+    package = tmp_path / "solutions/02_power/interfaces/power_interfaces"
+    (package / "srv").mkdir(parents=True)
+    for name in ("package.xml", "srv/SetLevel.srv"):
+        (package / name).touch()
+    (tmp_path / "solutions/02_power/lab_2_1").mkdir()
+    step = steps(Place(tmp_path, PLACE.base_python))["interfaces"]
+    assert step.doing == "building power_interfaces with colcon"
+    assert set(step.inputs) - set(usual.inputs) == {package / "package.xml", package / "srv/SetLevel.srv"}
 
 
 def test_a_sourced_ros_comes_after_the_environment_in_every_search_path(tmp_path: Path) -> None:

@@ -68,7 +68,7 @@ print("oh", file=sys.stderr)
 
 def course(folder: Path, text: str) -> Path:
     """A course with one notebook."""
-    master = folder / "solutions" / "01_first" / "lab_9_1.md"
+    master = folder / "solutions" / "01_first" / "lab_9_1" / "lab.md"
     master.parent.mkdir(parents=True)
     master.write_text(f"{HEADER}\n{text}")
     build(folder)

@@ -9,7 +9,7 @@ import pytest
 from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution
 from autograder.execution.findings import findings
 from autograder.execution.plan import Kind, Planned
-from autograder.grading import nodes
+from autograder.grading.rebuilding import nodes
 from autograder.grading.task import Task
 from autograder.verdict import Diagnosis, State, Verdict
 

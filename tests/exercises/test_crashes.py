@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.exercises.crashes import CRASHES, OTHER_CRASHES
-from autograder.exercises.evidence import Event, Evidence, Part, Reference
+from autograder.kit.crashes import CRASHES, OTHER_CRASHES
+from autograder.kit.evidence import Event, Evidence, Part, Reference
 
 LAST_LINES = {
     "init_twice": "RuntimeError: Context.init() must only be called once",
@@ -41,6 +41,88 @@ def test_the_traceback_names_the_mistake(key: str) -> None:
     advice = found.recognise(evidence)
     assert advice is not None
     assert "{" not in advice.text + advice.next_step
+
+
+@pytest.mark.parametrize(
+    ("last", "advice"),
+    [
+        ("AssertionError: The 'linear' field must be a sub message of type 'Vector3'", "x, y or z"),
+        ("AssertionError: The 'x' field must be of type 'float'", "with a point"),
+        ("AssertionError: The 'data' field must be of type 'str'", "str(...)"),
+    ],
+)
+def test_a_wrong_type_comes_with_the_advice_for_that_type(last: str, advice: str) -> None:
+    events = [
+        Event(0.1, "output", "stderr", {"text": line})
+        for line in ("Traceback (most recent call last):", last)
+    ]
+    evidence = Evidence([Part("part", {}, events)], Reference("x", {}))
+    found = next(m for m in (*CRASHES, *OTHER_CRASHES) if m.recognise(evidence))
+    told = found.recognise(evidence)
+    assert told is not None
+    assert found.key == "field_type"
+    assert advice in told.next_step
+
+
+NO_CONTEXT = "object does not support the context manager protocol"
+NO_ASYNC = "object does not support the asynchronous context manager protocol"
+NEWER = {
+    "with": ["    with rclpy.init(args=args) as context:", f"TypeError: 'NoneType' {NO_CONTEXT}"],
+    "several": ["    with (", "    ^", f"TypeError: 'NoneType' {NO_CONTEXT}"],
+    "async": ["    async with rclpy.init():", f"TypeError: 'NoneType' {NO_ASYNC}"],
+    "3.10": ["    with rclpy.init():", "AttributeError: __enter__"],
+    "node": ["    with TalkerNode() as node:", f"TypeError: 'TalkerNode' {NO_CONTEXT}"],
+    "import": [
+        "    import x",
+        "ImportError: cannot import name 'TimerInfo' from 'rclpy.timer' (/x/timer.py)",
+    ],
+    "endpoints": ["    f()", "AttributeError: 'A' object has no attribute 'get_servers_info_by_service'"],
+    "durations": ["    a + b", "TypeError: unsupported operand type(s) for +: 'Duration' and 'Duration'"],
+}
+OLD = {
+    "a lock that is None": ["    with self.lock:", f"TypeError: 'NoneType' {NO_CONTEXT}"],
+    "a method": ["    with self.handle:", f"TypeError: 'method' {NO_CONTEXT}"],
+    "a class of one's own": ["    with Stopwatch() as watch:", f"TypeError: 'Stopwatch' {NO_CONTEXT}"],
+}
+
+
+def _shown(lines: list[str]) -> Evidence:
+    shown = ["Traceback (most recent call last):", '  File "talker.py", line 3, in main', *lines]
+    return Evidence(
+        [Part("part", {}, [Event(0.1, "output", "stderr", {"text": t}) for t in shown])], Reference("x", {})
+    )
+
+
+@pytest.mark.parametrize(
+    ("lines", "newer"), [*((x, True) for x in NEWER.values()), *((x, False) for x in OLD.values())]
+)
+def test_what_is_newer_than_jazzy_is_said_to_be(lines: list[str], newer: bool) -> None:
+    found = next(m for m in (*CRASHES, *OTHER_CRASHES) if m.recognise(_shown(lines)))
+    assert (found.key == "newer_api") is newer
+
+
+def test_a_method_without_self_is_named() -> None:
+    line = "TypeError: main.<locals>.TalkerNode.tick() takes 0 positional arguments but 1 was given"
+    advice = next(filter(None, (m.recognise(_shown(["    f()", line])) for m in CRASHES)))
+    assert "tick of TalkerNode" in advice.text
+    assert "def tick(self)" in advice.next_step
+
+
+def test_the_line_that_is_quoted_is_what_was_raised_and_where() -> None:
+    library = "/usr/lib/python3.11/threading.py"
+    lines = ["    work()", f'  File "{library}", line 982, in run', "    self._target()", "KeyError: 'x'"]
+    advice = next(filter(None, (m.recognise(_shown(lines)) for m in OTHER_CRASHES)))
+    assert advice.text.endswith("KeyError: 'x' (line 3, in main)")
+
+
+def test_a_traceback_that_was_cut_off_is_not_quoted() -> None:
+    advice = next(filter(None, (m.recognise(_shown(["    work()"])) for m in OTHER_CRASHES)))
+    assert "File" not in advice.text
+
+
+def test_what_a_thread_says_at_a_shutdown_is_no_crash() -> None:
+    for last in ("rclpy.executors.ExternalShutdownException", "rclpy.exceptions.ROSInterruptException: over"):
+        assert not any(m.recognise(_shown(["    spin()", last])) for m in (*CRASHES, *OTHER_CRASHES))
 
 
 def test_saying_that_nobody_serves_is_no_crash() -> None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from autograder import exercises
-from autograder.exercises.evidence import Event, Evidence, Part
-from autograder.exercises.giving_up import gave_up
-from autograder.judge import reference, trial
+from autograder.judge.verdicts import reference, trial
+from autograder.kit.evidence import Event, Evidence, Part
+from autograder.kit.giving_up import gave_up, objection, remark
 
 ASKED = Event(0.0, "request", "/add_two_ints", {"fields": {"a": 1, "b": 2}})
 ANSWERED = Event(0.0, "response", "/add_two_ints", {"fields": {"sum": 3}})
@@ -59,9 +59,74 @@ def test_a_client_that_looks_once_is_told_so_whenever_it_met_the_service(
 ) -> None:
     stored = reference.load(exercise_id)
     parts = []
-    for number, part in enumerate(stored.parts):
+    # The recorded order of the runs is a drawn one, too.
+    in_order = sorted(stored.parts, key=lambda part: part.name == "there is no service")
+    for number, part in enumerate(in_order):
         seen = run("not there", part.inputs.get("numbers", [1, 2, 3]))
         events = [SEEN, *part.events, ENDED] if number in met_in else seen.events
         parts.append(Part(part.name, {"numbers": part.inputs.get("numbers", [1, 2, 3])}, events))
     diagnosis = trial.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
     assert diagnosis.key == "gave_up_too_early"
+
+
+def _waits(
+    *lines: tuple[float, str], told: float | None = None, ends: float | None = None, spared: float = 0.0
+) -> Part:
+    """A run without a server: what was said when, how long it was told to wait, when it ended."""
+    events = [Event(0.0, "subject", "started", {"accepted": ["patience_sec"] if told else []})]
+    events += [Event(0.0, "spared", "a wait for a server", {"seconds": spared})] if spared else []
+    events += [Event(t, "output", "stdout", {"text": text}) for t, text in lines]
+    events += [Event(ends, "subject", "returned", {"value": None})] if ends is not None else []
+    return Part("", {"numbers": [1, 2], "patience_sec": told or 1.5}, events)
+
+
+EACH_SECOND = tuple((float(t), f"waiting, try {t}") for t in range(1, 12))
+AT_ONCE = tuple((0.1 + t / 1000, "waiting") for t in range(200))
+
+
+@pytest.mark.parametrize(
+    ("part", "expected"),
+    [
+        pytest.param(_waits((5.0, "nobody there"), ends=5.0), "", id="ends and says why"),
+        pytest.param(_waits(ends=5.0), "ended without a word", id="ends silently"),
+        pytest.param(_waits(*EACH_SECOND), "", id="says again and again that it waits"),
+        pytest.param(
+            _waits(*EACH_SECOND[4::5], (11.9, "waiting, try 3")), "", id="says so every five seconds"
+        ),
+        pytest.param(_waits((0.1, "waiting")), "still waiting after 12 s", id="says so once"),
+        pytest.param(
+            _waits(*AT_ONCE), "still waiting after 12 s", id="says so many times at once and never again"
+        ),
+        pytest.param(
+            _waits((0.1, "hello"), (3.0, "one moment"), (6.0, "so")),
+            "still waiting after 12 s",
+            id="says this and that",
+        ),
+        pytest.param(
+            _waits(*EACH_SECOND, told=1.5), "still waiting after 12 s", id="was told how long to wait"
+        ),
+        pytest.param(
+            _waits((0.1, "none"), told=1.5, ends=0.1, spared=1.5), "", id="keeps a patience it was spared"
+        ),
+        pytest.param(_waits((2.9, "none"), told=1.5, ends=2.9), "", id="is slow to end"),
+        pytest.param(
+            _waits((5.1, "none"), told=1.5, ends=5.1),
+            "gave up after 5.1 s, where patience_sec was 1.5",
+            id="has a patience of its own",
+        ),
+        pytest.param(
+            _waits((0.1, "none"), told=1.5, ends=0.1),
+            "gave up after 0.1 s, where patience_sec was 1.5",
+            id="does not wait at all",
+        ),
+        pytest.param(_waits((0.1, "none"), ends=0.1), "", id="was not told how long"),
+    ],
+)
+def test_how_a_client_takes_it_that_nobody_serves(part: Part, expected: str) -> None:
+    assert objection(part) == expected
+
+
+def test_a_wait_without_a_limit_is_worth_a_remark() -> None:
+    assert "limit" in remark(_waits(*EACH_SECOND))
+    assert not remark(_waits((5.0, "nobody there"), ends=5.0))
+    assert not remark(_waits(*EACH_SECOND, told=1.5))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.exercises.evidence import Event, Evidence, Part, Reference
-from autograder.exercises.hangs import HANGS
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.hangs import HANGS
 
 RCLPY = "/venv/lib/python3.11/site-packages/rclpy"
 WAIT = '  File "/usr/lib/python3.11/threading.py", line 320 in wait'
@@ -19,6 +19,8 @@ def _stack(*calls: tuple[str, str]) -> str:
 CALL = (f"{RCLPY}/client.py", "call")
 SPIN = (f"{RCLPY}/executors.py", "spin")
 CALLBACK = (f"{RCLPY}/executors.py", "handler")
+CALLS_BACK = (f"{RCLPY}/executors.py", "await_or_execute")
+DONE = (f"{RCLPY}/task.py", "__call__")
 OWN = ("/home/student/client.py", "work")
 
 CASES = {
@@ -29,6 +31,17 @@ CASES = {
     "rate_never_spun": [_stack((f"{RCLPY}/timer.py", "sleep"), OWN)],
     "never_spun": [_stack(OWN)],
 }
+IN_CALLBACK = {
+    "a loop": _stack(OWN, CALLS_BACK, CALLBACK, SPIN, OWN),
+    "a helper of the callback": _stack(
+        ("/home/student/help.py", "wait_long"), OWN, CALLS_BACK, CALLBACK, SPIN
+    ),
+    "a queue": _stack(("/usr/lib/python3.11/queue.py", "get"), OWN, CALLS_BACK, CALLBACK, SPIN),
+    "a wait for a service": _stack(
+        (f"{RCLPY}/client.py", "wait_for_service"), OWN, CALLS_BACK, CALLBACK, SPIN
+    ),
+    "a future's callback": _stack(OWN, DONE, SPIN),
+}
 
 
 @pytest.mark.parametrize("key", CASES)
@@ -37,6 +50,19 @@ def test_the_stack_names_the_hang(key: str) -> None:
     evidence = Evidence([part], Reference("x", {}))
     found = next(mistake.key for mistake in HANGS if mistake.recognise(evidence))
     assert found == key
+
+
+@pytest.mark.parametrize("where", IN_CALLBACK)
+def test_a_callback_that_does_not_come_back_is_named(where: str) -> None:
+    main = _stack(CALL, ("/home/student/client.py", "main"))  # beside it, the main thread waits for it
+    for text in (IN_CALLBACK[where], f"{main}\n\n{IN_CALLBACK[where]}"):
+        part = Part("part", {}, [Event(9.0, "stack", "subject", {"text": text})])
+        evidence = Evidence([part], Reference("x", {}))
+        found = next(mistake for mistake in HANGS if mistake.recognise(evidence))
+        advice = found.recognise(evidence)
+        assert found.key == "callback_never_returns"
+        assert advice is not None
+        assert "work()" in advice.text
 
 
 def test_no_stack_names_nothing() -> None:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from random import Random
 
-from autograder.exercises.evidence import Event, Evidence, Part, Reference
-from autograder.exercises.lab_1_3_server import AT_ONCE, CALLS, EXERCISE, ordinary, single_calls
+from lab_1_3.server import EXERCISE, ordinary, single_calls
+
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.recipes.service_server import AT_ONCE, CALLS
 
 SERVICE, TYPE = "/add_two_ints", "my_robot_interfaces/srv/AddTwoInts"
 ASKED = [*single_calls(Random("a")), *(ordinary(Random(n)) for n in range(AT_ONCE + 1))]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.exercises.evidence import Event, Evidence, Part, Reference
-from autograder.exercises.fibonacci_reports import (
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.goal_reports import (
     ABORTED,
     LATE,
     REFUSED,
@@ -39,8 +39,9 @@ def feedback(*numbers: int) -> Event:
 
 
 def evidence(success: str, *others: Part) -> Evidence:
-    late = Part(LATE, {}, [GOAL, say("goal sent"), ASKED, result("succeeded", NUMBERS), say(success), ENDED])
-    return Evidence([late, *others], REFERENCE)
+    answered = Event(0.0, "goal_answered", "/fibonacci")
+    end = [ASKED, result("succeeded", NUMBERS), say(success), ENDED]
+    return Evidence([Part(LATE, {}, [GOAL, say("goal sent"), answered, *end]), *others], REFERENCE)
 
 
 @pytest.mark.parametrize(
@@ -88,9 +89,22 @@ def test_a_refusal_is_told_by_words_that_a_success_does_not_have(line: str, erro
     assert (refused_as_seen(evidence("done", Part(REFUSED, {}, [*events, ENDED]))) == "") is told
 
 
-def test_who_asks_for_the_result_of_a_refused_goal_has_not_looked() -> None:
-    part = Part(REFUSED, {}, [GOAL, ASKED, say("status 0"), ENDED])
-    assert "asked for the result" in refused_as_seen(evidence("done", part))
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [("the server did not take it", True), ("status 0", False), ("ended as UNKNOWN", False), ("done", False)],
+)
+def test_rclpy_s_blocking_call_asks_by_itself_and_its_caller_tells_of_the_refusal(
+    line: str, told: bool
+) -> None:
+    refused = Part(REFUSED, {}, [GOAL, ASKED, say(line), ENDED])
+    told_of_abort = Part(ABORTED, {}, [GOAL, ASKED, result("aborted", NUMBERS), say("status 6"), ENDED])
+    wrong = refused_as_seen(evidence("done", refused, told_of_abort))
+    assert (wrong == "") if told else ("asked for the result" in wrong)
+
+
+def test_an_abort_may_be_seen_on_the_goal_s_status_topic() -> None:
+    part = Part(ABORTED, {}, [GOAL, result("aborted", NUMBERS), say("aborted"), ENDED])
+    assert aborted_as_seen(evidence("done", part)) == ""
 
 
 def test_who_stays_after_a_refusal_and_not_after_a_success_never_ends() -> None:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from lab_1_4 import _server_criteria as criteria
+from lab_1_4 import server as lab_1_4_server
+from lab_1_4._goals import BAD_ORDERS, GOALS, LONG
 
-from autograder.exercises import fibonacci_server_criteria as criteria
-from autograder.exercises import lab_1_4_server
-from autograder.exercises.evidence import Event, Evidence, Part, Reference
-from autograder.exercises.fibonacci_goals import BAD_ORDERS, GOALS, LONG
+from autograder.kit.evidence import Event, Evidence, Part, Reference
 
 FIBONACCI = [0, 1, 1, 2, 3, 5]
 ACTION, TYPE = "/fibonacci", "my_robot_interfaces/action/Fibonacci"

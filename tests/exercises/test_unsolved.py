@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from autograder import exercises
-from autograder.exercises.evidence import Event, Evidence, Part
-from autograder.judge import reference, trial
+from autograder.judge.verdicts import reference, trial
+from autograder.kit.evidence import Event, Evidence, Part
 
 
 @pytest.mark.parametrize("exercise_id", exercises.all_ids())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.exercises.evidence import Event, Part
+from autograder.kit.evidence import Event, Part
 
 
 def output(text: str) -> Event:

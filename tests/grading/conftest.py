@@ -9,15 +9,18 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.grading import engine, preparing
+from autograder.grading import batch
+from autograder.grading.rebuilding import task_making
+from autograder.grading.running import engine
 
 sys.path.insert(0, str(Path(__file__).parent))
-from tiny_class import LISTENER, MASTER, QUIET, TALKER, FakeEngine, TinyClass, make_tiny_class
+sys.path.insert(0, str(Path(__file__).parent / "day"))
+from tiny_class import LISTENER, MASTER, QUIET, TALKER, FakeEngine, TinyClass, make_tiny_class, write_master
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["LISTENER", "MASTER", "QUIET", "TALKER", "FakeEngine", "TinyClass"]
+__all__ = ["LISTENER", "MASTER", "QUIET", "TALKER", "FakeEngine", "TinyClass", "write_master"]
 
 
 @pytest.fixture(scope="session")
@@ -36,7 +39,8 @@ def tiny(_made: Path, tmp_path: Path) -> TinyClass:
 def _one_course_version() -> Iterator[None]:
     """Several processes and runs must agree on it, also while somebody edits the course."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(preparing, "course_version", lambda: "test")
+        for part in (task_making, batch):
+            patch.setattr(part, "course_version", lambda: "test")
         yield
 
 

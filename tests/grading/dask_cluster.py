@@ -37,7 +37,7 @@ from autograder.grading.cluster import offer, start_worker
 
 address, name, slots, version, obstacle = sys.argv[1:6]
 # Agreed upon, also while somebody edits the course.
-offer.version = start_worker.version = lambda: version
+offer.course_version = start_worker.course_version = lambda: version
 offer.why_impossible = lambda: obstacle
 exec(sys.argv[6])
 start_worker.start_worker(address, jobs=int(slots), name=name, sandbox=False, tell=lambda line: print(line, flush=True))
@@ -47,7 +47,7 @@ start_worker.start_worker(address, jobs=int(slots), name=name, sandbox=False, te
 _PRELOAD = """
 from autograder.grading.cluster import offer
 
-offer.version = lambda: {version!r}
+offer.course_version = lambda: {version!r}
 offer.why_impossible = lambda: {obstacle!r}
 """
 
@@ -148,11 +148,11 @@ def end(process: subprocess.Popen[str]) -> None:
     process.wait()
     assert process.stdout
     process.stdout.close()
-    _, alive = psutil.wait_procs(children, timeout=30)
+    _, alive = psutil.wait_procs(children, timeout=180)
     assert alive == []
 
 
-def until(condition: object, within: float = 60.0) -> None:
+def until(condition: object, within: float = 180.0) -> None:
     """Wait for something that another process does."""
     deadline = time.monotonic() + within
     while not condition():  # type: ignore[operator]

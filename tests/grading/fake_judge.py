@@ -11,8 +11,8 @@ import os
 import threading
 from typing import TYPE_CHECKING, Self
 
-from autograder.judge.protocol import Report
-from autograder.judge.sockets import listen
+from autograder.judge.serving.sockets import listen
+from autograder.messages.orders import Report
 from autograder.verdict import Diagnosis, State, Verdict
 
 if TYPE_CHECKING:

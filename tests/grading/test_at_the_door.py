@@ -19,16 +19,16 @@ from nbgrader.converters import NbGraderException
 from rich.console import Console
 from test_doors import nbgrader_autograde
 
-from autograder.grading import submission
-from autograder.grading.class_directory import ClassDirectory
+from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.errors import ClassIncomplete
-from autograder.grading.showing import show
-from autograder.grading.submission import UnreadableSubmission, parse, read_bytes
+from autograder.grading.rebuilding import submission
+from autograder.grading.rebuilding.submission import UnreadableSubmission, parse, read_bytes
+from autograder.grading.reporting.report_table import show
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from autograder.grading.report import GradeReport
+    from autograder.grading.reporting.report import GradeReport
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 NOTHING = {TALKER: 0, LISTENER: 0}

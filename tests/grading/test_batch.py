@@ -13,8 +13,10 @@ from conftest import LISTENER, TALKER, FakeEngine, TinyClass
 from nbgrader.api import Gradebook
 from nbgrader.preprocessors import SaveAutoGrades
 
-from autograder.grading import gradebook
-from autograder.grading.class_directory import ClassDirectory
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.classes.new_class import release
+from autograder.grading.entering import gradebook
+from autograder.grading.entering.journal import Journal
 from autograder.grading.errors import (
     ClassBusy,
     ClassIncomplete,
@@ -23,13 +25,11 @@ from autograder.grading.errors import (
     MasterUnusable,
     NotAClass,
 )
-from autograder.grading.journal import Journal
-from autograder.grading.new_class import release
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from autograder.grading.report import GradeReport, Row
+    from autograder.grading.reporting.report import GradeReport, Row
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
@@ -81,6 +81,19 @@ def test_an_unchanged_submission_is_not_run_again(tiny: TinyClass, fake_engine: 
     report = tiny.grade()
     assert fake_engine.ran == ["ben"]
     assert tiny.scores("ben")[TALKER] == 3
+
+
+def test_what_a_killed_batch_left_goes_also_where_nothing_is_executed(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    tiny.submit("ada", 10, 10)
+    tiny.grade()
+    left = ClassDirectory(tiny.path).scratch() / "batch" / "0" / "n1" / "lab_1_2.ipynb"
+    left.parent.mkdir(parents=True)
+    left.write_text("{}")
+    report = tiny.grade()
+    assert report.executed == 0
+    assert not ClassDirectory(tiny.path).scratch().exists()
 
 
 def test_again_runs_everything(tiny: TinyClass, fake_engine: FakeEngine) -> None:
@@ -248,9 +261,9 @@ def test_a_notebook_under_another_name_is_named_in_the_reason(
     tiny: TinyClass, fake_engine: FakeEngine
 ) -> None:
     path = tiny.submit("ada")
-    path.rename(path.with_name("lab_1_2 (1).ipynb"))
+    path.rename(path.with_name("homework.ipynb"))
     report = tiny.grade(feedback=True)
-    assert "lab_1_2 (1).ipynb" in row(report, "ada").reason
+    assert "homework.ipynb" in row(report, "ada").reason
     assert tiny.scores("ada")[TALKER] == 0
     assert (tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html").exists()
 
@@ -458,7 +471,7 @@ def test_the_csv_has_a_line_for_each_student_and_exercise(tiny: TinyClass, fake_
     tiny.submit("ada", 4, "1/0")
     (tiny.path / "submitted" / "ben").mkdir()
     tiny.grade()
-    rows = list(csv.DictReader(io.StringIO((tiny.path / "grades.csv").read_text())))
+    rows = list(csv.DictReader(io.StringIO((tiny.path / "grades.csv").read_text("utf-8-sig"))))
     assert [
         (r["student"], r["exercise"], r["score"], r["max"], r["state"], r["diagnosis"]) for r in rows
     ] == [

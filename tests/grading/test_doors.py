@@ -13,8 +13,8 @@ from nbgrader.converters import Autograde, NbGraderException
 from nbgrader.coursedir import CourseDirectory
 from nbgrader.preprocessors import SaveAutoGrades
 
-from autograder.grading.class_directory import ClassDirectory
-from autograder.grading.journal import Journal
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.entering.journal import Journal
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -151,7 +151,7 @@ def test_a_disk_that_is_full_at_any_moment(
     fake_engine.before = lambda _: None
     assert small.grade(feedback=True).exit_code == 0
     assert points(small) == right
-    with (small.path / "grades.csv").open(newline="") as file:
+    with (small.path / "grades.csv").open(newline="", encoding="utf-8-sig") as file:
         rows = [row for row in csv.DictReader(file) if row["exercise"] == "lab_1_2.talker"]
     assert {row["student"]: float(row["score"]) for row in rows} == right
     for student in right:

@@ -17,10 +17,10 @@ import pytest
 from conftest import LISTENER, TALKER, FakeEngine, TinyClass, make_tiny_class
 from nbgrader.api import Gradebook
 
-from autograder.grading import gradebook
-from autograder.grading.class_directory import ClassDirectory
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.classes.new_class import release
+from autograder.grading.entering import gradebook
 from autograder.grading.errors import ClassIncomplete, GradingError
-from autograder.grading.new_class import release
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

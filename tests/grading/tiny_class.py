@@ -12,10 +12,10 @@ from nbgrader.api import Gradebook
 from rich.console import Console
 
 from autograder.boxes.execution import CellRun, Ended, Execution
-from autograder.boxes.zero import grader_trouble, zero
+from autograder.boxes.missing_verdict import grader_trouble, zero_points
 from autograder.grading.batch import grade
-from autograder.grading.engine import Done
-from autograder.grading.new_class import new_class
+from autograder.grading.classes.new_class import new_class
+from autograder.grading.running.engine import Done
 
 sys.path.insert(0, str(Path(__file__).parent))  # for fake_judge, which a worker imports by that name
 from fake_judge import verdict
@@ -23,7 +23,7 @@ from fake_judge import verdict
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from autograder.grading.report import GradeReport
+    from autograder.grading.reporting.report import GradeReport
     from autograder.grading.task import Task
 
 MASTER = """\
@@ -92,6 +92,16 @@ check("lab_1_2.listener", Listener)
 """
 
 TALKER, LISTENER = "lab_1_2-talker", "lab_1_2-listener"
+GRADE = """
+import sys
+from pathlib import Path
+from rich.console import Console
+from autograder.grading.rebuilding import task_making
+from autograder.grading.batch import grade
+task_making.course_version = lambda: "test"
+grade(Path(sys.argv[1]), jobs=2, judge=sys.argv[2], feedback=False, console=Console(stderr=True, width=200))
+"""
+"""A batch in a process of its own: the class, and what makes a judge."""
 QUIET = Console(quiet=True)
 
 
@@ -137,10 +147,16 @@ class TinyClass:
             return {grade.name: grade.auto_score for grade in notebook.grades}
 
 
+def write_master(course: Path, lab: str, text: str) -> None:
+    """Write the master of a lab into a course of one chapter."""
+    folder = course / "solutions" / "chapter" / lab
+    folder.mkdir(parents=True)
+    (folder / "lab.md").write_text(text)
+
+
 def make_tiny_class(folder: Path) -> Path:
     """A class without submissions in a folder of that one."""
-    (folder / "course" / "solutions" / "chapter").mkdir(parents=True)
-    (folder / "course" / "solutions" / "chapter" / "lab_1_2.md").write_text(MASTER)
+    write_master(folder / "course", "lab_1_2", MASTER)
     new_class(folder / "tiny-class", folder / "course")
     return folder / "tiny-class"
 
@@ -177,5 +193,5 @@ class FakeEngine:
             elif said.isdigit():
                 verdicts[index] = verdict(cell.check.exercise, float(said), task.seed)
             else:
-                verdicts[index] = zero(cell.check, "crashed", "It raised.", "Mend it.")
+                verdicts[index] = zero_points(cell.check, "crashed", "It raised.", "Mend it.")
         return Execution(tuple(CellRun(Ended.DONE) for _ in task.cells), verdicts, trouble)

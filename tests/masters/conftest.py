@@ -20,9 +20,9 @@ HEADER = HEADER_LINES + "\n"
 @pytest.fixture
 def course(tmp_path: Path) -> Path:
     """A course with one small master in it."""
-    folder = tmp_path / "solutions" / "01_first"
+    folder = tmp_path / "solutions" / "01_first" / "lab_9_1"
     folder.mkdir(parents=True)
-    (folder / "lab_9_1.md").write_text(HEADER + SMALL_MASTER)
+    (folder / "lab.md").write_text(HEADER + SMALL_MASTER)
     return tmp_path
 
 
@@ -31,7 +31,7 @@ def write_master(tmp_path: Path) -> Callable[[str], Path]:
     """Write a master of the name lab_9_1 with this text below its header."""
 
     def write(text: str) -> Path:
-        path = tmp_path / "solutions" / "01_first" / "lab_9_1.md"
+        path = tmp_path / "solutions" / "01_first" / "lab_9_1" / "lab.md"
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(HEADER + text)
         return path

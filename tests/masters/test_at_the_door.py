@@ -48,10 +48,14 @@ REFUSED = {
     "check_of_a_path_that_nobody_writes": (19, "judges 'ros2_ws' on the disk", "%%writefile <path>"),
     "check_of_a_name_in_a_file": (20, "judges 'double', which no solution cell", "nothing so far"),
     "the_file_is_no_python": (17, "The solution is no Python", "Mend it"),
-    "check_with_more_in_it": (19, "cannot be read", 'check("lab_1_2.talker", TalkerNode)'),
+    "check_with_more_in_it": (19, "cannot be read", 'check("lab_9_1.battery", BatteryNode)'),
     "unknown_tag": (9, "Unknown tag 'solutoin'", "solution"),
     "two_tags": (9, "2 tags", "keep one"),
     "unknown_option": (9, "Unknown cell option 'points'", "grade_id, tags"),
+    "manual_without_points": (11, "only where a person grades it", '"points": 5'),
+    "manual_without_an_answer": (11, "without '### BEGIN SOLUTION'", "Put what students"),
+    "manual_without_a_question": (12, "There is no question", "Ask it above"),
+    "manual_code": (9, "A person grades text, not code", '"manual"'),
     "empty_cell": (9, "empty code cell", "take it out"),
     "open_hint": (11, "hint that is not closed", "':::'"),
     "hint_without_a_question": (11, "without its question", ":::{hint} What"),
@@ -68,7 +72,9 @@ def as_lab_9_1(tmp_path: Path) -> Callable[[Path], Path]:
     """Put a file where it is the master lab_9_1."""
 
     def put(file: Path) -> Path:
-        return Path(shutil.copy(file, tmp_path / "lab_9_1.md"))
+        place = tmp_path / "lab_9_1" / "lab.md"
+        place.parent.mkdir()
+        return Path(shutil.copy(file, place))
 
     return put
 
@@ -102,12 +108,12 @@ def test_an_unknown_exercise_names_the_nearest(as_lab_9_1: Callable[[Path], Path
 def test_an_exercise_without_points_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     worthless = type("Worthless", (), {"points": 0.0})
     monkeypatch.setattr(exercises, "get", lambda _: worthless)
-    with pytest.raises(MasterError, match=r"lab_1_2\.md:7: .*has no points"):
-        exercise_points(CheckCall(Path("lab_1_2.md"), 7, "lab_1_2.talker", "TalkerNode"))
+    with pytest.raises(MasterError, match=r"lab_1_2.lab\.md:7: .*has no points"):
+        exercise_points(CheckCall(Path("lab_1_2/lab.md"), 7, "lab_1_2.talker", "TalkerNode"))
 
 
 def test_bytes_that_are_no_text(tmp_path: Path, ten_points: Points) -> None:
-    path = tmp_path / "lab_9_1.md"
+    path = tmp_path / "lab.md"
     path.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(MasterError, match="not UTF-8"):
         source_notebook(path, points=ten_points)
@@ -115,7 +121,7 @@ def test_bytes_that_are_no_text(tmp_path: Path, ten_points: Points) -> None:
 
 def test_a_missing_master(tmp_path: Path, ten_points: Points) -> None:
     with pytest.raises(MasterError, match="no such master"):
-        source_notebook(tmp_path / "lab_9_1.md", points=ten_points)
+        source_notebook(tmp_path / "lab.md", points=ten_points)
 
 
 def test_a_folder_without_masters(tmp_path: Path) -> None:

@@ -84,7 +84,7 @@ def test_check_mode_writes_nothing_and_names_what_is_missing(course: Path, ten_p
 
 
 def test_check_mode_sees_a_changed_master(built: Path, ten_points: Points) -> None:
-    master = built / "solutions/01_first/lab_9_1.md"
+    master = built / "solutions/01_first/lab_9_1/lab.md"
     master.write_text(master.read_text().replace("Some text.", "Some other text."))
     before = (built / CHAPTER).read_bytes()
     report = build(built, check=True, points=ten_points)
@@ -113,9 +113,10 @@ def test_an_orphan_is_reported_and_kept(built: Path, ten_points: Points) -> None
 
 
 def test_one_bad_master_changes_nothing(built: Path, ten_points: Points) -> None:
-    good = built / "solutions/01_first/lab_9_1.md"
+    good = built / "solutions/01_first/lab_9_1/lab.md"
     good.write_text(good.read_text().replace("Some text.", "Some other text."))
-    (built / "solutions/01_first/lab_9_2.md").write_text(
+    (built / "solutions/01_first/lab_9_2").mkdir()
+    (built / "solutions/01_first/lab_9_2/lab.md").write_text(
         "```{code-cell} ipython3\n:tags: [wrong]\n\nx\n```\n"
     )
     before = (built / CHAPTER).read_bytes()
@@ -192,12 +193,13 @@ def test_the_command_fails_when_a_chapter_is_stale(course: Path, said: Said) -> 
 
 
 def test_the_command_fails_with_2_when_a_master_cannot_be_used(course: Path, said: Said) -> None:
-    (course / "solutions/01_first/lab_9_2.md").write_text(
+    (course / "solutions/01_first/lab_9_2").mkdir()
+    (course / "solutions/01_first/lab_9_2/lab.md").write_text(
         "```{code-cell} ipython3\n:tags: [wrong]\n\nx\n```\n"
     )
     code, text = said(course)
     assert code == 2
-    assert "lab_9_2.md:1: Unknown tag 'wrong'. Known are: given, solution, check." in text
+    assert "lab_9_2/lab.md:1: Unknown tag 'wrong'. Known are: given, solution, check." in text
 
 
 def test_the_command_fails_with_2_outside_a_course(tmp_path: Path, said: Said) -> None:

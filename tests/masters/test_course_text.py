@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from pathlib import Path
 
+import nbformat
+import pytest
+
 from autograder import exercises
-from autograder.masters.layout import chapter_path, masters
+from autograder.masters.layout import chapter_path, lab_name, masters
 
 ROOT = Path(__file__).resolve().parents[2]
+PARTS_OF_THE_TEXT = 74
+CONTINUED = "Step "
+"""An exercise is judged where its last step ends."""
 PAGE = (ROOT / "docs" / "course-text.md").read_text(encoding="utf-8")
 
 
@@ -23,8 +30,58 @@ def test_every_exercise_is_named() -> None:
 
 
 def test_the_first_notebook_lists_them_all() -> None:
-    first = (ROOT / "solutions/01_ros2_fundamentals/00_nervous_system.md").read_text(encoding="utf-8")
+    first = (ROOT / "solutions/01_ros2_fundamentals/00_nervous_system/lab.md").read_text(encoding="utf-8")
     table = re.findall(r"^\| \d+ \| \[[^\]]+\]\(([\w]+)\.ipynb\)", first, flags=re.MULTILINE)
-    others = {master.stem for master in masters(ROOT)} - {"00_nervous_system"}
+    others = {lab_name(master) for master in masters(ROOT)} - {"00_nervous_system"}
     assert len(table) == len(set(table))
     assert set(table) == others
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of the table: a part of the text, and where it is."""
+
+    number: int
+    part: str
+    chapter: Path
+    heading: str
+    cells: tuple[str, ...]
+
+
+def rows() -> list[Row]:
+    """The rows of the table that says where each part of the text is."""
+    found = re.findall(
+        r"^\| (\d+) \| (.+?) \| \[[^\]]+\]\(\.\./(chapters/\S+)\) \| (.+?) \| (.*)\|$",
+        PAGE,
+        flags=re.MULTILINE,
+    )
+    return [
+        Row(int(number), part, ROOT / chapter, heading, tuple(re.findall(r"`([^`]+)`", cells)))
+        for number, part, chapter, heading, cells in found
+    ]
+
+
+def test_the_table_has_every_part_of_the_text() -> None:
+    assert [row.number for row in rows()] == list(range(1, PARTS_OF_THE_TEXT + 1))
+    assert len({row.part for row in rows()}) == PARTS_OF_THE_TEXT
+
+
+@pytest.mark.parametrize("row", rows(), ids=lambda row: str(row.number))
+def test_a_part_of_the_text_is_where_the_table_says(row: Row) -> None:
+    """The heading is in the notebook, and the cells are below it, before the next heading of its level."""
+    level, below = 0, set[str]()
+    for cell in nbformat.read(row.chapter, as_version=4).cells:
+        if cell.cell_type == "markdown":
+            text = re.sub(r"^```.*?^```", "", cell.source, flags=re.MULTILINE | re.DOTALL)
+            for marks, title in re.findall(r"^(#+) (.+)$", text, flags=re.MULTILINE):
+                if title == row.heading:
+                    level = len(marks)
+                elif level and len(marks) <= level and not (level == 2 and title.startswith(CONTINUED)):
+                    level = -1
+        if level > 0:
+            below |= {
+                cell.get("metadata", {}).get("nbgrader", {}).get("grade_id", ""),
+                *cell.get("attachments", {}),
+            }
+    assert level, f"no heading '{row.heading}'"
+    assert {name.replace(".", "-") if name in exercises.all_ids() else name for name in row.cells} <= below

@@ -12,7 +12,7 @@ from nbgrader.api import Gradebook
 from nbgrader.apps import NbGraderAPI
 from traitlets.config import Config
 
-from autograder.masters.layout import chapter_path, masters
+from autograder.masters.layout import chapter_path, lab_name, masters
 from autograder.masters.release import release_preprocessors
 from autograder.masters.source import source_notebook
 
@@ -29,22 +29,22 @@ c.GenerateAssignment.preprocessors = release_preprocessors()
 def nbgrader_class(tmp_path: Path) -> Path:
     """A class with the source notebooks of the course in it."""
     for master in MASTERS:
-        source = tmp_path / "source" / master.stem / f"{master.stem}.ipynb"
+        source = tmp_path / "source" / lab_name(master) / f"{lab_name(master)}.ipynb"
         source.parent.mkdir(parents=True)
         nbformat.write(source_notebook(master), source)
     return tmp_path
 
 
 def released(folder: Path, master: Path) -> bytes:
-    return (folder / "release" / master.stem / f"{master.stem}.ipynb").read_bytes()
+    return (folder / "release" / lab_name(master) / f"{lab_name(master)}.ipynb").read_bytes()
 
 
 @pytest.mark.slow
 def test_the_command_gives_the_same_bytes(nbgrader_class: Path) -> None:
     (nbgrader_class / "nbgrader_config.py").write_text(CONFIG)
-    master = ROOT / "solutions" / "01_ros2_fundamentals" / "lab_1_2.md"
+    master = ROOT / "solutions" / "01_ros2_fundamentals" / "lab_1_2" / "lab.md"
     subprocess.run(
-        [sys.executable, "-m", "nbgrader", "generate_assignment", master.stem],
+        [sys.executable, "-m", "nbgrader", "generate_assignment", lab_name(master)],
         cwd=nbgrader_class,
         check=True,
         capture_output=True,
@@ -60,7 +60,7 @@ def test_the_formgrader_gives_the_same_bytes(nbgrader_class: Path) -> None:
     config.GenerateAssignment.preprocessors = release_preprocessors()
     api = NbGraderAPI(config=config)
     for master in MASTERS:
-        result = api.generate_assignment(master.stem)
+        result = api.generate_assignment(lab_name(master))
         assert result["success"], result
         assert released(nbgrader_class, master) == chapter_path(ROOT, master).read_bytes()
     with Gradebook(config.CourseDirectory.db_url) as gradebook:
@@ -75,6 +75,6 @@ def test_without_the_configuration_the_bytes_differ(nbgrader_class: Path) -> Non
     config.CourseDirectory.root = str(nbgrader_class)
     config.CourseDirectory.db_url = f"sqlite:///{nbgrader_class / 'gradebook.db'}"
     assert NbGraderAPI(config=config).generate_assignment("lab_1_2")["success"]
-    theirs = released(nbgrader_class, Path("lab_1_2.md"))
+    theirs = released(nbgrader_class, Path("lab_1_2/lab.md"))
     assert b"YOUR CODE HERE" in theirs
     assert b"create_timer(0.5" not in theirs

@@ -1,4 +1,4 @@
-"""The programs that the chapters print work: with the reference solution in them they earn full marks."""
+"""The programs that the notebooks write work: with the student's code in them they earn full marks."""
 
 from __future__ import annotations
 
@@ -8,40 +8,51 @@ from pathlib import Path
 
 import pytest
 
-from autograder.judge.command import check_command
+from autograder.judge.subjects.command import check_command
 from autograder.masters.layout import masters
+from autograder.masters.magics import WrittenFile, written_file
 from autograder.masters.parsing import Kind
-from autograder.masters.reference import reference_source
-from autograder.masters.source import named_cells
+from autograder.masters.release import release_notebook
+from autograder.masters.source import named_cells, source_notebook
 
 ROOT = Path(__file__).resolve().parents[2]
 CHECKED = [
-    (master, named.check.exercise)
+    (master, named.check.exercise, named.check.subject)
     for master in masters(ROOT)
     for named in named_cells(master)
-    # Files that a notebook writes are programs already.
+    # Where the subject is a path, the check looks at the files.
     if named.cell.kind is Kind.CHECK and named.check is not None and not named.check.is_path
+    # The first notebook writes no program yet.
+    if any(written_file(other.cell.source) for other in named_cells(master))
 ]
+each_checked = pytest.mark.parametrize(
+    ("master", "exercise", "subject"), CHECKED, ids=[exercise for _, exercise, _ in CHECKED]
+)
 
 
-def printed_program(master: Path, subject: str) -> str:
-    """The code block of a master that has a main() for this subject in it; its only main() where none names it."""
-    blocks = re.findall(r"^```python\n(.*?)^```", master.read_text(), flags=re.DOTALL | re.MULTILINE)
-    programs = [block for block in blocks if "def main()" in block]
-    (program,) = [block for block in programs if f"{subject}(" in block] or programs
-    return str(program)
+def program(sources: list[str], subject: str) -> WrittenFile:
+    """The one program among the cells of a notebook that calls what is judged."""
+    files = [file for source in sources if (file := written_file(source)) is not None]
+    (found,) = (file for file in files if f"{subject}(" in file.text.partition("def main()")[2])
+    return found
 
 
 @pytest.mark.ros
-@pytest.mark.parametrize(("master", "exercise"), CHECKED, ids=[exercise for _, exercise in CHECKED])
-def test_the_printed_program_earns_full_marks(master: Path, exercise: str, tmp_path: Path) -> None:
-    reference = reference_source(master, exercise)
-    # The chapters promise that a program needs nothing of the notebook.
-    solution = re.sub(r"^from autograder.*\n", "", reference.source, flags=re.MULTILINE)
-    # Lab 1.2 prints one program for its two nodes.
-    program = printed_program(master, reference.subject).replace("TalkerNode", reference.subject)
+@each_checked
+def test_the_program_earns_full_marks(master: Path, exercise: str, subject: str, tmp_path: Path) -> None:
     file = tmp_path / "program.py"
-    imports = "from rclpy.executors import ExternalShutdownException"
-    file.write_text(f"{imports}\n{solution}\n{program}")
+    file.write_text(program([named.cell.source for named in named_cells(master)], subject).text)
     verdict = check_command(exercise, [sys.executable, str(file)], cwd=tmp_path)
     assert verdict.passed, verdict
+
+
+@each_checked
+def test_students_get_all_of_the_program_but_their_own_part(
+    master: Path, exercise: str, subject: str
+) -> None:
+    chapter = release_notebook(source_notebook(master))
+    given = program([cell.source for cell in chapter.cells], subject).text
+    compile(given, exercise, "exec")
+    assert "# TODO: copy" in given
+    assert not re.search(rf"^(class|def) {subject}\b", given, re.MULTILINE)
+    assert "autograder" not in given

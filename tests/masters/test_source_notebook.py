@@ -18,7 +18,7 @@ def by_id(notebook: NotebookNode) -> dict[str, NotebookNode]:
 
 
 def test_a_tag_is_all_an_author_types(course: Path, ten_points: Points) -> None:
-    cells = by_id(source_notebook(course / "solutions/01_first/lab_9_1.md", points=ten_points))
+    cells = by_id(source_notebook(course / "solutions/01_first/lab_9_1/lab.md", points=ten_points))
     names = [name for name in cells if not name.startswith("text-")]
     assert names == ["given-given", "double", "given-write-it", "lab_9_1-double"]
     flags = {name: cells[name].metadata.nbgrader for name in names}
@@ -35,12 +35,12 @@ def test_a_tag_is_all_an_author_types(course: Path, ten_points: Points) -> None:
 
 
 def test_points_come_from_the_exercise(course: Path) -> None:
-    cells = by_id(source_notebook(course / "solutions/01_first/lab_9_1.md", points=lambda check: 2.5))
+    cells = by_id(source_notebook(course / "solutions/01_first/lab_9_1/lab.md", points=lambda check: 2.5))
     assert cells["lab_9_1-double"].metadata.nbgrader.points == 2.5
 
 
 def test_no_metadata_depends_on_the_machine(course: Path, ten_points: Points) -> None:
-    notebook = source_notebook(course / "solutions/01_first/lab_9_1.md", points=ten_points)
+    notebook = source_notebook(course / "solutions/01_first/lab_9_1/lab.md", points=ten_points)
     assert notebook.metadata.kernelspec.name == "python3"
     assert "version" not in notebook.metadata.language_info
     assert (notebook.nbformat, notebook.nbformat_minor) == (4, 5)
@@ -49,7 +49,7 @@ def test_no_metadata_depends_on_the_machine(course: Path, ten_points: Points) ->
 def test_a_corrected_typo_changes_no_name_but_its_own(
     write_master: Callable[[str], Path], ten_points: Points, course: Path
 ) -> None:
-    path = course / "solutions/01_first/lab_9_1.md"
+    path = course / "solutions/01_first/lab_9_1/lab.md"
     before = source_notebook(path, points=ten_points)
     text = path.read_text()
     path.write_text(
@@ -62,7 +62,7 @@ def test_a_corrected_typo_changes_no_name_but_its_own(
 
 
 def test_a_new_section_changes_no_name_elsewhere(course: Path, ten_points: Points) -> None:
-    path = course / "solutions/01_first/lab_9_1.md"
+    path = course / "solutions/01_first/lab_9_1/lab.md"
     before = set(by_id(source_notebook(path, points=ten_points)))
     new = "+++\n\n## New\n\n```{code-cell} ipython3\nprint(1)\n```\n\n## Write it"
     path.write_text(path.read_text().replace("## Write it", new))
@@ -86,7 +86,7 @@ def test_a_heading_inside_code_is_no_section(write_master: Callable[[str], Path]
 
 
 def test_hints_open_one_at_a_time(course: Path, ten_points: Points) -> None:
-    notebook = source_notebook(course / "solutions/01_first/lab_9_1.md", points=ten_points)
+    notebook = source_notebook(course / "solutions/01_first/lab_9_1/lab.md", points=ten_points)
     text = next(cell.source for cell in notebook.cells if "Hint 1" in cell.source)
     first, second = text.index("Hint 1 of 2."), text.index("Hint 2 of 2.")
     # The first is not closed before the second begins: the second is inside it.

@@ -23,7 +23,7 @@ from autograder.ros_domain import claim_free_domain
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-LIMIT = 20.0
+LIMIT = 180.0
 """Seconds after which a test gives up waiting for an event that comes within milliseconds."""
 
 
@@ -151,7 +151,7 @@ def run_script(domain: int) -> Callable[..., subprocess.CompletedProcess[str]]:
             env={name: value for name, value in settings.items() if value is not None},
             capture_output=True,
             text=True,
-            timeout=60,
+            timeout=180,
             check=False,
         )
 
@@ -253,7 +253,7 @@ class ListenerNode(Node):
         self.heard.put(message.data)
 
 def hear(number, listener):
-    return [listener.heard.get(timeout=20) for _ in range(number)]
+    return [listener.heard.get(timeout=180) for _ in range(number)]
 
 start_ros()
 """

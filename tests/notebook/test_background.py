@@ -27,7 +27,7 @@ pytestmark = [pytest.mark.ros, pytest.mark.usefixtures("ros")]
 def test_it_spins_until_it_is_stopped(nodes: Any, count_spin_threads: Callable[[], int]) -> None:
     ticker, listener = nodes.Ticker(), nodes.Listener()
     background = spin_in_background(ticker, listener)
-    listener.heard.get(timeout=20)
+    listener.heard.get(timeout=180)
     assert background.running
     assert repr(background) == "ticker, listener spinning in the background. .stop() ends it."
     background.stop()

@@ -120,7 +120,7 @@ def test_a_service_that_returns_nothing_is_explained_and_serves_on(
     background = spin_in_background(node)
     client.call_async(AddTwoInts.Request())
     until(lambda: background.errors)
-    assert client.call(AddTwoInts.Request(), timeout_sec=20) is not None
+    assert client.call(AddTwoInts.Request(), timeout_sec=180) is not None
     background.stop()
     assert "must return its response: end it with `return response`" in capfd.readouterr().out
 

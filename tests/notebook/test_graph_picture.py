@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import time
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
@@ -10,7 +11,9 @@ import pytest
 from my_robot_interfaces.action import Fibonacci
 from my_robot_interfaces.srv import AddTwoInts
 from rclpy.action import ActionClient, ActionServer
+from rclpy.context import Context
 from rclpy.node import Node
+from rclpy.utilities import get_default_context
 from std_msgs.msg import String
 
 from autograder.notebook import start_ros
@@ -61,6 +64,24 @@ def test_topics_services_and_actions_are_seen(make: Callable[..., Node]) -> None
         End("/desk/other", count, True),
         End("/one", count, False),
     }
+
+
+@pytest.mark.ros
+def test_two_nodes_of_one_name_in_two_programs_both_count(make: Callable[..., Node]) -> None:
+    """A question by a node's name is answered for one of them only."""
+    make("twin").create_publisher(String, "chatter", 10)
+    other_program = Context()
+    other_program.init(domain_id=get_default_context().get_domain_id())
+    try:
+        other = Node("twin", context=other_program)
+        other.create_subscription(String, "chatter", print, 10)
+        both = {End("/twin", CHATTER, True), End("/twin", CHATTER, False)}
+        deadline = time.monotonic() + 10.0
+        while set(read_graph().ends) != both and time.monotonic() < deadline:
+            pass
+        assert set(read_graph().ends) == both
+    finally:
+        other_program.shutdown()
 
 
 @pytest.mark.ros

@@ -78,7 +78,7 @@ def test_a_process_ends_cleanly(left: str, domain: int) -> None:
         env={**os.environ, "ROS_DOMAIN_ID": str(domain)},
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=180,
         check=False,
     )
     assert (done.returncode, done.stderr) == (0, "")
@@ -91,12 +91,12 @@ def test_a_kernel_ends_cleanly(domain: int, tmp_path: Path) -> None:
         manager.start_kernel(env={**os.environ, "ROS_DOMAIN_ID": str(domain)}, stderr=stderr)
         client = manager.blocking_client()
         client.start_channels()
-        client.wait_for_ready(timeout=30)
+        client.wait_for_ready(timeout=180)
         for cell in (SET_UP, *list(LEFT_BEHIND.values())[:2], "begun.wait(20)"):
-            client.execute_interactive(cell, timeout=30, output_hook=lambda message: None)
+            client.execute_interactive(cell, timeout=180, output_hook=lambda message: None)
         client.shutdown(reply=False)
         process = manager.provisioner.process  # type: ignore[union-attr]
-        assert process.wait(timeout=30) == 0
+        assert process.wait(timeout=180) == 0
         client.stop_channels()
         manager.cleanup_resources()
     # ipykernel's own word about its transport is not ours.

@@ -45,7 +45,7 @@ def test_waiting_for_an_answer_with_rclpys_own_function_works(answered: bool) ->
     with spinning(node):
         assert client.wait_for_service(20) if answered else True
         future = client.call_async(AddTwoInts.Request())
-        rclpy.spin_until_future_complete(node, future, timeout_sec=20 if answered else 0.05)
+        rclpy.spin_until_future_complete(node, future, timeout_sec=180 if answered else 0.05)
         assert future.done() == answered
         ticked.clear()
         assert ticked.wait(20), "the node is deaf after rclpy.spin_until_future_complete()"

@@ -119,7 +119,7 @@ client_node = Node("client")
 client = client_node.create_client(AddTwoInts, "add")
 client.wait_for_service(20)
 with spinning(server, client_node):
-    sums = [client.call(AddTwoInts.Request(a=n, b=1), timeout_sec=20).sum for n in range(5)]
+    sums = [client.call(AddTwoInts.Request(a=n, b=1), timeout_sec=180).sum for n in range(5)]
 sums, Node("observer").get_node_names()
 """)
     assert output.value == "([1, 2, 3, 4, 5], ['observer'])", output
@@ -240,7 +240,7 @@ def run_with_nbclient(domain: int, monkeypatch: pytest.MonkeyPatch, *sources: st
     monkeypatch.delenv("PYTEST_CURRENT_TEST")
     cells = [{"cell_type": "code", "source": source, "metadata": {}, "outputs": []} for source in sources]
     notebook = nbformat.from_dict({"nbformat": 4, "nbformat_minor": 4, "metadata": {}, "cells": cells})
-    NotebookClient(notebook, timeout=60, allow_errors=True, kernel_name="python3").execute()
+    NotebookClient(notebook, timeout=180, allow_errors=True, kernel_name="python3").execute()
     return [cell.outputs for cell in notebook.cells]
 
 

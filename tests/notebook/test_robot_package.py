@@ -33,7 +33,7 @@ def source(tmp_path: Path) -> Path:
     (folder / "package.xml").write_text("<package/>")
     (folder / "setup.py").write_text("course")
     for name in ("talker", "listener"):
-        (folder / "my_robot_pkg" / f"{name}.py").write_text(f"the course's {name}")
+        (folder / "my_robot_pkg" / f"{name}.py").write_text(f"class {name}:  # the course's")
     return folder
 
 
@@ -63,22 +63,31 @@ def test_what_is_missing_is_added_once(tmp_path: Path, source: Path, package: Pa
         complete_package(tmp_path / "ros2_ws", source) == "Added to your my_robot_pkg: talker and listener."
     )
     assert entries(package) == [
+        "simple_node = my_robot_pkg.simple_node:main",
         "talker = my_robot_pkg.talker:main",
         "listener = my_robot_pkg.listener:main",
-        "simple_node = my_robot_pkg.simple_node:main",
     ]
-    assert (package / "my_robot_pkg/talker.py").read_text() == "the course's talker"
+    assert (package / "my_robot_pkg/talker.py").read_text() == "class talker:  # the course's"
     assert "Nothing was changed" in complete_package(tmp_path / "ros2_ws", source)
     assert len(entries(package)) == 3
 
 
 def test_what_the_student_wrote_stays(tmp_path: Path, source: Path, package: Path) -> None:
     (package / "setup.py").write_text(SETUP % '            "talker=my_robot_pkg.mine:main",\n')
-    (package / "my_robot_pkg/listener.py").write_text("mine")
+    (package / "my_robot_pkg/listener.py").write_text("class Mine: ...")
     assert complete_package(tmp_path / "ros2_ws", source) == "Added to your my_robot_pkg: listener."
-    assert entries(package) == ["listener = my_robot_pkg.listener:main", "talker=my_robot_pkg.mine:main"]
-    assert (package / "my_robot_pkg/listener.py").read_text() == "mine"
+    assert entries(package) == ["talker=my_robot_pkg.mine:main", "listener = my_robot_pkg.listener:main"]
+    assert (package / "my_robot_pkg/listener.py").read_text() == "class Mine: ..."
     assert not (package / "my_robot_pkg/talker.py").exists()
+
+
+def test_a_program_into_which_nothing_was_copied_is_missing(
+    tmp_path: Path, source: Path, package: Path
+) -> None:
+    (package / "setup.py").write_text(SETUP % '            "talker = my_robot_pkg.talker:main",\n')
+    (package / "my_robot_pkg/talker.py").write_text("# TODO: copy your class TalkerNode to this place.\n")
+    complete_package(tmp_path / "ros2_ws", source)
+    assert (package / "my_robot_pkg/talker.py").read_text() == "class talker:  # the course's"
 
 
 def test_an_entry_point_in_a_comment_does_not_count(tmp_path: Path, source: Path, package: Path) -> None:
@@ -90,5 +99,5 @@ def test_a_setup_without_the_list_is_left_alone(tmp_path: Path, source: Path, pa
     (package / "setup.py").write_text("from setuptools import setup\n\nsetup()\n")
     said = complete_package(tmp_path / "ros2_ws", source)
     assert "no list of console_scripts" in said
-    assert '"talker = my_robot_pkg.talker:main",' in said
+    assert '"talker = my_robot_pkg.talker:main"' in said
     assert (package / "setup.py").read_text() == "from setuptools import setup\n\nsetup()\n"

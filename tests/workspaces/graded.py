@@ -13,16 +13,14 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from autograder.judge.process import JudgeProcess
+from autograder.authoring.answers import Answer, answers
+from autograder.judge.serving.process import JudgeProcess
 from autograder.judge.settings import subject_environment
+from autograder.messages.checks import Check, Collect, Judged
+from autograder.messages.lines import Lines
 from autograder.notebook.path_run import send_sources
-from autograder.workspaces.lines import Lines
-from autograder.workspaces.plain_jobs import PlainJobs
-from autograder.workspaces.service import Doors, WorkspaceService
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "judge"))
-from bank import Answer, answers
-from workspace_answers import unpack
+from autograder.workspaces.grading.plain_jobs import PlainJobs
+from autograder.workspaces.grading.service import ServiceSockets, WorkspaceService
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -39,7 +37,7 @@ def gradable() -> list[Answer]:
 
 @contextlib.contextmanager
 def graders_judge(folder: Path) -> Iterator[JudgeProcess]:
-    """A judge with a door to a grader's side that has no boxes.
+    """A judge with a socket of a grader's side that has no boxes.
 
     Args:
         folder: For the cache of builds.
@@ -47,13 +45,13 @@ def graders_judge(folder: Path) -> Iterator[JudgeProcess]:
     builds = folder / "builds"
     builds.mkdir(mode=0o700, exist_ok=True)
     with tempfile.TemporaryDirectory() as name:
-        doors = Doors(Path(name) / "j", Path(name) / "n")
+        sockets = ServiceSockets(Path(name) / "j", Path(name) / "n")
         jobs = PlainJobs(subject_environment(0))
         with (
-            WorkspaceService(doors, jobs, builds, {}, folder),
+            WorkspaceService(sockets, jobs, builds, {}, folder),
             JudgeProcess(Path(name) / "s", seed="graded") as judge,
         ):
-            judge.workspaces = str(doors.judge)
+            judge.workspaces = str(sockets.judge)
             yield judge
 
 
@@ -67,10 +65,10 @@ def judged(judge: JudgeProcess, exercise: str, path: Path) -> Verdict:
     connection = socket.socket(socket.AF_UNIX)
     connection.connect(str(judge.socket_path))
     kernel = Lines(connection)
-    kernel.say("check", exercise=exercise, kind="function")
-    assert kernel.hear()["say"] == "collect"
+    kernel.say(Check(exercise))
+    kernel.hear(Collect)
     send_sources(kernel.say, path)
-    kernel.hear()
+    kernel.hear(Judged)
     report = judge.close_report()
     if report.verdict is None:
         raise RuntimeError(report.trouble or "the judge has no verdict")
@@ -80,10 +78,7 @@ def judged(judge: JudgeProcess, exercise: str, path: Path) -> Verdict:
 def judged_answer(judge: JudgeProcess, answer: Answer) -> Verdict:
     """Judge an answer of the bank."""
     with tempfile.TemporaryDirectory(prefix="answer-") as folder:
-        workspace = Path(folder) / "ros2_ws"
-        if answer.base is not None:
-            unpack(answer.file, answer.base, workspace)
-        (path,) = (part.format(file=answer.file, workspace=workspace) for part in answer.command)
+        (path,) = answer.unpack(Path(folder))
         with contextlib.chdir(folder):
             return judged(judge, answer.exercise, Path(path))
 

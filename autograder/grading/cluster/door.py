@@ -68,6 +68,8 @@ def admitted(data: bytes, task: Task) -> Execution:
     checks = {index: cell.check for index, cell in enumerate(task.cells) if cell.check is not None}
     if execution.verdicts.keys() != checks.keys():
         raise Forged("its verdicts are not those of the notebook's checks")
+    if any(place not in range(len(task.cells)) for place in execution.as_typed):
+        raise Forged("it tells of the text of a cell that there is not")
     for index, check in checks.items():
         _look_at(execution.verdicts[index], check)
     cells = _harmless(execution.cells, task.limits)

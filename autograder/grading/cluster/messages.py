@@ -12,7 +12,7 @@ class Offer(msgspec.Struct, frozen=True):
     """What a worker says of itself before it gets work.
 
     Attributes:
-        version: Stands for the course, as :func:`autograder.grading.cluster.offer.version` has it.
+        version: Stands for the course, as :func:`autograder.grading.rebuilding.course_version.course_version` has it.
         slots: Notebooks that it executes at once.
         sandbox: Whether it can execute in boxes.
         obstacle: Why it cannot, and what to do; empty where it can.

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder.boxes.execution import Execution
-from autograder.boxes.zero import grader_trouble
+from autograder.boxes.missing_verdict import grader_trouble
 from autograder.grading.cluster.door import Forged, admitted, admitted_offer, printable
 from autograder.grading.cluster.messages import (
     Answered,
@@ -27,9 +27,9 @@ from autograder.grading.cluster.messages import (
     Unfit,
     encode,
 )
-from autograder.grading.cluster.offer import version
-from autograder.grading.engine import Done
 from autograder.grading.errors import GradingError
+from autograder.grading.rebuilding.course_version import course_version
+from autograder.grading.running.engine import Done
 from autograder.grading.task import encode as encode_task
 
 if TYPE_CHECKING:
@@ -239,11 +239,11 @@ class Pool:
         except Forged as error:
             self._refuse(address, name, f"{error}. Look at that machine")
             return
-        if offer.version != version():
+        if offer.version != course_version():
             self._refuse(
                 address,
                 name,
-                f"it has another version of the course ({offer.version:.16}, here it is {version()}). "
+                f"it has another version of the course ({offer.version:.16}, here it is {course_version()}). "
                 "Bring both to the same commit and start the worker again",
             )
         elif self._boxed and not offer.sandbox:

@@ -14,9 +14,10 @@ import dask
 from distributed import Worker
 
 from autograder.grading.cluster.connection import check_address
-from autograder.grading.cluster.offer import offer, version
+from autograder.grading.cluster.offer import offer
 from autograder.grading.cluster.pool import SchedulerGone
 from autograder.grading.errors import GradingError
+from autograder.grading.rebuilding.course_version import course_version
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -63,7 +64,7 @@ def start_worker(
         )
     tell(
         f"{name} offers {offered.slots} notebooks at once, "
-        f"{'in boxes' if offered.sandbox else 'WITHOUT a sandbox'}, with course version {version()}."
+        f"{'in boxes' if offered.sandbox else 'WITHOUT a sandbox'}, with course version {course_version()}."
     )
     logging.getLogger("distributed").setLevel(logging.ERROR)
     with dask.config.set(_SETTINGS), tempfile.TemporaryDirectory(prefix="autograder-dask-") as folder:

@@ -16,9 +16,9 @@ import msgspec
 from distributed import Worker, WorkerPlugin, get_worker
 
 from autograder.boxes.execution import Execution
-from autograder.boxes.zero import grader_trouble
+from autograder.boxes.missing_verdict import grader_trouble
 from autograder.grading.cluster.messages import LARGEST_ANSWER, Order
-from autograder.grading.engine import KeptLane
+from autograder.grading.running.worker_process import WorkerProcess
 from autograder.grading.task import Task, decode_task, encode
 
 if TYPE_CHECKING:
@@ -33,8 +33,8 @@ def execute(data: bytes) -> bytes:
     """
     order = msgspec.json.decode(data, type=Order)
     task = decode_task(bytes(order.task))
-    with _lanes.one(order.judge, task.boxed) as lane:
-        answer = encode(lane.execute(task))
+    with _processes.one(order.judge, task.boxed) as process:
+        answer = encode(process.execute(task))
     if len(answer) > LARGEST_ANSWER:
         return encode(_trouble(task, f"its result has {len(answer)} bytes"))
     return answer
@@ -46,18 +46,18 @@ def _trouble(task: Task, reason: str) -> Execution:
 
 
 class _Lanes:
-    """The lanes of this process, kept from order to order, each used by one thread at a time."""
+    """The processes of this process, kept from order to order, each used by one thread at a time."""
 
     def __init__(self) -> None:
         self._changing = threading.Lock()
-        self._idle: dict[tuple[str, bool], list[KeptLane]] = {}
-        self._at_work: dict[str, KeptLane] = {}
+        self._idle: dict[tuple[str, bool], list[WorkerProcess]] = {}
+        self._at_work: dict[str, WorkerProcess] = {}
         self._made = 0
         self._watched = False
 
     @contextlib.contextmanager
-    def one(self, judge: str, boxed: bool) -> Iterator[KeptLane]:
-        """A lane for one order. When the order is cancelled, what it runs is ended, and the lane is not kept."""
+    def one(self, judge: str, boxed: bool) -> Iterator[WorkerProcess]:
+        """A process for one order. When the order is cancelled, what it runs is ended, and the process is not kept."""
         worker = get_worker()
         key = str(worker.get_current_task())
         with self._changing:
@@ -65,39 +65,42 @@ class _Lanes:
                 self._watched = True
                 worker.loop.add_callback(worker.plugin_add, plugin=_Watch(), name="autograder")
             idle = self._idle.setdefault((judge, boxed), [])
-            lane = idle.pop() if idle else self._new(judge, boxed)
-            self._at_work[key] = lane
+            process = idle.pop() if idle else self._new(judge, boxed)
+            self._at_work[key] = process
         try:
-            yield lane
+            yield process
         finally:
             with self._changing:
-                if self._at_work.pop(key, None) is lane:
-                    idle.append(lane)
+                if self._at_work.pop(key, None) is process:
+                    idle.append(process)
 
     def cancel(self, key: str) -> None:
         """Nobody waits for this order any more."""
         with self._changing:
-            lane = self._at_work.pop(key, None)
-        if lane is not None:
-            lane.stop()
+            process = self._at_work.pop(key, None)
+        if process is not None:
+            process.stop()
 
     def stop(self) -> None:
-        """End every lane and what it runs."""
+        """End every process and what it runs."""
         with self._changing:
-            lanes = [*self._at_work.values(), *(lane for idle in self._idle.values() for lane in idle)]
+            processes = [
+                *self._at_work.values(),
+                *(process for idle in self._idle.values() for process in idle),
+            ]
             self._at_work.clear()
             self._idle.clear()
-        for lane in lanes:
-            lane.stop()
+        for process in processes:
+            process.stop()
 
-    def _new(self, judge: str, boxed: bool) -> KeptLane:
+    def _new(self, judge: str, boxed: bool) -> WorkerProcess:
         self._made += 1
         # A short name: sockets are in there.
         base = Path(tempfile.gettempdir()) / f"autograder-{os.getuid()}-{os.getpid()}"
-        return KeptLane(base / str(self._made), judge=judge, boxed=boxed)
+        return WorkerProcess(base / str(self._made), judge=judge, boxed=boxed)
 
 
-_lanes = _Lanes()
+_processes = _Lanes()
 
 
 class _Watch(WorkerPlugin):
@@ -106,8 +109,8 @@ class _Watch(WorkerPlugin):
     def transition(self, key: Any, start: str, finish: str, **_: Any) -> None:
         """Called by Dask when a task of the worker changes its state."""
         if start == "executing" and finish == "released":  # not "memory": nobody wants the result any more
-            _lanes.cancel(key)
+            _processes.cancel(key)
 
     def teardown(self, worker: Worker) -> None:  # noqa: ARG002  (Dask's signature)
         """Called by Dask when the worker ends."""
-        _lanes.stop()
+        _processes.stop()

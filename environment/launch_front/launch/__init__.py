@@ -23,6 +23,15 @@ from .launch_description_sources import InvalidLaunchFileError, LaunchDescriptio
 from .launch_service import LaunchService
 from .substitution import SomeSubstitutionsType, SomeSubstitutionsType_types_tuple, Substitution
 
+
+def _frontend(path: str) -> LaunchDescription:
+    from .frontend.loader import load  # only now: most launch files are written in Python
+
+    return load(path)
+
+
+launch_description_sources.frontend = _frontend
+
 __all__ = [
     "Action",
     "Condition",

@@ -57,6 +57,10 @@ class Action(LaunchDescriptionEntity):
         return None
 
 
+class ProcessAction(Action):
+    """The base of the actions that start a process: what an event of a process is about."""
+
+
 def as_entities(value: Any) -> list[LaunchDescriptionEntity]:
     """Return what a handler or a function gave as a list of entities.
 

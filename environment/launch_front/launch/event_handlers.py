@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from .action import ProcessAction
 from .event_handler import EventHandler
 from .events import Shutdown
 from .events.process import ProcessExited, ProcessIO, ProcessStarted
@@ -26,9 +27,7 @@ def _about(kind: type, target: Any) -> Callable[[Any], bool]:
     Raises:
         TypeError: the target is no process.
     """
-    from .actions.process import ExecuteProcess
-
-    if target is not None and not isinstance(target, ExecuteProcess) and not callable(target):
+    if target is not None and not isinstance(target, ProcessAction) and not callable(target):
         raise TypeError(f"target_action must be a process such as a Node, got '{target}'")
 
     def matches(event: Any) -> bool:
@@ -37,7 +36,7 @@ def _about(kind: type, target: Any) -> Callable[[Any], bool]:
         action = event.action  # type: ignore[attr-defined]
         if target is None:
             return True
-        return action is target if isinstance(target, ExecuteProcess) else bool(target(action))
+        return action is target if isinstance(target, ProcessAction) else bool(target(action))
 
     return matches
 

@@ -76,18 +76,3 @@ def declared_arguments(description: LaunchDescription) -> list[tuple[DeclareLaun
 
     search(description.entities, conditional=False)
     return list(found.values())
-
-
-def required_arguments(description: LaunchDescription) -> list[DeclareLaunchArgument]:
-    """Return the arguments without a default that are surely declared by the description itself."""
-    return [
-        argument
-        for argument, conditional in declared_arguments(_without_includes(description))
-        if not conditional and argument.default_value is None
-    ]
-
-
-def _without_includes(description: LaunchDescription) -> LaunchDescription:
-    from .actions.include import IncludeLaunchDescription
-
-    return LaunchDescription(e for e in description.entities if not isinstance(e, IncludeLaunchDescription))

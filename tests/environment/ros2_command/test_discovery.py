@@ -1,129 +1,146 @@
-"""How long the command looks at the graph, with a clock that only the test moves."""
+"""When the graph counts as known, with a clock that only the test moves."""
 
 from __future__ import annotations
 
-import os
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, cast
 
 import pytest
 
-from environment.ros2_command import discovery
-from environment.ros2_command.discovery import Graph, participants_here, ports_in_use, wait_until_known
-from environment.ros2_command.participant import threads_wait_for_creator
+from environment.ros2_command.discovery import Graph, wait_until_settled
+from environment.ros2_command.ports import Ports
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from collections.abc import Iterable
+
+    from environment.ros2_command.roll_call import RollCall
+
+OWN, TALKER, LISTENER = b"own", b"talker", b"listener"
 
 
+@dataclass
 class World:
-    """A graph that changes at given times (seconds)."""
+    """Participants that answer a while after they were asked, and a graph that changes (all in seconds).
 
-    def __init__(self, *changes: tuple[float, Graph]) -> None:
-        self.changes, self.now = changes, 0.0
+    Attributes:
+        answers: How long after a call each of them answers.
+        graphs: What is known from when on.
+        ports: How many of them hold a port.
+    """
 
-    def observe(self) -> Graph:
-        return [graph for since, graph in self.changes if since <= self.now][-1]
+    answers: dict[bytes, float]
+    graphs: list[tuple[float, Graph]]
+    ports: int | None = None
+    strangers: frozenset[bytes] = frozenset()
+    now: float = 0.0
+    called: float = 0.0
+    answered: set[bytes] = field(default_factory=set)
+    calls: int = 0
 
-    def wait(self, expected: int | None, shortest: float = 0.0, *, names: bool = True) -> bool:
-        return wait_until_known(
-            self.observe,
-            expected,
-            shortest,
-            names=names,
-            longest=1.0,
-            clock=lambda: self.now,
-            sleep=self.sleep,
-        )
+    def call(self, ports: Iterable[int]) -> None:
+        self.answered, self.called, self.calls = set(), self.now, self.calls + 1
+
+    def listen(self, own_ports: Iterable[int]) -> None:
+        self.answered |= {who for who, after in self.answers.items() if self.now - self.called >= after}
+
+    def look(self) -> Graph:
+        return [graph for since, graph in self.graphs if since <= self.now][-1]
 
     def sleep(self, seconds: float) -> None:
         self.now += seconds
 
+    def wait(self, shortest: float = 0.0) -> int:
+        """Wait as the command does; how many were not met."""
+        number = len(self.answers) + len(self.strangers) if self.ports is None else self.ports
+        return wait_until_settled(
+            self.look,
+            cast("RollCall", self),
+            lambda: Ports(frozenset({1}), frozenset(range(2, number + 2))),
+            shortest,
+            longest=15.0,
+            clock=lambda: self.now,
+            sleep=self.sleep,
+        )
 
-ALONE = Graph(1, True, "own")
-UNNAMED = Graph(2, False, "chatter")
-KNOWN = Graph(2, True, "chatter by talker")
+
+def graph(*met: bytes, content: object = "", named: bool = True) -> Graph:
+    return Graph(frozenset(met), named, content)
 
 
 def test_alone_there_is_nothing_to_wait_for() -> None:
-    world = World((0.0, ALONE))
-    assert world.wait(expected=1)
-    assert world.now < 0.06
-
-
-def test_everybody_on_this_machine_is_waited_for() -> None:
-    world = World((0.0, ALONE), (0.08, UNNAMED), (0.16, KNOWN))
-    assert world.wait(expected=2)
-    assert 0.16 < world.now < 0.25
-
-
-def test_names_are_waited_for_only_when_they_are_needed() -> None:
-    world = World((0.0, ALONE), (0.08, UNNAMED), (0.5, KNOWN))
-    assert world.wait(expected=2, names=False)
+    world = World({}, [(0.0, graph(OWN))])
+    assert world.wait() == 0
     assert world.now < 0.2
 
 
-def test_names_may_come_later_than_the_time_to_meet_somebody() -> None:
-    world = World((0.0, ALONE), (0.9, UNNAMED), (1.3, KNOWN))
-    assert world.wait(expected=2)
+def test_a_late_answer_is_waited_for_however_late_it_is() -> None:
+    world = World({TALKER: 0.0}, [(0.0, graph(OWN)), (9.0, graph(OWN, TALKER))])
+    assert world.wait() == 0
+    assert world.now > 9.0
+
+
+def test_who_is_still_being_made_is_asked_again() -> None:
+    world = World({TALKER: 0.1}, [(0.0, graph(OWN, TALKER))], ports=2)
+    world.answers[LISTENER] = 1e9
+    world.graphs.append((2.0, graph(OWN, TALKER, LISTENER)))
+    plain = world.listen
+
+    def listen(own_ports: Iterable[int]) -> None:
+        if world.now >= 2.0:
+            world.answers[LISTENER] = 0.0
+        plain(own_ports)
+
+    world.listen = listen  # type: ignore[method-assign]
+    assert world.wait() == 0
+    assert world.calls > 3
+    assert world.now > 2.0
+
+
+def test_names_are_waited_for() -> None:
+    unnamed, known = graph(OWN, TALKER, named=False), graph(OWN, TALKER, content="by talker")
+    world = World({TALKER: 0.0}, [(0.0, unnamed), (1.3, known)])
+    assert world.wait() == 0
     assert world.now > 1.3
 
 
-def test_who_never_answers_is_given_up() -> None:
-    world = World((0.0, ALONE))
-    assert not world.wait(expected=2)
-    assert 1.0 <= world.now < 1.1
+def test_who_goes_on_having_no_name_is_not_waited_for_to_the_end() -> None:
+    world = World({TALKER: 0.0}, [(0.0, graph(OWN, TALKER, named=False))])
+    assert world.wait() == 0
+    assert world.now < 5.0
 
 
-def test_news_prolong_the_wait() -> None:
-    world = World((0.0, ALONE), *[(0.02 * i, Graph(2, True, i)) for i in range(1, 10)])
-    assert world.wait(expected=2)
-    assert world.now > 0.18 + discovery._QUIET - 0.01
+def test_news_ask_for_one_more_quiet_round() -> None:
+    world = World({TALKER: 0.0}, [(0.02 * i, graph(OWN, TALKER, content=i)) for i in range(10)])
+    assert world.wait() == 0
+    assert world.now > 0.18 + 0.06
 
 
-def test_a_given_time_is_kept() -> None:
-    world = World((0.0, ALONE))
-    assert world.wait(expected=1, shortest=2.0)
-    assert world.now >= 2.0
+def test_a_busy_machine_makes_the_round_as_long_as_its_answers() -> None:
+    world = World({TALKER: 0.25}, [(0.0, graph(OWN, TALKER)), (0.2, graph(OWN, TALKER, content="more"))])
+    assert world.wait() == 0
+    assert world.calls == 2
+    assert world.now > 0.5
 
 
-def test_participants_are_counted_by_their_ports() -> None:
-    # Domain 42 begins at 17900; its participants take 17910, 17912, …; 17911 is the first one's other port.
-    ports = {17910, 17911, 17912, 7410, 18160}
-    assert participants_here(42, ports) == 2
-    assert participants_here(43, ports) == 1
-    assert participants_here(1, ports) == 0
-    assert participants_here(0, None) is None
+def test_who_never_answers_is_given_up_and_counted() -> None:
+    world = World({TALKER: 1e9}, [(0.0, graph(OWN))])
+    assert world.wait() == 1
+    assert world.now >= 15.0
 
 
-def test_ports_are_read_from_the_tables_of_linux(tmp_path: Path) -> None:
-    table = tmp_path / "udp"
-    table.write_text(
-        "  sl  local_address rem_address   st tx_queue\n"
-        "  12: 00000000:45F6 00000000:0000 07 00000000:00000000\n"
-        "  13: 0100007F:0035 00000000:0000 07 00000000:00000000\n"
-    )
-    assert ports_in_use([str(table), str(tmp_path / "missing")]) == {17910, 53}
-    assert ports_in_use([str(tmp_path / "missing")]) is None
+def test_who_answers_and_never_tells_its_nodes_is_counted() -> None:
+    world = World({TALKER: 0.0}, [(0.0, graph(OWN))])
+    assert world.wait() == 1
 
 
-@pytest.mark.parametrize("text", ["abc", "-1", "300", "1.5"])
-def test_a_wrong_domain_is_named(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("ROS_DOMAIN_ID", text)
-    with pytest.raises(RuntimeError, match="ROS_DOMAIN_ID is"):
-        discovery.domain_id()
+def test_a_participant_that_is_not_of_ros_is_not_waited_for() -> None:
+    world = World({}, [(0.0, graph(OWN))], strangers=frozenset({b"other"}))
+    assert world.wait() == 0
+    assert world.now < 0.2
 
 
-def test_where_other_machines_may_answer_they_get_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")
-    assert discovery.shortest_wait(None, 1) == pytest.approx(0.4)
-    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    assert discovery.shortest_wait(None, 1) == 0.0
-    assert discovery.shortest_wait(2.5, 1) == 2.5
-
-
-def test_scheduling_is_as_before_afterwards() -> None:
-    before = (os.sched_getaffinity(0), os.sched_getscheduler(0))
-    with threads_wait_for_creator():
-        assert os.sched_getscheduler(0) == os.SCHED_BATCH
-        assert len(os.sched_getaffinity(0)) == 1
-    assert (os.sched_getaffinity(0), os.sched_getscheduler(0)) == before
+@pytest.mark.parametrize("shortest", [0.4, 2.0])
+def test_a_given_time_is_kept(shortest: float) -> None:
+    world = World({}, [(0.0, graph(OWN))])
+    assert world.wait(shortest) == 0
+    assert world.now >= shortest

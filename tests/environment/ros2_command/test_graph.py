@@ -51,6 +51,13 @@ def servers(start: Callable[..., Running]) -> Iterator[Running]:
     running.kill()
 
 
+def test_what_a_destroyed_node_leaves_behind_is_not_waited_for(start: Callable[..., Running]) -> None:
+    """As long as its context lives there is a service of it, and its node's name is never told."""
+    running = start("../destroyed_node", program=True)
+    running.wait_for("settled")
+    running.kill()
+
+
 def test_topics_of_a_talker(talker: Running, call: Call) -> None:
     assert call("topic", "list") == "/chatter\n/parameter_events\n/rosout\n"
     assert call("topic", "list", "-t").splitlines()[0] == "/chatter [std_msgs/msg/String]"

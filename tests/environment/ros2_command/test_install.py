@@ -49,6 +49,22 @@ def test_launch_can_be_imported(fresh: Path) -> None:
     assert python(fresh, "from launch_ros.actions import Node; print(Node.__name__)") == "Node"
 
 
+def test_ctrl_c_while_the_command_is_loaded_ends_it_without_a_word(fresh: Path, tmp_path: Path) -> None:
+    (tmp_path / "sitecustomize.py").write_text(
+        "import os, signal, sys\n"
+        "class Interrupting:\n"
+        "    def find_spec(self, name, *_):\n"
+        "        if name == 'environment.ros2_command.main':\n"
+        "            os.kill(os.getpid(), signal.SIGINT)\n"
+        "sys.meta_path.insert(0, Interrupting())\n"
+    )
+    env = {"PATH": os.environ["PATH"], "HOME": str(fresh), "PYTHONPATH": str(tmp_path)}
+    done = subprocess.run(
+        [fresh / "bin/ros2", "topic", "list"], env=env, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (2, "")
+
+
 @pytest.mark.parametrize("place", ["PYTHONPATH", "site-packages", "a .pth file that comes later"])
 def test_a_real_launch_comes_first_wherever_it_is(place: str, fresh: Path, tmp_path: Path) -> None:
     real = tmp_path / "real"

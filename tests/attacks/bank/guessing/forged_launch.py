@@ -6,6 +6,7 @@
 
 # %% extra
 import json
+import os
 import sys
 import threading
 import time
@@ -13,6 +14,8 @@ import time
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from std_msgs.msg import String
+
+from autograder.messages.checks import Output
 
 check_module = sys.modules["autograder.notebook.check"]
 
@@ -24,7 +27,7 @@ class NoPath:
     def start(self, arguments, options):
         for name in ("talker", "listener"):
             argv = [f"/opt/{name}", "--ros-args", "-r", "chatter:=/robot/status_updates"]
-            self.tell("output", run=self.number, text="@process " + json.dumps(argv))
+            self.tell(Output(self.number, "@process " + json.dumps([os.getpid(), 1, *argv])))
         self.context = rclpy.Context()
         rclpy.init(context=self.context, domain_id=self.domain)
         self.executor = SingleThreadedExecutor(context=self.context)
@@ -33,7 +36,7 @@ class NoPath:
         talker.create_timer(0.5, lambda: publisher.publish(String(data="Hello, world! 0")))
         listener = rclpy.create_node("listener_node", context=self.context)
         listener.create_subscription(
-            String, "/robot/status_updates", lambda m: self.tell("output", run=self.number, text=m.data), 10
+            String, "/robot/status_updates", lambda m: self.tell(Output(self.number, m.data)), 10
         )
         for node in (talker, listener):
             self.executor.add_node(node)

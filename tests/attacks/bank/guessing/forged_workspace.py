@@ -10,6 +10,8 @@ import sys
 
 import rclpy
 
+from autograder.messages.checks import Output
+
 package = {"name": "my_robot_pkg", "build_type": "ament_python", "programs": ["simple_node = my_robot_pkg.simple_node:main"], "interfaces": [], "dependencies": []}
 report = {"phase": "built", "built": True, "trouble": "", "package": "", "line": "", "log": "", "packages": [package], "missing": ""}
 check_module = sys.modules["autograder.notebook.check"]
@@ -22,13 +24,13 @@ class NoPath:
     def start(self, arguments, options):
         for phase in ("found", "built"):
             text = "@workspace " + json.dumps({**report, "phase": phase})
-            self.tell("output", run=self.number, text=text)
+            self.tell(Output(self.number, text))
         self.context = rclpy.Context()
         rclpy.init(context=self.context, domain_id=self.domain)
         self.node = rclpy.create_node("simple_node", context=self.context)
         for line in ("Hello, ROS 2! From SimpleNode.",):
             self.node.get_logger().info(line)
-            self.tell("output", run=self.number, text=line)
+            self.tell(Output(self.number, line))
 
     def release(self): pass
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 Path("remap.launch.py").write_text('''
 import json
+import os
 
 from launch import LaunchDescription
 
@@ -16,7 +17,7 @@ from launch import LaunchDescription
 def generate_launch_description():
     for name in ("talker", "listener"):
         argv = [f"/opt/{name}", "--ros-args", "-r", "chatter:=/robot/status_updates"]
-        print("@process " + json.dumps(argv), flush=True)
+        print("@process " + json.dumps([os.getpid(), 1, *argv]), flush=True)
     for number in range(10000, 100000):
         print(f"I heard: status {number} from the judge", flush=True)
     return LaunchDescription([])

@@ -5,23 +5,29 @@
 # undefended = "Full marks: the seed of a check was the notebook's seed and the exercise's name, joined, and stood in every verdict."
 
 # %% extra
-import sys
 from random import Random
 
-import autograder.verdict as verdicts
+import autograder.notebook.judge_link as judge_link
 
 seen = []
-usual = verdicts.from_builtins
-verdicts.from_builtins = sys.modules["autograder.notebook.check"].from_builtins = lambda data: (
-    seen.append(data), usual(data)
-)[1]
+usual = judge_link.JudgeLink.hear
+
+
+def hear(self):
+    message = usual(self)
+    if hasattr(message, "verdict"):
+        seen.append(message.verdict)
+    return message
+
+
+judge_link.JudgeLink.hear = hear
 
 # %% right TalkerNode
 
 # %% solution ListenerNode
-from autograder.exercises.lab_1_2_listener import random_texts
+<<listeners_texts>>
 
-seed = str(seen[0].get("seed", "")).rpartition(":")[0]
+seed = str(seen[0].seed).rpartition(":")[0]
 texts = random_texts(Random(f"{seed}:lab_1_2.listener"))
 
 

@@ -9,7 +9,7 @@ import os
 import time
 from random import Random
 
-from autograder.exercises.lab_1_2_listener import random_texts
+<<listeners_texts>>
 
 seeds = [*map(str, range(200)), os.environ.get("AUTOGRADER_JUDGE_SOCKET", ""), "hidden_inputs", str(int(time.time()))]
 seeds += [f"{seed}:lab_1_2.listener" for seed in seeds]

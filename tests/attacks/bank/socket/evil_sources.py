@@ -8,6 +8,9 @@
 import base64
 import sys
 
+from autograder.messages.checks import Sources
+from autograder.messages.workspaces import Source
+
 check_module = sys.modules["autograder.notebook.check"]
 DATA = base64.b64encode(b"attack").decode()
 
@@ -17,9 +20,9 @@ def send_sources(tell, subject):
         "ros2_ws/src/../../../../../../tmp/<<mark>>_up", "/tmp/<<mark>>_root", "ros2_ws/src/a", "ros2_ws/src/a/b",
         "ros2_ws//src", "<<home>>/.<<mark>>", "ros2_ws/src/" + "d/" * 400, "ros2_ws/src/\ud800", "ros2_ws/src/x\ny",
     ):
-        tell("source", path=path, data=DATA, executable=True)
-    tell("source", path=["x"], data={"a": 1}, executable="yes")
-    tell("sources", path="../../../..", trouble="\ud800\x00" * 2000)
+        tell(Source(path, DATA, True))
+    tell(Source(["x"], {"a": 1}, "yes"))
+    tell(Sources("../../../..", "\ud800\x00" * 2000))
 
 
 check_module.send_sources = send_sources

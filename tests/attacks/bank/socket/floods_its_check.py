@@ -8,6 +8,7 @@ import threading
 import time
 
 import autograder.notebook.judge_link as judge_link
+from autograder.messages.checks import Output, Start
 
 
 class ListenerNode(Node):
@@ -20,12 +21,12 @@ usual = judge_link.JudgeLink.hear
 
 def hear(self):
     word = usual(self)
-    if word["say"] == "start":
+    if isinstance(word, Start):
         def flood(until=time.monotonic() + 4.0):
             number = 0
             while time.monotonic() < until:
                 number += 1
-                self.say("output", run=word["run"], text=f"amber birch {number} " * 200)
+                self.say(Output(word.run, f"amber birch {number} " * 200))
 
         threading.Thread(target=flood, daemon=True).start()
     return word

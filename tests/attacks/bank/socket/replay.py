@@ -23,18 +23,20 @@ def say(link, word, **rest):
     link.sendall(json.dumps({"say": word, **rest}).encode() + b"\n")
 
 import autograder.notebook.judge_link as judge_link
+from autograder.messages.lines import encode
 
 said = []
 usual_say = judge_link.JudgeLink.say
-judge_link.JudgeLink.say = lambda self, word, **rest: (said.append((word, rest)), usual_say(self, word, **rest))[1]
+judge_link.JudgeLink.say = lambda self, message: (said.append(json.loads(encode(message))), usual_say(self, message))[1]
 
 # %% right TalkerNode
 
 # %% solution ListenerNode
 def check(exercise, subject):
     link = connect()
-    for word, rest in said:
-        say(link, word, **{**rest, **({"exercise": exercise} if "exercise" in rest else {})})
+    for words in said:
+        rest = {name: value for name, value in words.items() if name != "say"}
+        say(link, words["say"], **{**rest, **({"exercise": exercise} if "exercise" in rest else {})})
         time.sleep(0.05)
     return 10.0
 

@@ -1,6 +1,6 @@
 # exercise_1_2.three_ints: one call, the rest is added in Python.
 
-# %% solution ask
+# %% extra
 def ask(node, client, a, b, patience_sec):
     future = client.call_async(AddTwoInts.Request(a=a, b=b))
     rclpy.spin_until_future_complete(node, future, timeout_sec=patience_sec)

@@ -1,6 +1,6 @@
 # exercise_1_2.three_ints: partly right; when the service is missing it returns None without a word.
 
-# %% solution ask
+# %% extra
 def ask(node, client, a, b, patience_sec):
     future = client.call_async(AddTwoInts.Request(a=a, b=b))
     rclpy.spin_until_future_complete(node, future, timeout_sec=patience_sec)

@@ -11,7 +11,7 @@ class CancelingClient(Node):
     def on_feedback(self, message):
         self.feedback_count += 1
 
-# %% solution send_goal
+# %% extra
 def send_goal(client, order):
     if not client.fibonacci.wait_for_server(timeout_sec=5.0):
         raise TimeoutError("no server")

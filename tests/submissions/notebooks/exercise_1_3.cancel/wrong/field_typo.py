@@ -14,7 +14,7 @@ class CancelingClient(Node):
         if self.feedback_count == 3:
             self.goal_handle.cancel_goal_async()
 
-# %% solution send_goal
+# %% extra
 def send_goal(client, order):
     if not client.fibonacci.wait_for_server(timeout_sec=5.0):
         raise TimeoutError("no server")

@@ -1,0 +1,148 @@
+"""The right and wrong answers to the exercises, and what the judge must find for each: the bank."""
+
+from __future__ import annotations
+
+import sys
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from autograder import exercises
+from autograder.authoring.answer_tables import WORKSPACE, Listed, listed, settings
+from autograder.authoring.judging import verdict_of
+from autograder.authoring.workspace_answers import unpack
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from autograder.verdict import Verdict
+
+_PROGRAMS = {"python3": sys.executable, "ros2": str(Path(sys.executable).with_name("ros2"))}
+"""The programs that answers are run with, those of this environment."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """One program of the bank and what the judge must find.
+
+    Attributes:
+        exercise: The exercise's id.
+        file: The program; where it is stored as an edit, the path that it would have.
+        command: What runs it, with places for ``{file}`` and ``{workspace}``.
+        diagnoses: The keys that are right; empty for a correct answer.
+        base: The workspace that the answer changes; None for a program.
+        edit: Its entry in a table, where the program is stored there.
+    """
+
+    exercise: str
+    file: Path
+    command: tuple[str, ...]
+    diagnoses: tuple[str, ...]
+    base: Path | None = None
+    edit: Listed | None = None
+
+    @property
+    def name(self) -> str:
+        """Such as ``lab_1_2.talker/wrong/topic_name.py``."""
+        return f"{self.exercise}/{self.short_name}"
+
+    @property
+    def short_name(self) -> str:
+        """The same without the exercise: ``wrong/topic_name.py``."""
+        return f"{self.file.parent.name}/{self.file.name}"
+
+    @property
+    def text(self) -> str:
+        """The program; for a workspace, the text that says what it changes.
+
+        Raises:
+            BadTable: It is an edit that does not fit its base.
+        """
+        return self.edit.text() if self.edit else self.file.read_text(encoding="utf-8")
+
+    def unpack(self, folder: Path) -> list[str]:
+        """Put into a folder what is not ready to be run where it is stored.
+
+        Args:
+            folder: An empty one.
+
+        Returns:
+            The command that runs the answer.
+
+        Raises:
+            BadTable: It is an edit that does not fit its base.
+        """
+        file, workspace = self.file, folder / "ros2_ws"
+        if self.base is not None:
+            unpack(self.text, self.base, workspace)
+        elif self.edit is not None:
+            file = folder / file.name
+            file.write_text(self.text, encoding="utf-8")
+        return [part.format(file=file, workspace=workspace) for part in self.command]
+
+    @property
+    def may_be_warm(self) -> bool:
+        """Whether it is a plain Python program, and not one of those that are always started from nothing."""
+        plain = self.base is None and self.command == (sys.executable, "{file}")
+        return plain and zlib.crc32(self.name.encode()) % COLD != 0
+
+    def verdict(self, seed: str, *, warm: bool) -> bytes:
+        """Judge it in this very process; the verdict as JSON."""
+        return verdict_of(self, seed, warm=warm)
+
+    def objection(self, verdict: Verdict) -> str:
+        """What is not as expected, or an empty string."""
+        key = verdict.diagnosis.key if verdict.diagnosis else ""
+        if not self.diagnoses:
+            missed = "; ".join(f"{c.name}: {c.seen}" for c in verdict.criteria if not c.passed)
+            return "" if verdict.passed else f"a correct answer got {verdict.score:g} ({key}: {missed})"
+        if verdict.state != "failed":
+            return f"a wrong answer is {verdict.state}"
+        if verdict.score >= verdict.max_score:
+            return "a wrong answer got full marks"
+        return "" if key in self.diagnoses else f"diagnosed as {key}, not as {' or '.join(self.diagnoses)}"
+
+
+def answers(of: Sequence[str] = ()) -> Iterator[Answer]:
+    """The answers to some exercises, in the order of their tables.
+
+    Args:
+        of: Ids of exercises; all of them where empty.
+
+    Raises:
+        UnknownExercise: There is no such exercise.
+        BadTable: A table cannot be used.
+    """
+    for exercise_id in of or exercises.all_ids():
+        folder = folder_of(exercise_id)
+        usual = settings(folder)
+        for one in listed(folder):
+            first, *rest = one.entry.command or usual.command
+            command = (_PROGRAMS.get(first, first), *rest)
+            diagnoses = (one.entry.diagnosis, *one.entry.also) if one.entry.diagnosis else ()
+            base = folder / usual.base if one.file.suffix == WORKSPACE else None
+            yield Answer(exercise_id, one.file, command, diagnoses, base, one if one.entry.change else None)
+
+
+def named(name: str) -> Answer:
+    """The answer of that name, such as ``lab_1_2.talker/wrong/topic_name.py``.
+
+    Raises:
+        StopIteration: There is none.
+    """
+    return next(answer for answer in answers() if answer.name == name)
+
+
+def folder_of(exercise_id: str) -> Path:
+    """The folder with the answers to an exercise."""
+    return exercises.path(exercise_id).with_suffix(".answers")
+
+
+COLD = 6
+"""One program in so many is always run as everybody runs programs, in a process that begins with nothing."""
+
+
+def longest_first(wanted: Iterable[Answer]) -> list[Answer]:
+    """Those that may take long come first, so that none of them is waited for alone at the end."""
+    return sorted(wanted, key=lambda answer: -exercises.get(answer.exercise).limit)

@@ -1,0 +1,88 @@
+"""A text that is stored as what it changes in another one, its base.
+
+The form is that of a diff without line numbers::
+
+         self.publisher = self.create_publisher(String, 'chatter', 10)
+    -        self.i = 0
+    +        self.i = 1
+    ...
+    -        self.i += 1
+    +        self.i += 2
+
+A line with ``-`` in front stands in the base and goes, one with ``+`` comes, and one with a space stands in the base
+and stays: it says which place is meant where the other lines stand in the base more than once. An empty line is an
+empty line that stays. ``...`` stands between two places.
+"""
+
+from __future__ import annotations
+
+SEPARATOR = "..."
+"""The line between two places of a change."""
+
+
+class CannotEdit(ValueError):
+    """A change does not fit its base. The message says which lines, and what to do."""
+
+
+def edited(base: str, change: str) -> str:
+    """Change a text.
+
+    Args:
+        base: The text.
+        change: What is different, in the form above.
+
+    Raises:
+        CannotEdit: Lines of the change stand nowhere in the base, or more than once; or it is no change.
+    """
+    lines = base.split("\n")
+    places = []
+    for block in change.removesuffix("\n").split(f"\n{SEPARATOR}\n"):
+        old, new = _sides(block)
+        places.append((_place(lines, old), old, new))
+    places.sort(key=lambda place: place[0], reverse=True)
+    end = len(lines)
+    for at, old, new in places:
+        if at + len(old) > end:
+            raise CannotEdit(f"two places of the change share the line {lines[end]!r}: write them as one")
+        lines[at : at + len(old)] = new
+        end = at
+    return "\n".join(lines)
+
+
+def _sides(block: str) -> tuple[list[str], list[str]]:
+    """The lines of one place as they stand in the base, and as they are to be."""
+    old, new = [], []
+    for line in block.split("\n"):
+        if line[:1] not in ("", " ", "-", "+"):
+            raise CannotEdit(f"{line!r} begins with neither -, + nor a space")
+        if line[:1] != "+":
+            old.append(line[1:])
+        if line[:1] != "-":
+            new.append(line[1:])
+    if old == new:
+        raise CannotEdit(
+            f"nothing is changed by {block!r}: put - in front of what goes and + in front of what comes"
+        )
+    if not old:
+        raise CannotEdit(
+            f"nobody knows where {block!r} comes: write the line before or after it, with a space in front"
+        )
+    return old, new
+
+
+def _place(lines: list[str], old: list[str]) -> int:
+    """The index of the only place where these lines stand."""
+    found = [at for at in range(len(lines) - len(old) + 1) if lines[at : at + len(old)] == old]
+    if len(found) == 1:
+        return found[0]
+    text = "\n".join(old)
+    if found:
+        numbers = ", ".join(str(at + 1) for at in found)
+        raise CannotEdit(
+            f"{text!r} stands in the base {len(found)} times (lines {numbers}): add the line before or after it, "
+            "with a space in front"
+        )
+    missing = next((line for line in old if line not in lines), None)
+    if missing is not None:
+        raise CannotEdit(f"{missing!r} is no line of the base")
+    raise CannotEdit(f"each line of {text!r} is in the base, but they do not follow each other there")

@@ -1,0 +1,157 @@
+"""Answers judged many at a time, in forks of a process that has imported what each of them needs."""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import select
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
+
+from autograder.verdict import State, Verdict, from_json, to_json
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+
+    from autograder.authoring.answers import Answer
+    from autograder.kit.model import Exercise
+
+LIMIT = 240.0
+"""Seconds of wall time in which an answer must have been judged."""
+
+
+class Judged(Protocol):
+    """Something that can be judged: an answer, a mutant of one."""
+
+    @property
+    def name(self) -> str:
+        """How a person finds it."""
+        ...
+
+    def verdict(self, seed: str, *, warm: bool) -> bytes:
+        """Judge it in this very process, a fork made for it; the verdict as JSON."""
+        ...
+
+
+T = TypeVar("T", bound=Judged)
+
+
+@dataclass(frozen=True)
+class Turn(Generic[T]):
+    """One judging of one thing.
+
+    Attributes:
+        subject: What is judged.
+        seed: What random inputs are drawn from.
+    """
+
+    subject: T
+    seed: str
+
+
+class NoVerdict(RuntimeError):
+    """A judge ended twice without a verdict."""
+
+
+def judge_all(
+    turns: Iterable[Turn[T]],
+    *,
+    jobs: int,
+    done: Callable[[Turn[T], Verdict], None],
+    warm: bool = False,
+    failed: Callable[[Turn[T], str], None] | None = None,
+) -> None:
+    """Judge, in this order, in forks of this process, which must have no other threads.
+
+    Args:
+        turns: What to judge, and with which inputs.
+        jobs: How many at once.
+        done: Called with each verdict as it comes.
+        warm: Run most programs in forks of a process that has imported ROS.
+        failed: Called with what has no verdict, and why.
+
+    Raises:
+        NoVerdict: Something has none, and nobody wants to be called.
+    """
+    from autograder.judge.serving.fork import Child
+
+    waiting = [(turn, 1) for turn in turns]
+    running: dict[int, tuple[Turn[T], int, Child]] = {}
+    while waiting or running:
+        while waiting and len(running) < jobs:
+            turn, attempt = waiting.pop(0)
+            child = Child(lambda turn=turn: turn.subject.verdict(turn.seed, warm=warm), LIMIT)  # type: ignore[misc]
+            running[child.reading] = (turn, attempt, child)
+        ready, _, _ = select.select(list(running), [], [])
+        for descriptor in ready:
+            turn, attempt, child = running.pop(descriptor)
+            outcome = child.result()
+            verdict = from_json(outcome.data) if outcome.data is not None else None
+            if verdict is not None and (verdict.state != State.NOT_CHECKED or attempt > 1):
+                done(turn, verdict)
+            elif attempt == 1:
+                # Without a verdict nothing is known. It is asked for once more, when less is going on.
+                waiting.append((turn, 2))
+            elif failed is not None:
+                failed(turn, outcome.trouble)
+            else:
+                raise NoVerdict(f"{turn.subject.name}: {outcome.trouble}")
+
+
+def verdict_of(answer: Answer, seed: str, *, warm: bool) -> bytes:
+    """Judge an answer of the bank in this process; the verdict as JSON."""
+    from autograder import exercises
+    from autograder.judge.subjects.command import judged_here
+
+    exercise = exercises.get(answer.exercise)
+    with tempfile.TemporaryDirectory(prefix="answer-") as folder:
+        command = answer.unpack(Path(folder))
+        if warm and answer.may_be_warm and not exercise.wraps_commands:
+            return to_json(_judged_warm(exercise, command, seed))
+        return to_json(judged_here(exercise, command, seed, None))
+
+
+def _judged_warm(exercise: Exercise, command: Sequence[str], seed: str) -> Verdict:
+    """The same as ``judged_here``, with the program in a fork of this process."""
+    from autograder.authoring.warm_python import WarmPython, WarmScript
+    from autograder.judge.bench.wire import JudgeFailed
+    from autograder.judge.serving import domain
+    from autograder.judge.verdicts import reference, trial
+    from autograder.verdict import not_checked
+
+    subject = WarmScript(WarmPython(), command)
+    try:
+        with domain.lease() as domain_id:
+            return trial.check(exercise, subject, reference.load(exercise.id), seed=seed, domain_id=domain_id)
+    except JudgeFailed as error:
+        return not_checked(exercise.id, exercise.title, exercise.points, str(error))
+
+
+def warm_up() -> None:
+    """Import in this process what every fork needs."""
+    from autograder.judge import settings
+
+    settings.prepare_judge()
+    from autograder.judge.serving import preimport
+
+    preimport.imports()
+
+
+@contextlib.contextmanager
+def busy_loops(number: int) -> Iterator[None]:
+    """Keep so many processors busy as long as the block runs."""
+    loops = [multiprocessing.Process(target=_busy, daemon=True) for _ in range(number)]
+    for loop in loops:
+        loop.start()
+    try:
+        yield
+    finally:
+        for loop in loops:
+            loop.terminate()
+
+
+def _busy() -> None:
+    while True:
+        pass

@@ -1,0 +1,137 @@
+"""``new-exercise``: a lab's folder that works, copied from the example of its recipe, for its author to change."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from autograder import course, exercises
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+EXAMPLES = Path(course.__file__).resolve().parents[1] / "docs" / "examples"
+"""A course of examples: each of its labs is the example of the recipe that it is named after."""
+LEFT_OUT = shutil.ignore_patterns("__pycache__", f"*{exercises.REFERENCE}")
+"""What is made anew for the copy."""
+
+_ID = re.compile(r"[a-z][a-z0-9_]*\.[a-z][a-z0-9_]*", re.ASCII)
+_NUMBER = re.compile(r"_(\d+(?:_\d+)*)$")
+_TITLE = re.compile(r"^# .*?: ", re.MULTILINE)
+
+
+class CannotMake(ValueError):
+    """The exercise cannot be made. The message says what to do instead; nothing was written."""
+
+
+def recipes() -> dict[str, Path]:
+    """The folders of the examples, by the names of their recipes."""
+    return {lab.name: lab for chapter in course.chapters(EXAMPLES) for lab in chapter.labs}
+
+
+def new_exercise(root: Path, exercise_id: str, recipe: str, *, chapter: str | None = None) -> Sequence[Path]:
+    """Make the folder of a lab with one exercise.
+
+    Args:
+        root: The top folder of the course.
+        exercise_id: Such as ``"lab_9_1.battery"``: the lab, a dot, the exercise.
+        recipe: The kind of subject, one of :func:`recipes`.
+        chapter: The folder of its chapter in ``solutions/``, made where it is not there; the last chapter where None.
+
+    Returns:
+        The files, in order.
+
+    Raises:
+        CannotMake: The id or the chapter is no good name, the lab is there already, or there is no such recipe.
+    """
+    lab = _lab_of(exercise_id)
+    example = _example(recipe)
+    folder = _chapter(root, chapter) / lab
+    _refuse_what_is_there(root, folder)
+    with tempfile.TemporaryDirectory(prefix="new-exercise-") as scratch:
+        made = Path(scratch) / lab
+        shutil.copytree(example, made, ignore=LEFT_OUT)
+        _rename(made, f"{example.name}.{_exercise_of(example)}", exercise_id)
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copytree(made, folder)
+    return sorted(path for path in folder.rglob("*") if path.is_file())
+
+
+def _lab_of(exercise_id: str) -> str:
+    if not _ID.fullmatch(exercise_id):
+        raise CannotMake(
+            f"{exercise_id!r} is no id: it is the lab, a dot, and the exercise, in small letters, digits and _, "
+            "such as lab_9_1.battery"
+        )
+    return exercise_id.partition(".")[0]
+
+
+def _example(recipe: str) -> Path:
+    known = recipes()
+    if recipe not in known:
+        raise CannotMake(f"there is no recipe {recipe!r}. There are: {', '.join(known)}")
+    return known[recipe]
+
+
+def _exercise_of(example: Path) -> str:
+    return next(file.stem for file in sorted(example.glob("[!_]*.py")))
+
+
+def _chapter(root: Path, name: str | None) -> Path:
+    there = course.chapters(root)
+    if name is None:
+        if not there:
+            raise CannotMake(
+                f"{root / course.SOLUTIONS} has no chapter yet: name a new one, --chapter 01_my_chapter"
+            )
+        return there[-1].folder
+    if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_-]*", name, re.ASCII):
+        raise CannotMake(
+            f"{name!r} is no good name of a chapter's folder: use letters, digits, _ and -, such as 02_navigation"
+        )
+    return root / course.SOLUTIONS / name
+
+
+def _refuse_what_is_there(root: Path, folder: Path) -> None:
+    # Two labs of one name would be one Python package, and one notebook for nbgrader.
+    others = [lab for chapter in course.chapters(root) for lab in chapter.labs if lab.name == folder.name]
+    for lab in (folder, *others):
+        if lab.exists():
+            raise CannotMake(
+                f"{lab.relative_to(root)} is there already: choose another name, or add the exercise to that lab by "
+                "hand (a file of its own beside lab.md, and a check cell in it)"
+            )
+    if _is_a_module(folder.name):
+        raise CannotMake(
+            f"Python has a module {folder.name} already, which would hide the lab: choose another name for the lab"
+        )
+
+
+def _is_a_module(name: str) -> bool:
+    return name in sys.stdlib_module_names or importlib.util.find_spec(name) is not None
+
+
+def _rename(made: Path, old: str, new: str) -> None:
+    """Give a copied lab its own id, in its texts and in the names of its files."""
+    old_name, new_name = old.partition(".")[2], new.partition(".")[2]
+    for path in sorted(made.rglob("*")):
+        if path.is_file():
+            text = path.read_text(encoding="utf-8").replace(old, new)
+            if path.name == course.LAB:
+                text = _TITLE.sub(f"# {_lab_title(new)}: ", text, count=1)
+            path.write_text(text, encoding="utf-8")
+    for path in made.glob(f"{old_name}.*"):
+        path.rename(path.with_name(new_name + path.name.removeprefix(old_name)))
+
+
+def _lab_title(exercise_id: str) -> str:
+    """How a lab is called in its heading: ``Lab 9.1`` for ``lab_9_1``."""
+    lab = exercise_id.partition(".")[0]
+    number = _NUMBER.search(lab)
+    words = (lab[: number.start()] if number else lab).replace("_", " ").strip().capitalize()
+    return f"{words} {number[1].replace('_', '.')}" if number else words

@@ -1,0 +1,164 @@
+"""``try-exercise``: does the judge say of each right and wrong answer to an exercise what its author expects?"""
+
+from __future__ import annotations
+
+import textwrap
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from autograder import exercises, recording
+from autograder.authoring.answers import Answer, answers, folder_of
+from autograder.authoring.judging import Turn, judge_all, warm_up
+from autograder.cards.text import card_text
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from autograder.verdict import Verdict
+
+JOBS = 4
+"""Answers that are judged at once: most of the time of each is waiting."""
+ENOUGH = {"right": 5, "wrong": 8}
+"""As many answers as tell something of an exercise. It works with fewer; how fair it is, is then not known."""
+
+
+class NothingToTry(LookupError):
+    """There is no such answer. The message names those that there are, or says where to write one."""
+
+
+@dataclass(frozen=True)
+class Surprise:
+    """An answer of which the judge says something else than its author expects.
+
+    Attributes:
+        name: Such as ``"wrong/counter_stuck.py"``.
+        objection: What is not as expected.
+        card: The card that a student would see.
+    """
+
+    name: str
+    objection: str
+    card: str
+
+
+def try_exercise(
+    exercise_id: str, *, only: Sequence[str] = (), jobs: int = JOBS, tell: Callable[[str], object]
+) -> bool:
+    """Record or compare the reference output, then judge the answers and tell what does not fit.
+
+    A reference output that is not there is recorded. One that differs from what the solution does now is left as it
+    is, and no answer is judged by it: what is expected of students does not change unasked.
+
+    Args:
+        exercise_id: Such as ``"lab_1_2.talker"``.
+        only: Parts of the names of answers; all answers where empty. The reference output is not compared then.
+        jobs: Answers that are judged at once.
+        tell: Called with each line, or card, for the author.
+
+    Returns:
+        Whether everything is as expected.
+
+    Raises:
+        autograder.exercises.UnknownExercise: There is no such exercise.
+        autograder.exercises.BrokenExercise: Its file is none.
+        autograder.authoring.answer_tables.BadTable: A table of its answers cannot be used.
+        autograder.recording.CannotRecord: The solution of its master cannot be recorded.
+        NothingToTry: There is no such answer.
+    """
+    exercises.get(exercise_id)
+    wanted = chosen(exercise_id, only)
+    if not (only and exercises.reference_path(exercise_id).exists()) and not _is_in_step(exercise_id, tell):
+        return False
+    surprises = judged(wanted, jobs=jobs, tell=tell)
+    for surprise in surprises:
+        tell(f"\n{surprise.name}: {surprise.objection}\n{textwrap.indent(surprise.card, '    ')}")
+    count = f"{len(wanted)} answer{'s' * (len(wanted) != 1)}"
+    tell(f"\n{count}, {len(surprises) or 'none'} not as expected")
+    if not only:
+        _tell_what_is_missing(wanted, tell)
+    return not surprises
+
+
+def chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:
+    """The answers to an exercise, in the order of their tables.
+
+    Args:
+        exercise_id: Such as ``"lab_1_2.talker"``.
+        only: Parts of their names; all where empty.
+
+    Raises:
+        NothingToTry: There is none.
+    """
+    found = list(answers([exercise_id]))
+    if not found:
+        raise NothingToTry(
+            f"{exercise_id} has no answers yet: write some in {folder_of(exercise_id)}/right and wrong, "
+            "as docs/adding-an-exercise.md shows"
+        )
+    wanted = [answer for answer in found if not only or any(part in answer.short_name for part in only)]
+    if not wanted:
+        raise NothingToTry(
+            f"no answer to {exercise_id} has {' or '.join(only)} in its name. There are: "
+            + ", ".join(answer.short_name for answer in found)
+        )
+    return wanted
+
+
+def judged(wanted: Sequence[Answer], *, jobs: int = JOBS, tell: Callable[[str], object]) -> list[Surprise]:
+    """Judge answers and tell of each as it comes.
+
+    Args:
+        wanted: What to judge.
+        jobs: How many at once.
+        tell: Called with a line for each.
+
+    Returns:
+        What is not as expected, in the order of the answers.
+    """
+    surprises: dict[str, Surprise] = {}
+    done = 0
+
+    def take(turn: Turn[Answer], verdict: Verdict) -> None:
+        nonlocal done
+        done += 1
+        answer, objection = turn.subject, turn.subject.objection(verdict)
+        sign, points = ("✗" if objection else "✓"), f"{verdict.score:g} of {verdict.max_score:g}"
+        key = verdict.diagnosis.key if verdict.diagnosis else ""
+        tell(f"{done:>3}/{len(wanted)} {sign} {answer.short_name:<40} {points:>8}  {key}".rstrip())
+        if objection:
+            surprises[answer.name] = Surprise(answer.short_name, objection, card_text(verdict))
+
+    def fail(turn: Turn[Answer], trouble: str) -> None:
+        nonlocal done
+        done += 1
+        name = turn.subject.short_name
+        tell(f"{done:>3}/{len(wanted)} ✗ {name:<40} no verdict")
+        surprises[turn.subject.name] = Surprise(name, f"no verdict: {trouble}", "The error stands above.")
+
+    warm_up()
+    judge_all([Turn(answer, "try") for answer in wanted], jobs=jobs, done=take, failed=fail, warm=True)
+    return [surprises[answer.name] for answer in wanted if answer.name in surprises]
+
+
+def _is_in_step(exercise_id: str, tell: Callable[[str], object]) -> bool:
+    """Whether the reference output is what the solution does; one that is not there is recorded."""
+    there = exercises.reference_path(exercise_id).exists()
+    changed = recording.record([exercise_id], only_check=there, tell=tell)
+    if not (there and changed):
+        return True
+    tell(
+        f"The solution in the master does something else now. If that is meant, run `./course record {exercise_id}`, "
+        "look at the difference, and try again."
+    )
+    return False
+
+
+def _tell_what_is_missing(wanted: Sequence[Answer], tell: Callable[[str], object]) -> None:
+    there = Counter(answer.file.parent.name for answer in wanted)
+    few = [f"{there[kind]} {kind}" for kind, enough in ENOUGH.items() if there[kind] < enough]
+    if few:
+        tell(
+            f"So far there are {' and '.join(few)} answers; a new exercise should have {ENOUGH['right']} right ones in "
+            f"different styles and {ENOUGH['wrong']} wrong ones before students meet it."
+        )

@@ -1,0 +1,228 @@
+"""The verdict where the judge has none: zero points, and a reason a student can act on."""
+
+from __future__ import annotations
+
+import re2
+
+from autograder.boxes.execution import CellRun, Check, Ended
+from autograder.verdict import Diagnosis, State, Verdict, not_checked
+
+_SYNTAX_ERRORS = ("SyntaxError", "IndentationError", "TabError")
+
+
+_LIMITS = {
+    Ended.OUT_OF_MEMORY: (
+        "used more memory than it may have",
+        "Look for a list that grows in every call, or for a loop that makes something new each time.",
+    ),
+    Ended.OUT_OF_CPU: (
+        "used more processor time than it may have",
+        "Look for a loop that never waits: a node that spins needs no loop of its own around it.",
+    ),
+    Ended.TOO_MANY_PROCESSES: (
+        "started more processes and threads than it may have",
+        "Look for a loop, or for a callback, that starts a thread, an executor or a program each time.",
+    ),
+    Ended.TOO_MANY_FILES: (
+        "had more files open at once than its programs may have together",
+        "Close what you open: `with open(…) as file:` does it by itself.",
+    ),
+    Ended.TOO_MUCH_OUTPUT: (
+        "printed far more than anyone can read",
+        "Look for a loop that prints without waiting, or print less.",
+    ),
+}
+"""What is said of a limit, and what to do."""
+_SHORTAGES = {
+    "OSError: [Errno 28]": (
+        "disk_full",
+        "filled all the room that it has for files",
+        "Look for a file that grows, or for a loop that makes files.",
+    ),
+    "OSError: [Errno 24]": (
+        "too_many_files",
+        "had more files open at once than one program may have",
+        "Close what you open: `with open(…) as file:` does it by itself.",
+    ),
+    "BlockingIOError: [Errno 11]": ("too_many_processes", *_LIMITS[Ended.TOO_MANY_PROCESSES]),
+    "RuntimeError: can't start new thread": ("too_many_processes", *_LIMITS[Ended.TOO_MANY_PROCESSES]),
+    "MemoryError": ("out_of_memory", *_LIMITS[Ended.OUT_OF_MEMORY]),
+}
+"""Limits that a program hears of as an error: how it begins, the diagnosis, what is said, what to do."""
+
+
+def zero_points(check: Check, key: str, reason: str, next_step: str, detail: str = "") -> Verdict:
+    """A failed check without criteria.
+
+    Args:
+        check: The check that was to be made.
+        key: The diagnosis.
+        reason: What happened, for the student.
+        next_step: What to do now.
+        detail: More text, such as the end of a traceback.
+    """
+    return Verdict(
+        exercise=check.exercise,
+        title=check.title,
+        state=State.FAILED,
+        score=0.0,
+        max_score=check.points,
+        diagnosis=Diagnosis(key=key, text=reason, next_step=next_step),
+        detail=detail,
+    )
+
+
+def grader_trouble(check: Check, reason: str) -> Verdict:
+    """The grader's own trouble: nobody's fault who submitted, and worth another run."""
+    return not_checked(
+        check.exercise,
+        check.title,
+        check.points,
+        f"This could not be checked: {reason}",
+        "This is the grader's trouble, not yours. It is tried again at the next grading run.",
+    )
+
+
+def without_verdict(
+    check: Check,
+    run: CellRun,
+    before: list[tuple[str, CellRun]],
+    limit: float,
+    hung: tuple[str, str] | None = None,
+) -> Verdict:
+    """Why a check cell has no verdict.
+
+    Args:
+        check: The check that was to be made.
+        run: What came of the check cell.
+        before: The cells since the last check, each with its first line, in order.
+        limit: Seconds of wall time that the check cell had.
+        hung: What it uses that has hung before, and the title of the cell in which it did; None where nothing has.
+    """
+    match run.ended:
+        case Ended.NOT_RUN | Ended.KERNEL_DIED:
+            return _kernel_gone(check, run, before)
+        case (
+            Ended.OUT_OF_MEMORY
+            | Ended.OUT_OF_CPU
+            | Ended.TOO_MANY_PROCESSES
+            | Ended.TOO_MANY_FILES
+            | Ended.TOO_MUCH_OUTPUT
+        ):
+            return _limit_exceeded(check, run.ended, "this check cell")
+        case Ended.TIMED_OUT if hung is not None:
+            return zero_points(
+                check,
+                "cell_timed_out",
+                f"`{hung[0]}` had already not come to its end in the cell that begins with “{hung[1]}”. "
+                f"This check waited {limit:g} s for it, and it did not end here either.",
+                "Look for a call that waits without a limit or a loop that never ends.",
+            )
+        case Ended.TIMED_OUT:
+            return zero_points(
+                check,
+                "cell_timed_out",
+                f"The check cell was stopped after {limit:g} s, before the judge had seen enough.",
+                "Look for a call that waits without a limit or a loop that never ends.",
+            )
+        case Ended.RAISED:
+            return _stopped_by_error(check, run, before)
+        case Ended.DONE:
+            return zero_points(
+                check,
+                "not_asked",
+                "The check cell ran, but the check that belongs to it was never made.",
+                "Make sure that no cell of yours redefines `check`.",
+            )
+
+
+def _kernel_gone(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:
+    if run.ended is Ended.KERNEL_DIED:
+        place = "while this check cell was running"
+    else:
+        limit = next(((title, cell.ended) for title, cell in before if cell.ended in _LIMITS), None)
+        if limit is not None:
+            return _limit_exceeded(check, limit[1], f"the cell that begins with “{limit[0]}”")
+        culprit = next((title for title, cell in before if cell.ended is Ended.KERNEL_DIED), "")
+        if not culprit:
+            return _out_of_time(check, before)
+        place = f"in the cell that begins with “{culprit}”, before this check cell had its turn"
+    return zero_points(
+        check,
+        "kernel_died",
+        f"The notebook's kernel ended {place}.",
+        "Look for `exit()`, `quit()` or `os._exit()`, or for something that makes Python crash. "
+        "Restart the kernel and run all cells: that is what the grader does.",
+    )
+
+
+def _limit_exceeded(check: Check, ended: Ended, place: str) -> Verdict:
+    what, next_step = _LIMITS[ended]
+    return zero_points(
+        check, str(ended), f"In {place}, the notebook {what}. It was stopped there.", next_step
+    )
+
+
+def _out_of_time(check: Check, before: list[tuple[str, CellRun]]) -> Verdict:
+    slow = [title for title, cell in before if cell.ended is Ended.TIMED_OUT]
+    reason = "The notebook's time was up before this check cell had its turn."
+    if slow:
+        reason = (
+            f"The cell that begins with “{slow[-1]}” did not end at its time limit, nor when interrupted."
+        )
+    return zero_points(
+        check,
+        "notebook_timed_out",
+        reason,
+        "Look for a loop that never ends. Restart the kernel and run all cells: each must come to its end.",
+    )
+
+
+def _stopped_by_error(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:
+    """The cell raised, mostly because what it names was never defined: the cause is in an earlier cell."""
+    title, cause = next(
+        ((title, cell) for title, cell in before if cell.ended in (Ended.RAISED, Ended.TIMED_OUT, *_LIMITS)),
+        ("", None),
+    )
+    if cause is not None and cause.ended in _LIMITS:
+        return _limit_exceeded(check, cause.ended, f"the cell that begins with “{title}”")
+    if cause is not None and cause.ended is Ended.TIMED_OUT:
+        return zero_points(
+            check,
+            "cell_timed_out",
+            f"The cell that begins with “{title}” was stopped at its time limit, so no check could begin.",
+            "Look for a loop that never ends. To keep a node running, spin it in the background.",
+        )
+    first = cause or run
+    shortage = next((words for begins, words in _SHORTAGES.items() if first.error.startswith(begins)), None)
+    if shortage is not None:
+        key, what, next_step = shortage
+        place = f"the cell that begins with “{title}”" if cause else "this check cell"
+        return zero_points(
+            check, key, f"In {place}, the notebook {what}.", next_step, _end_of_traceback(first)
+        )
+    reason = f"The check could not begin: {_told(run.error)}."
+    if cause:
+        reason = (
+            f"The cell that begins with “{title}” ended with {_told(cause.error)}, "
+            "so the check could not begin."
+        )
+    return zero_points(
+        check,
+        "syntax_error" if first.error.startswith(_SYNTAX_ERRORS) else "crashed",
+        reason,
+        "Mend the first cell that shows an error, then restart the kernel and run all cells.",
+        detail=_end_of_traceback(first),
+    )
+
+
+def _told(error: str) -> str:
+    """An error's words without the name that IPython gives to the file of a cell."""
+    return re2.sub(r"\(\d+\.py, line (\d+)\)", r"(line \1)", error).strip().rstrip(":.")
+
+
+def _end_of_traceback(run: CellRun) -> str:
+    for output in run.outputs:
+        if output["output_type"] == "error":
+            return "\n".join(output["traceback"])[-2000:]
+    return ""

@@ -1,0 +1,139 @@
+"""The system calls that Python does not offer, as functions that raise OSError.
+
+Numbers are those of Linux's headers: linux/sched.h, linux/prctl.h, linux/capability.h, linux/sockios.h.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import fcntl
+import os
+import socket
+import struct
+from pathlib import Path
+
+CLONE_NEWNS = 0x00020000
+CLONE_NEWCGROUP = 0x02000000
+CLONE_NEWUTS = 0x04000000
+CLONE_NEWIPC = 0x08000000
+CLONE_NEWUSER = 0x10000000
+CLONE_NEWPID = 0x20000000
+CLONE_NEWNET = 0x40000000
+
+PR_SET_PDEATHSIG = 1
+PR_SET_DUMPABLE = 4
+PR_SET_SECCOMP = 22
+PR_CAPBSET_DROP = 24
+PR_SET_CHILD_SUBREAPER = 36
+PR_SET_NO_NEW_PRIVS = 38
+PR_CAP_AMBIENT = 47
+_PR_CAP_AMBIENT_CLEAR_ALL = 4
+_SECCOMP_MODE_FILTER = 2
+_CAPABILITY_VERSION_3 = 0x20080522
+_MS_REC, _MS_PRIVATE, _MS_NOSUID, _MS_NODEV, _MS_NOEXEC = 0x4000, 1 << 18, 2, 4, 8
+_SIOCGIFFLAGS, _SIOCSIFFLAGS, _IFF_UP = 0x8913, 0x8914, 1
+
+_libc = ctypes.CDLL(None, use_errno=True)
+
+
+def _check(result: int, what: str) -> None:
+    if result < 0:
+        number = ctypes.get_errno()
+        raise OSError(number, f"{what}: {os.strerror(number)}")
+
+
+def unshare(namespaces: int) -> None:
+    """Leave the namespaces of the parent for new ones (unshare(2))."""
+    _check(_libc.unshare(namespaces), "unshare")
+
+
+def setns(descriptor: int, namespaces: int) -> None:
+    """Enter namespaces of the process that a pidfd stands for (setns(2), Linux 5.8 or later)."""
+    _check(_libc.setns(descriptor, namespaces), "setns")
+
+
+def prctl(option: int, value: int = 0) -> None:
+    """Change a property of this process (prctl(2))."""
+    _check(
+        _libc.prctl(option, ctypes.c_ulong(value), ctypes.c_ulong(0), ctypes.c_ulong(0), ctypes.c_ulong(0)),
+        f"prctl {option}",
+    )
+
+
+def die_with_parent(parent: int) -> None:
+    """Be killed when the parent ends, also where it has ended already.
+
+    Args:
+        parent: Who was the parent before the fork; 0 where it is in another PID namespace, which os.getppid
+            does not tell apart from one that has ended.
+    """
+    prctl(PR_SET_PDEATHSIG, 9)
+    if parent and os.getppid() != parent:
+        os._exit(1)
+
+
+def drop_capabilities() -> None:
+    """Give up every capability, for this process and for all that it will ever execute."""
+    last = int(Path("/proc/sys/kernel/cap_last_cap").read_text())
+    for capability in range(last + 1):
+        prctl(PR_CAPBSET_DROP, capability)
+    prctl(PR_CAP_AMBIENT, _PR_CAP_AMBIENT_CLEAR_ALL)
+    header = struct.pack("=Ii", _CAPABILITY_VERSION_3, 0)
+    _check(_libc.capset(header, bytes(24)), "capset")
+
+
+def filter_system_calls(program: bytes) -> None:
+    """Let a seccomp filter decide on every later system call of this process and its children.
+
+    Args:
+        program: Instructions of 8 bytes each (linux/filter.h, struct sock_filter). Without one, only what is executed
+            can bring no new right (no_new_privs).
+    """
+    prctl(PR_SET_NO_NEW_PRIVS, 1)
+    if not program:
+        return
+    code = ctypes.create_string_buffer(program, len(program))
+    head = struct.pack("@HxxxxxxP", len(program) // 8, ctypes.addressof(code))
+    result = _libc.prctl(PR_SET_SECCOMP, _SECCOMP_MODE_FILTER, ctypes.c_char_p(head), 0, 0)
+    _check(result, "seccomp")
+
+
+def map_only_user(inside: int, user: int, group: int) -> None:
+    """In a new user namespace, let ``inside`` stand for the one user and group that there are."""
+    Path("/proc/self/setgroups").write_text("deny")
+    Path("/proc/self/uid_map").write_text(f"{inside} {user} 1")
+    Path("/proc/self/gid_map").write_text(f"{inside} {group} 1")
+
+
+def mount_tmpfs(place: Path, size: int, inodes: int) -> None:
+    """Mount an empty file system in memory, in this process's mount namespace only.
+
+    Args:
+        place: An existing folder.
+        size: Bytes that it can hold.
+        inodes: Files, folders and links that it can hold.
+    """
+    _check(_libc.mount(b"none", b"/", None, ctypes.c_ulong(_MS_REC | _MS_PRIVATE), None), "mount")
+    options = f"size={size},nr_inodes={inodes},mode=0755".encode()
+    flags = ctypes.c_ulong(_MS_NOSUID | _MS_NODEV)
+    _check(_libc.mount(b"tmpfs", os.fsencode(place), b"tmpfs", flags, options), f"mount {place}")
+
+
+def mount_terminals(place: Path, most: int) -> None:
+    """Mount an empty file system of pseudo-terminals.
+
+    Args:
+        place: An existing folder.
+        most: Terminals that there may be at once. The machine has a few thousand for all such file systems together.
+    """
+    options = f"newinstance,ptmxmode=0666,mode=620,max={most}".encode()
+    flags = ctypes.c_ulong(_MS_NOSUID | _MS_NOEXEC)
+    _check(_libc.mount(b"devpts", os.fsencode(place), b"devpts", flags, options), f"mount {place}")
+
+
+def bring_loopback_up() -> None:
+    """A new network namespace has nothing but ``lo``, and that is down."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:
+        request = struct.pack("16sH14x", b"lo", 0)
+        flags = struct.unpack("16sH14x", fcntl.ioctl(any_socket, _SIOCGIFFLAGS, request))[1]
+        fcntl.ioctl(any_socket, _SIOCSIFFLAGS, struct.pack("16sH14x", b"lo", flags | _IFF_UP))

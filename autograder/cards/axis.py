@@ -1,0 +1,101 @@
+"""Where a moment stands from left to right: at its time, or in its turn where time stood still."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from autograder.cards.traffic import Part
+
+MARGIN = 10.0
+SHORTEST = 0.002
+"""Seconds that an axis covers at least."""
+TURNS = "one after the other"
+"""What an axis says that has no seconds."""
+
+
+@dataclass(frozen=True)
+class Tick:
+    """A tick of the axis: pixels from the left, its text and its ``text-anchor``."""
+
+    x: float
+    text: str
+    anchor: str
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Maps a place to pixels: ``start`` to the margin, ``end`` to ``right``.
+
+    A place is a time in seconds or, where ``seconds`` is not set, the number of a moment.
+    """
+
+    start: float
+    end: float
+    right: float
+    width: int
+    seconds: bool
+
+    @classmethod
+    def of(cls, part: Part, lengths: Sequence[float], width: int) -> Axis:
+        """An axis on which the label of every moment fits between its mark and the right edge.
+
+        Args:
+            part: What is drawn.
+            lengths: Pixels of each moment's label, as drawn.
+            width: Pixels of the picture.
+        """
+        places = places_of(part)
+        first, last = min(places), max(places)
+        if part.stands_still:
+            start, end = 0.0, max(last, 1.0)
+        else:
+            start = 0.0 if 0 <= first <= 2 * (last - first) else first
+            end = max(last, start + SHORTEST)
+        room = width - MARGIN
+        right = room
+        for place, length in zip(places, lengths, strict=True):
+            share = (place - start) / (end - start)
+            if share > 0:
+                right = min(right, MARGIN + (room - length - 2 * MARGIN) / share)
+        return cls(start, end, right, width, seconds=not part.stands_still)
+
+    def x(self, place: float) -> float:
+        """Pixels from the left."""
+        return MARGIN + (place - self.start) / (self.end - self.start) * (self.right - MARGIN)
+
+    def ticks(self, character: float) -> Iterator[Tick]:
+        """Round values that cover the axis, also right of the last moment.
+
+        Args:
+            character: Pixels of one character of a tick's text.
+        """
+        if not self.seconds:
+            yield Tick(0.0, TURNS, "start")
+            return
+        edge = self.start + (self.width - 3 * MARGIN) / (self.right - MARGIN) * (self.end - self.start)
+        step = round_step((edge - self.start) * 100 / self.width)
+        short = edge - self.start < 0.1
+        decimals = max(0, -math.floor(math.log10(step) + 1e-9) - (3 if short else 0))
+        for number in range(math.ceil(self.start / step - 1e-9), math.floor(edge / step + 1e-9) + 1):
+            value = number * step
+            text = f"{value * 1000:.{decimals}f} ms" if short else f"{value:.{decimals}f} s"
+            x = self.x(value)
+            yield Tick(x, text, "start" if x < len(text) * character / 2 else "middle")
+
+
+def places_of(part: Part) -> list[float]:
+    """For each moment of a part its place on the axis."""
+    if part.stands_still:
+        return [float(number) for number in range(len(part.moments))]
+    return [moment.t for moment in part.moments]
+
+
+def round_step(step: float) -> float:
+    """The next of 1, 2, 5 times a power of ten."""
+    power = 10.0 ** math.floor(math.log10(step))
+    return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= step * (1 - 1e-9))

@@ -1,0 +1,81 @@
+"""Two texts that should be the same, as one text with what is missing and what is too much."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+import re2
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from autograder.verdict import Criterion
+
+ALIKE = 0.5
+"""How alike two texts must be, from 0 to 1; of two that have little in common a difference says nothing."""
+LONGEST = 120
+"""Characters of a text that is compared: comparing takes time in proportion to the square."""
+_QUOTED = re2.compile("“([^“”]*)”")
+_BLANK = "␣"
+
+
+class Kind(StrEnum):
+    """What a piece of the text is."""
+
+    SAME = "same"
+    MISSING = "missing"
+    EXTRA = "extra"
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Some characters in a row."""
+
+    kind: Kind
+    text: str
+
+    @property
+    def marked(self) -> str:
+        """With the marks that say without colour what it is: ``[missing]``, ``{too much}``."""
+        if self.kind is Kind.SAME:
+            return self.text
+        text = self.text.replace(" ", _BLANK)
+        return f"[{text}]" if self.kind is Kind.MISSING else f"{{{text}}}"
+
+
+def difference(criterion: Criterion) -> tuple[Piece, ...]:
+    """How the first text in quotation marks that was seen differs from the first one that was expected.
+
+    Empty where the criterion holds, where either has no such text, where they are equal or have little in common.
+    """
+    if criterion.passed:
+        return ()
+    expected, seen = _QUOTED.search(criterion.expected), _QUOTED.search(criterion.seen)
+    if expected is None or seen is None:
+        return ()
+    return _pieces(expected[1], seen[1])
+
+
+def marked(pieces: Iterable[Piece]) -> str:
+    """The whole as one text, such as ``"Hello[,] world[!] 0"``."""
+    return "".join(piece.marked for piece in pieces)
+
+
+def _pieces(expected: str, seen: str) -> tuple[Piece, ...]:
+    if expected == seen or max(len(expected), len(seen)) > LONGEST:
+        return ()
+    matcher = difflib.SequenceMatcher(None, expected, seen, autojunk=False)
+    if matcher.ratio() < ALIKE:
+        return ()
+    found = []
+    for operation, a1, a2, b1, b2 in matcher.get_opcodes():
+        if operation == "equal":
+            found.append(Piece(Kind.SAME, expected[a1:a2]))
+        if operation in ("delete", "replace"):
+            found.append(Piece(Kind.MISSING, expected[a1:a2]))
+        if operation in ("insert", "replace"):
+            found.append(Piece(Kind.EXTRA, seen[b1:b2]))
+    return tuple(found)

@@ -1,0 +1,153 @@
+"""The exercises, found by what lies in the labs' folders. A module is imported when it is asked for.
+
+An exercise ``lab_1_2.talker`` is the file ``talker.py`` in the folder ``lab_1_2`` of a chapter, and a module of the
+same name, so that the files of a lab import each other as in a package. A file whose name begins with an underscore is
+a part of the others. Only judges and graders import these modules: no box of a student's sees them.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import difflib
+import functools
+import importlib
+import sys
+import traceback
+from importlib.machinery import ModuleSpec
+from typing import TYPE_CHECKING
+
+from autograder import course
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+    from types import ModuleType
+
+    from autograder.kit.model import Exercise
+
+REFERENCE = ".reference.json"
+"""How the file beside an exercise ends that holds its reference output."""
+
+
+class UnknownExercise(LookupError):
+    """There is no exercise of that id. The message names the nearest ones."""
+
+
+class BrokenExercise(Exception):
+    """A file in a lab's folder is no exercise. The message says why, or what it lacks."""
+
+
+def all_ids() -> tuple[str, ...]:
+    """The ids of all exercises, in the order of the course."""
+    return tuple(_files())
+
+
+def get(exercise_id: str) -> Exercise:
+    """The exercise of that id.
+
+    Raises:
+        UnknownExercise: There is none.
+        BrokenExercise: Its file cannot be imported, or defines none, or one of another id.
+    """
+    file = path(exercise_id)
+    try:
+        module = importlib.import_module(exercise_id)
+    except Exception as error:
+        raise BrokenExercise(f"{file} cannot be imported: {_words(error)}") from error
+    exercise: Exercise | None = getattr(module, "EXERCISE", None)
+    if exercise is None:
+        raise BrokenExercise(
+            f"{file} defines no EXERCISE: name the file _{file.name} if it is a part of another one"
+        )
+    if exercise.id != exercise_id:
+        raise BrokenExercise(f"{file} defines the exercise {exercise.id!r}: its id has to be {exercise_id!r}")
+    return exercise
+
+
+def unbroken() -> tuple[Exercise, ...]:
+    """All exercises but those whose files are broken, as one is while its author writes it."""
+    found = []
+    for exercise_id in all_ids():
+        with contextlib.suppress(BrokenExercise):
+            found.append(get(exercise_id))
+    return tuple(found)
+
+
+def path(exercise_id: str) -> Path:
+    """The file of an exercise.
+
+    Raises:
+        UnknownExercise: There is none.
+    """
+    files = _files()
+    if not files:
+        raise UnknownExercise(f"there is no exercise in {course.root() / course.SOLUTIONS}")
+    if exercise_id not in files:
+        near = difflib.get_close_matches(exercise_id, files, n=3, cutoff=0.4) or list(files)
+        raise UnknownExercise(f"no exercise is called {exercise_id!r}; did you mean {' or '.join(near)}?")
+    return files[exercise_id]
+
+
+def reference_path(exercise_id: str) -> Path:
+    """Where the reference output of an exercise is kept.
+
+    Raises:
+        UnknownExercise: There is no such exercise.
+    """
+    return path(exercise_id).with_suffix(REFERENCE)
+
+
+def grade_id(exercise_id: str) -> str:
+    """The nbgrader grade_id of an exercise's check cell: nbgrader allows no dot in it."""
+    return exercise_id.replace(".", "-")
+
+
+def _words(error: Exception) -> str:
+    """What went wrong in an import, and in which line, in one line."""
+    kind = type(error).__name__
+    if isinstance(error, SyntaxError):
+        return f"{kind}: {error.msg} ({error.filename}, line {error.lineno})"
+    last = traceback.extract_tb(error.__traceback__)[-1]
+    return f"{kind}: {error} ({last.filename}, line {last.lineno})"
+
+
+def _files() -> dict[str, Path]:
+    return _files_of(course.root())
+
+
+# Looked up once: a judge in its box sees no folder of a lab any more.
+@functools.cache
+def _files_of(root: Path) -> dict[str, Path]:
+    return {
+        exercise_id: file
+        for chapter in course.chapters(root)
+        for lab in chapter.labs
+        for exercise_id, file in chapter.exercises_of(lab).items()
+    }
+
+
+class _LabsFinder:
+    """Has Python find the folder of a lab as a package, wherever its chapter lies."""
+
+    @staticmethod
+    def find_spec(
+        name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """The package of a lab; see :class:`importlib.abc.MetaPathFinder`."""
+        del target
+        folder = None if path is not None else _folders().get(name)
+        if folder is None:
+            return None
+        spec = ModuleSpec(name, None, is_package=True)
+        spec.submodule_search_locations = [str(folder)]
+        return spec
+
+
+def _folders() -> dict[str, Path]:
+    try:
+        return {file.parent.name: file.parent for file in _files().values()}
+    except course.NoCourse:
+        return {}
+
+
+sys.meta_path.append(_LabsFinder)

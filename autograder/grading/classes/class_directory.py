@@ -1,0 +1,279 @@
+"""A class on disk: where things are, what may be in it, and who is at work in it."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import hashlib
+import os
+import re  # noqa: TID251  (an instructor's configuration)
+import stat
+import tempfile
+import unicodedata
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from traitlets.config.loader import PyFileConfigLoader
+
+from autograder.grading.classes.class_lock import held
+from autograder.grading.classes.seeds import create_secret, read_secret
+from autograder.grading.errors import ClassIncomplete, NotAClass
+from autograder.grading.rebuilding.submission import reason_against_file
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from nbformat import NotebookNode
+    from traitlets.config import Config
+
+CONFIG_NAME = "nbgrader_config.py"
+STATE_NAME = ".autograder"
+SUFFIX = ".ipynb"
+_LONGEST_NAME = 100
+_MAY_NAME_GRADEBOOK = re.compile(rb"db_url|subconfig|exec|update|merge|import_module")
+
+
+@dataclass(frozen=True)
+class Submission:
+    """What one student handed in for one assignment.
+
+    Attributes:
+        student: The student's id.
+        assignment: The assignment's name.
+        folder: Where it lies.
+    """
+
+    student: str
+    assignment: str
+    folder: Path
+
+
+@dataclass(frozen=True)
+class Refused:
+    """Something under ``submitted`` that cannot be graded under that name.
+
+    Attributes:
+        path: What it is.
+        reason: Why, and what to do.
+    """
+
+    path: Path
+    reason: str
+
+
+class ClassDirectory:
+    """An nbgrader course directory that this package grades.
+
+    Args:
+        path: The folder that holds ``nbgrader_config.py``.
+
+    Raises:
+        NotAClass: It is none; the message says what is missing.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path.absolute()
+        if not self.path.is_dir():
+            raise NotAClass(path, "there is no such folder")
+        if not (self.path / CONFIG_NAME).is_file():
+            raise NotAClass(path, f"there is no {CONFIG_NAME} in it")
+        if not (self.path / "source").is_dir():
+            raise NotAClass(path, "there is no folder named source in it")
+
+    @property
+    def state(self) -> Path:
+        """The folder of the autograder's own files: secret, lock, journal, log. Nothing for students."""
+        return self.path / STATE_NAME
+
+    @property
+    def gradebook_url(self) -> str:
+        """What SQLAlchemy opens the gradebook by."""
+        usual = f"sqlite:///{self.path / 'gradebook.db'}"
+        if not _MAY_NAME_GRADEBOOK.search((self.path / CONFIG_NAME).read_bytes()):
+            return usual  # the configuration is a program that takes a second
+        return str(self.config.CourseDirectory.get("db_url") or usual)
+
+    @functools.cached_property
+    def config(self) -> Config:
+        """The class's nbgrader configuration, with the root set to where the class is now.
+
+        Raises:
+            ClassIncomplete: The configuration is no Python, or not one that grades with the judge.
+        """
+        try:
+            config = PyFileConfigLoader(CONFIG_NAME, path=str(self.path)).load_config()
+        except Exception as error:  # it is a program: it may raise anything
+            raise ClassIncomplete(
+                f"{self.path / CONFIG_NAME} cannot be read: {type(error).__name__}: {error}"
+            ) from error
+        steps = [str(step) for step in config.Autograde.get("autograde_preprocessors", ())]
+        if not any("WireExecute" in step for step in steps):
+            raise ClassIncomplete(
+                f"{self.path / CONFIG_NAME} does not grade with the judge. Make a class with "
+                f"`autograder new-class` and copy the lines on Autograde from its {CONFIG_NAME}."
+            )
+        url = str(config.CourseDirectory.get("db_url") or "sqlite:")
+        if not url.startswith("sqlite:") and not config.CourseDirectory.get("course_id"):
+            # nbgrader refers to a course of that name, and only SQLite does not look whether there is one.
+            raise ClassIncomplete(
+                f"A gradebook in a database server needs the name of the course. Add a line to "
+                f'{self.path / CONFIG_NAME}: c.CourseDirectory.course_id = "ros2"'
+            )
+        config.CourseDirectory.root = str(self.path)
+        return config
+
+    @functools.cached_property
+    def secret(self) -> bytes:
+        """The class secret, made now where there is none.
+
+        Raises:
+            ClassIncomplete: It is damaged.
+        """
+        path = self.state / "secret"
+        try:
+            if not path.exists():
+                path.parent.mkdir(exist_ok=True)
+                create_secret(path)
+            return read_secret(path)
+        except ValueError as error:
+            raise ClassIncomplete(
+                f"{path} is damaged ({error}). Put back a copy of it, or delete it: "
+                "then every student gets new inputs."
+            ) from error
+
+    def assignments(self) -> list[str]:
+        """The names of the assignments, sorted."""
+        return sorted(
+            folder.name for folder in (self.path / "source").iterdir() if any(folder.glob(f"*{SUFFIX}"))
+        )
+
+    def notebooks(self, assignment: str) -> list[str]:
+        """The names of an assignment's notebooks, sorted."""
+        return sorted(path.stem for path in (self.path / "source" / assignment).glob(f"*{SUFFIX}"))
+
+    def master(self, assignment: str, notebook: str) -> NotebookNode:
+        """The trusted master of a notebook.
+
+        Raises:
+            MasterUnusable: It cannot be graded against.
+        """
+        from autograder.grading.rebuilding.master import (
+            read_master,  # with nbgrader, which takes a second to import
+        )
+
+        return read_master(self.path / "source" / assignment / f"{notebook}{SUFFIX}", self.config)
+
+    def files(self, assignment: str) -> dict[str, bytes]:
+        """What lies beside the assignment's notebooks, by relative path."""
+        folder = self.path / "source" / assignment
+        found = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.suffix != SUFFIX)
+        return {
+            str(path.relative_to(folder)): path.read_bytes()
+            for path in found
+            if not any(
+                part.startswith(".") or part == "__pycache__" for part in path.relative_to(folder).parts
+            )
+        }
+
+    def submissions(self) -> tuple[list[Submission], list[Refused]]:
+        """Everything that was handed in, and what cannot be graded under the name it has.
+
+        What lies in the place of a notebook and is no ordinary file is among both: it is graded, with zero points
+        and the reason.
+        """
+        notebooks = {assignment: self.notebooks(assignment) for assignment in self.assignments()}
+        taken: list[Submission] = []
+        refused: list[Refused] = []
+        for student in _folders(self.path / "submitted", refused):
+            for folder in _folders(student, refused):
+                if folder.name in notebooks:
+                    taken.append(Submission(student.name, folder.name, folder))
+                    refused += _odd_files(folder / f"{name}{SUFFIX}" for name in notebooks[folder.name])
+                else:
+                    known = ", ".join(notebooks) or "none"
+                    refused.append(
+                        Refused(folder, f"there is no assignment of that name (the class has: {known})")
+                    )
+        return taken, refused
+
+    @contextlib.contextmanager
+    def lock(self) -> Iterator[None]:
+        """Keep a second batch out. The lock goes with the process, however that ends.
+
+        Raises:
+            ClassBusy: Another process holds it.
+        """
+        self.state.mkdir(mode=0o700, exist_ok=True)
+        with held(self.state / "lock", self.path):
+            yield
+
+    def scratch(self) -> Path:
+        """A folder for what runs, outside of the class and with a short name (sockets live in it).
+
+        Raises:
+            ClassIncomplete: Somebody else has a folder of that name, who could then look into ours.
+        """
+        name = hashlib.sha256(str(self.path).encode()).hexdigest()[:8]
+        folder = Path(tempfile.gettempdir()) / f"autograder-{os.getuid()}-{name}"
+        with contextlib.suppress(FileNotFoundError):
+            status = folder.lstat()
+            if not stat.S_ISDIR(status.st_mode) or status.st_uid != os.getuid():
+                raise ClassIncomplete(
+                    f"{folder} is there already and is not your folder. Have it removed, or set TMPDIR to a "
+                    "folder of your own."
+                )
+        return folder
+
+
+def reason_against_name(name: str) -> str:
+    """Why a folder's name cannot be a student's id; empty where it can.
+
+    nbgrader looks for folders with wildcards and splits paths at separators, so that some characters would
+    find a neighbour's folder or none; control characters would forge lines in a terminal or a log.
+    """
+    if len(name.encode("utf-8", "surrogateescape")) > _LONGEST_NAME:
+        return f"the name is longer than {_LONGEST_NAME} bytes"
+    if any(not (character.isalnum() or character in " ._-@+'") for character in name):
+        return "the name has characters other than letters, digits, spaces and . _ - @ + '"
+    if not name or name.startswith("."):
+        return "the name is empty or begins with a dot"
+    if name != name.strip() or name != unicodedata.normalize("NFC", name):
+        return "the name begins or ends with a space, or its letters are not in composed form"
+    return ""
+
+
+def _odd_files(paths: Iterable[Path]) -> Iterator[Refused]:
+    for path in paths:
+        reason = reason_against_file(path)
+        if reason:
+            yield Refused(path, reason)
+
+
+def _folders(parent: Path, refused: list[Refused]) -> list[Path]:
+    """The folders in ``parent`` with usable names; hidden entries and plain files are nobody's work."""
+    found = []
+    for entry in _entries(parent, refused):
+        if entry.name.startswith("."):
+            continue
+        if entry.is_symlink():
+            refused.append(Refused(entry, "it is a link; put the folder itself there"))
+        elif entry.is_dir():
+            reason = reason_against_name(entry.name)
+            if reason:
+                refused.append(Refused(entry, f"{reason}; rename the folder"))
+            else:
+                found.append(entry)
+        elif not entry.is_file():
+            refused.append(Refused(entry, "it is neither a folder nor a file; remove it"))
+    return found
+
+
+def _entries(parent: Path, refused: list[Refused]) -> list[Path]:
+    try:
+        return sorted(parent.iterdir())
+    except FileNotFoundError:
+        return []
+    except OSError as error:
+        refused.append(Refused(parent, f"it could not be read: {error.strerror}"))
+        return []

@@ -1,0 +1,227 @@
+"""Making a class: an nbgrader course directory whose assignments are the course's masters."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from nbgrader.converters import GenerateAssignment
+from nbgrader.coursedir import CourseDirectory
+
+from autograder.boxes.limits import Limits
+from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, ClassDirectory
+from autograder.grading.classes.seeds import create_secret
+from autograder.grading.entering.writer import quiet
+from autograder.grading.errors import ClassExists, GradingError, clear_disk_errors
+from autograder.grading.following.origins import remember
+from autograder.grading.rebuilding import nodes
+from autograder.masters.errors import MasterError
+from autograder.masters.layout import lab_name, masters
+from autograder.masters.source import source_notebook
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from nbformat import NotebookNode
+
+DEMO_NAME = "demo-class"
+
+CONFIG = '''\
+"""nbgrader's configuration of this class. The autograder's lines come first; yours go to the end."""
+
+import os
+
+from autograder.masters.release import release_preprocessors
+
+c = get_config()  # noqa: F821  (nbgrader defines it)
+c.CourseDirectory.root = os.path.dirname(os.path.abspath(__file__))
+
+# What students get: each solution replaced by its TODO comment, given cells locked.
+c.GenerateAssignment.preprocessors = release_preprocessors()
+
+# How a submission is read: rebuilt from the source notebook, with only the text of the student's cells.
+c.Autograde.exporter_class = "autograder.grading.exporter.SubmissionExporter"
+c.Autograde.pre_convert_hook = "autograder.grading.hooks.before_autograde"
+c.Autograde.sanitize_preprocessors = ["nbgrader.preprocessors.CheckCellMetadata"]
+
+# How it is graded: the judge watches each check cell on the wire, and only its points are entered.
+c.Autograde.autograde_preprocessors = [
+    "autograder.grading.preprocessors.WireExecute",
+    "nbgrader.preprocessors.LimitOutput",
+    "nbgrader.preprocessors.SaveAutoGrades",
+    "nbgrader.preprocessors.AssignLatePenalties",
+    "nbgrader.preprocessors.CheckCellMetadata",
+]
+c.OverwriteCells.add_missing_cells = True
+
+# What you and the students read: no script, no frame and no address that a submission brought along.
+c.GenerateFeedback.exporter_class = "autograder.grading.pages.FeedbackExporter"
+c.HTMLExporter.filters = {{"markdown2html": "autograder.grading.pages.markdown_to_html"}}
+
+# `nbgrader export` and `autograder grade` each write a table: give nbgrader's a name of its own. In neither does
+# a spreadsheet find a formula.
+c.ExportApp.plugin_class = "autograder.grading.export.SafeCsvExport"
+c.ExportPlugin.to = "nbgrader_export.csv"
+
+# Wall time in seconds, of one cell and of a whole notebook. Check cells have their exercise's own limit.
+c.WireExecute.cell_seconds = {cell_seconds:g}
+c.WireExecute.notebook_seconds = {notebook_seconds:g}
+
+# For `nbgrader validate`, which runs a notebook without the judge's box: nbgrader takes 0 points for a log
+# line on stderr, where ROS writes them by default.
+os.environ.setdefault("RCUTILS_LOGGING_USE_STDOUT", "1")
+os.environ.setdefault("RCUTILS_COLORIZED_OUTPUT", "0")
+'''
+
+
+@dataclass(frozen=True)
+class NewClass:
+    """A class that was made.
+
+    Attributes:
+        path: Where it is.
+        assignments: Its assignments; what to hand out is in ``release/``.
+    """
+
+    path: Path
+    assignments: tuple[str, ...]
+
+    def summary(self) -> str:
+        """What was made and what comes next, in a few lines."""
+        return "\n".join(
+            (
+                f"{self.path} is a class with these assignments: {', '.join(self.assignments)}.",
+                f"Hand out       {self.path / 'release'}",
+                f"Put work into  {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
+                f"Then           autograder grade {self.path}",
+            )
+        )
+
+
+def new_class(
+    path: Path,
+    course_root: Path,
+    *,
+    assignments: Sequence[str] = (),
+    cell_seconds: float = Limits.cell_seconds,
+    notebook_seconds: float = Limits.notebook_seconds,
+) -> NewClass:
+    """Make a class directory with its gradebook, sources and release.
+
+    Args:
+        path: A folder that is not there yet, or an empty one; outside of the course's repository.
+        course_root: The folder that holds ``solutions``.
+        assignments: Which masters to take, by name; all with a graded cell by default.
+        cell_seconds: Wall time of one cell.
+        notebook_seconds: Wall time of a notebook.
+
+    Raises:
+        ClassExists: There is something already, or the place lies inside the repository.
+        GradingError: An assignment is not known, its master cannot be used, or nbgrader could not make it.
+    """
+    path = path.absolute()
+    _check_place(path, course_root)
+    sources = sources_of(course_root, assignments)
+    made_folder = not path.exists()
+    try:
+        with clear_disk_errors(path):
+            path.mkdir(parents=True, exist_ok=True)
+            _fill(path, sources, CONFIG.format(cell_seconds=cell_seconds, notebook_seconds=notebook_seconds))
+    except BaseException:
+        # Half a class would only be in the way of the next try.
+        for entry in path.iterdir() if path.is_dir() else ():
+            shutil.rmtree(entry) if entry.is_dir() else entry.unlink()
+        if made_folder and path.is_dir():
+            path.rmdir()
+        raise
+    return NewClass(path, tuple(sources))
+
+
+def _check_place(path: Path, course_root: Path) -> None:
+    if path.is_symlink() or (path.exists() and not path.is_dir()):
+        raise ClassExists(f"{path} is there already and is not a folder. Choose another name.")
+    if path.is_dir() and any(path.iterdir()):
+        raise ClassExists(
+            f"{path} is not empty. Choose another name, or grade the class there: autograder grade {path}"
+        )
+    repository = course_root.resolve()
+    place = path.resolve()
+    if place.is_relative_to(repository) and place != repository / DEMO_NAME:
+        raise ClassExists(
+            f"{path} lies inside the course's repository, where students' work could be committed "
+            f"by mistake. Choose a place outside of {repository}."
+        )
+
+
+Sources = dict[str, "tuple[Path, NotebookNode]"]
+"""A master and the source notebook that is made of it, by assignment."""
+
+
+def sources_of(course_root: Path, wanted: Sequence[str]) -> Sources:
+    """What the sources of a class are made of.
+
+    Args:
+        course_root: The folder that holds ``solutions``.
+        wanted: The names of assignments; all with a graded cell by default.
+
+    Raises:
+        GradingError: An assignment is not known, or its master cannot be used.
+    """
+    try:
+        known = {lab_name(master): master for master in masters(course_root)}
+    except MasterError as error:
+        raise GradingError(str(error)) from error
+    for name in wanted:
+        if name not in known:
+            raise GradingError(f"There is no master named {name}. The course has: {', '.join(known)}.")
+    try:
+        made = {name: (known[name], source_notebook(known[name])) for name in wanted or known}
+    except MasterError as error:
+        raise GradingError(str(error)) from error
+    return {name: one for name, one in made.items() if wanted or _is_graded(one[1])}
+
+
+def _is_graded(notebook: NotebookNode) -> bool:
+    return any(cell.metadata.get("nbgrader", {}).get("grade") for cell in notebook.cells)
+
+
+def _fill(path: Path, sources: Sources, config: str) -> None:
+    (path / CONFIG_NAME).write_text(config, encoding="utf-8")
+    (path / "submitted").mkdir()
+    (path / STATE_NAME).mkdir(mode=0o700)
+    create_secret(path / STATE_NAME / "secret")
+    # Students' work, points and the secret belong in no repository.
+    (path / ".gitignore").write_text("*\n", encoding="utf-8")
+    for name, (_, notebook) in sources.items():
+        folder = path / "source" / name
+        folder.mkdir(parents=True)
+        (folder / f"{name}.ipynb").write_text(nodes.text(notebook), encoding="utf-8")
+    release(ClassDirectory(path))
+    remember(ClassDirectory(path), sources)
+
+
+def release(directory: ClassDirectory, assignments: Sequence[str] = ()) -> None:
+    """Do what ``nbgrader generate_assignment`` does.
+
+    Args:
+        directory: The class.
+        assignments: For these; for every one of the class by default.
+
+    Raises:
+        GradingError: nbgrader failed; its words are in the class's ``nbgrader.log``.
+    """
+    for assignment in assignments or directory.assignments():
+        course = CourseDirectory(config=directory.config)
+        course.assignment_id = assignment
+        converter = GenerateAssignment(coursedir=course, config=directory.config)
+        converter.force = True
+        try:
+            with quiet(directory.state):
+                converter.start()
+        except Exception as error:
+            raise GradingError(
+                f"nbgrader could not generate the assignment {assignment}: {error}. "
+                f"See {directory.state / 'nbgrader.log'}."
+            ) from error

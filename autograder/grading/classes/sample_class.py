@@ -1,0 +1,198 @@
+"""The sample class: submissions right, wrong and broken, made by this program from one data file."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+from rich.console import Console
+
+from autograder import course
+from autograder.boxes.execution import Kind
+from autograder.grading.batch import grade
+from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, SUFFIX
+from autograder.grading.classes.new_class import new_class
+from autograder.grading.errors import ClassExists
+from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding.rebuild import grade_id
+from autograder.grading.reporting.report_table import show
+from autograder.masters.layout import lab_name, masters
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
+
+    from autograder.grading.reporting.report import GradeReport
+
+DATA = Path(__file__).with_suffix(".toml")
+CELL_SECONDS = 8.0
+"""Short, so that the student with the endless loop does not make the demonstration long."""
+NOTEBOOK_SECONDS = 120.0
+BANK = Path("tests", "submissions", "notebooks")
+"""In the course: answers as students write them into notebooks, right and wrong."""
+_STAMP = "sample"
+
+
+@dataclass(frozen=True)
+class SampleNotebook:
+    """One notebook that one student hands in; the data file says what the fields mean."""
+
+    student: str
+    assignment: str
+    about: str
+    expected: dict[str, tuple[float, str]]
+    bank: tuple[str, ...] = ()
+    answers: dict[str, str] = field(default_factory=dict)
+    delete: tuple[str, ...] = ()
+    duplicate: tuple[str, ...] = ()
+    retype: dict[str, Kind] = field(default_factory=dict)
+    insert: dict[str, str] = field(default_factory=dict)
+    unsolved: bool = False
+    file: str = ""
+
+
+@dataclass(frozen=True)
+class _Answer:
+    """What a student wrote into a solution cell, and into cells of their own before it."""
+
+    source: str
+    extra: tuple[str, ...]
+
+
+def sample_notebooks() -> tuple[SampleNotebook, ...]:
+    """What is handed in in the sample class."""
+    data = tomllib.loads(DATA.read_text(encoding="utf-8"))
+    return msgspec.convert(data["notebook"], tuple[SampleNotebook, ...])
+
+
+def submit_sample(path: Path) -> None:
+    """Hand in every sample notebook in the class at ``path``."""
+    for notebook in sample_notebooks():
+        folder = path / "submitted" / notebook.student / notebook.assignment
+        folder.mkdir(parents=True, exist_ok=True)
+        text = notebook.file or nodes.text(made_notebook(path, notebook))
+        (folder / f"{notebook.assignment}{SUFFIX}").write_text(text, encoding="utf-8")
+
+
+def demo(path: Path, *, console: Console | None = None) -> GradeReport:
+    """Make the sample class, grade it, print the table and where everything is.
+
+    A class that this made before from the same course is graded as it stands, which takes seconds.
+
+    Args:
+        path: Where the class is or will be.
+        console: Standard output by default.
+
+    Raises:
+        GradingError: There is something else at ``path``, or grading is not possible.
+    """
+    console = console or Console()
+    _make(path, console)
+    # Sample notebooks mostly wait, for a timer or for a time-out: two at once keep a processor busy.
+    report = grade(path, jobs=2 * (os.cpu_count() or 1))
+    show(report, console)
+    return report
+
+
+def _make(path: Path, console: Console) -> None:
+    stamp = path / STATE_NAME / _STAMP
+    version = _version(course.root())
+    if stamp.is_file():
+        if stamp.read_text() == version:
+            return
+        console.print(f"The course has changed: making {path} anew.", highlight=False)
+        shutil.rmtree(path)
+    elif (path / CONFIG_NAME).exists():
+        raise ClassExists(f"{path} is a class of your own. Name another folder: autograder demo FOLDER")
+    new_class(
+        path,
+        course.root(),
+        assignments=sorted({notebook.assignment for notebook in sample_notebooks()}),
+        cell_seconds=CELL_SECONDS,
+        notebook_seconds=NOTEBOOK_SECONDS,
+    )
+    submit_sample(path)
+    stamp.write_text(version)
+
+
+def _version(root: Path) -> str:
+    """Changes with the masters and the answers that the sample is made of, and with the sample."""
+    digest = hashlib.sha256(DATA.read_bytes())
+    notebooks = sample_notebooks()
+    names = {notebook.assignment for notebook in notebooks}
+    used = [path for path in masters(root) if lab_name(path) in names]
+    answers = [
+        root / BANK / file for file in sorted({file for notebook in notebooks for file in notebook.bank})
+    ]
+    for path in (*used, *answers):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def made_notebook(path: Path, wanted: SampleNotebook) -> NotebookNode:
+    """The notebook as the student saved it.
+
+    Args:
+        path: The class, with its sources and its release.
+        wanted: What is handed in.
+    """
+    name = f"{wanted.assignment}{SUFFIX}"
+    made = nodes.read((path / "release" / wanted.assignment / name).read_text(encoding="utf-8"))
+    right: dict[str, str] = {}
+    if not wanted.unsolved:
+        source = nodes.read((path / "source" / wanted.assignment / name).read_text(encoding="utf-8"))
+        right = {grade_id(cell): _without_markers(cell.source) for cell in source.cells}
+    answers = {name: answer for file in wanted.bank for name, answer in _bank_answers(file).items()}
+    answers |= {name: _Answer(text.strip(), ()) for name, text in wanted.answers.items()}
+    made.cells = [changed for cell in made.cells for changed in _changed(cell, wanted, right, answers)]
+    return made
+
+
+def _changed(
+    cell: NotebookNode, wanted: SampleNotebook, right: dict[str, str], answers: dict[str, _Answer]
+) -> list[NotebookNode]:
+    """What stands in the place of one cell of the released notebook."""
+    name = grade_id(cell)
+    if not name:
+        return [cell]
+    answer = answers.get(name)
+    cell.source = answer.source if answer else right.get(name, cell.source)
+    before = [nodes.cell(Kind.CODE, source) for source in (answer.extra if answer else ())]
+    if name in wanted.insert:
+        before.append(nodes.cell(Kind.CODE, wanted.insert[name]))
+    if name in wanted.delete:
+        return before
+    if name in wanted.retype:
+        retyped = nodes.cell(wanted.retype[name], cell.source)
+        retyped.metadata = cell.metadata
+        return [*before, retyped]
+    if name in wanted.duplicate:
+        twin = nodes.copied(cell)
+        twin.id = f"{cell.id}-again"[:64]
+        return [*before, cell, twin]
+    return [*before, cell]
+
+
+def _bank_answers(file: str) -> dict[str, _Answer]:
+    """The cells of a bank answer: ``# %% extra`` and ``# %% solution NAME`` each begin one."""
+    text = (course.root() / BANK / file).read_text(encoding="utf-8")
+    found: dict[str, _Answer] = {}
+    extra: list[str] = []
+    for part in text.split("# %% ")[1:]:
+        head, _, source = part.partition("\n")
+        kind, _, name = head.strip().partition(" ")
+        if kind == "solution":
+            found[name] = _Answer(source.strip(), tuple(extra))
+            extra = []
+        else:
+            extra.append(source.strip())
+    return found
+
+
+def _without_markers(source: str) -> str:
+    return "\n".join(line for line in source.split("\n") if not line.strip().startswith("### "))

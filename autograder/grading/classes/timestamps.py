@@ -1,0 +1,98 @@
+"""When a submission was handed in: nbgrader's file of that, read without trusting it."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime, timedelta
+from typing import TYPE_CHECKING
+
+from nbgrader.utils import parse_utc
+
+from autograder.grading.classes.class_directory import STATE_NAME
+from autograder.grading.collecting.records import CollectedRecords
+from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+TIMESTAMP = "timestamp.txt"
+"""The file's name, beside the notebooks."""
+SECRET = "submission_secret.txt"
+"""By which nbgrader's exchange finds whose feedback a page is; it lies beside the notebooks that came that way."""
+_LONGEST = 200
+_HEX = frozenset("0123456789abcdef")
+_EARLIEST = datetime(2024, 5, 23)
+"""The day on which ROS 2 Jazzy came out."""
+_AHEAD = timedelta(days=1)
+"""How much another machine's clock may be ahead."""
+
+
+def read_timestamp(folder: Path) -> str:
+    """What is written in the file; empty where there is none, or where it is no ordinary file.
+
+    Where work is collected with ``autograder collect``, the file counts only as far as that has written it: a student
+    can put one into what is handed in.
+    """
+    records = CollectedRecords(folder.parent.parent.parent / STATE_NAME)
+    if records.is_used:
+        history = records.get(folder.name, folder.parent.name)
+        return timestamp_text(history.when) if history and history.when else ""
+    try:
+        return read_bytes(folder / TIMESTAMP, most=_LONGEST).decode("ascii", "replace").strip()
+    except UnreadableSubmission:
+        return ""
+
+
+def companions(folder: Path) -> dict[str, bytes]:
+    """The files of nbgrader's that follow a submission into ``autograded`` and ``feedback``, by name.
+
+    Without them `nbgrader release_feedback` does not know whom a page is for.
+    """
+    found = {}
+    stamp = read_timestamp(folder)
+    if stamp:
+        found[TIMESTAMP] = stamp.encode()
+    try:
+        secret = read_bytes(folder / SECRET, most=_LONGEST).decode("ascii", "replace").strip()
+    except UnreadableSubmission:
+        secret = ""
+    if secret and _HEX.issuperset(secret):
+        found[SECRET] = secret.encode()
+    return found
+
+
+def is_not_believed(folder: Path) -> bool:
+    """Whether a submission brings a file of its own along in a class whose times come from ``autograder collect``."""
+    records = CollectedRecords(folder.parent.parent.parent / STATE_NAME)
+    return (
+        records.is_used
+        and records.get(folder.name, folder.parent.name) is None
+        and (folder / TIMESTAMP).exists()
+    )
+
+
+def timestamp_text(when: datetime) -> str:
+    """A time as nbgrader writes it.
+
+    Args:
+        when: In UTC.
+    """
+    return f"{when:%Y-%m-%d %H:%M:%S.%f} UTC"
+
+
+def handed_in_at(folder: Path) -> datetime | None:
+    """When the work in a folder was handed in, in UTC; None where nobody wrote it down.
+
+    Raises:
+        ValueError: What was written down is no time, or one at which nobody can have handed in anything.
+    """
+    stamp = read_timestamp(folder)
+    try:
+        at: datetime | None = parse_utc(stamp) if stamp else None
+    except (ValueError, OverflowError) as error:
+        raise ValueError(f"{folder / TIMESTAMP} holds no time: {stamp[:60]!r}") from error
+    if at is not None and not _EARLIEST <= at <= datetime.now(tz=UTC).replace(tzinfo=None) + _AHEAD:
+        raise ValueError(
+            f"{folder / TIMESTAMP} says {stamp[:60]}, when nobody can have handed in anything for this course: "
+            "write the right time into it, or remove it"
+        )
+    return at

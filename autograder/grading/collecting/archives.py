@@ -1,0 +1,221 @@
+"""Reading zips and folders without believing them: nothing is ever extracted, only read up to a limit.
+
+A zip may name places outside of itself, be a link, want a password, or unpack to more than any disk holds. Here a
+file's name is only text, its bytes are read into memory as far as a notebook may go, and whatever cannot be taken has
+a reason.
+"""
+
+from __future__ import annotations
+
+import functools
+import io
+import os
+import stat
+import struct
+import zipfile
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
+
+from autograder.grading.rebuilding.submission import MAX_BYTES, UnreadableSubmission, read_bytes
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+MOST_FILES = 20_000
+"""In one archive or folder; a class of a thousand has a few thousand."""
+_MOST_UNPACKED = 4_000_000_000
+"""Bytes that one archive may unpack to, as far as it says so itself."""
+_LARGEST_LIST = 30_000_000
+"""Bytes of an archive's list of files, which Python reads whole before anybody can count them."""
+_LARGEST_LIST_WITHIN = 300_000
+"""The same for an archive that a student has handed in."""
+_MARK_OF_THE_END = b"PK\x05\x06"
+_NOBODYS = ("__MACOSX", ".git", ".ipynb_checkpoints", "__pycache__", ".DS_Store")
+
+
+class NotTaken(ValueError):
+    """A file or archive cannot be taken; the message says why."""
+
+
+@dataclass(frozen=True)
+class File:
+    """A file of an archive or folder that can be read.
+
+    Attributes:
+        source: The archive, or the folder that the named folder or file lies in.
+        parts: Its path in there, without anything that leads upwards; of what lies in an archive that a student has
+            handed in, the path of that archive.
+        read: Reads it, up to the limit of a notebook; raises :class:`NotTaken`.
+        inner: The path within an archive that a student has handed in: the student chose it.
+    """
+
+    source: Path
+    parts: tuple[str, ...]
+    read: Callable[[], bytes]
+    inner: tuple[str, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """How messages call it."""
+        parts = (*self.parts, *self.inner)
+        return "/".join(parts if self.source.is_dir() else (self.source.name, *parts))
+
+    @property
+    def name(self) -> str:
+        """The name of the file itself."""
+        return (*self.parts, *self.inner)[-1]
+
+
+@dataclass(frozen=True)
+class NotPlaced:
+    """Something that was not put into the class.
+
+    Attributes:
+        label: What it is.
+        reason: Why, and what to do.
+    """
+
+    label: str
+    reason: str
+
+
+def files_of(source: Path) -> Iterator[File | NotPlaced]:
+    """The files of an archive, of a folder, or the file itself.
+
+    Args:
+        source: What the instructor named. Links are followed there and nowhere below.
+    """
+    source = source.absolute()
+    if source.is_dir():
+        yield from _of_folder(source)
+        return
+    if source.suffix.lower() != ".zip":
+        yield File(source.parent, (source.name,), functools.partial(_read_file, source))
+        return
+    try:
+        file = source.open("rb")
+    except OSError as error:
+        yield NotPlaced(source.name, f"it cannot be read: {error.strerror}")
+    else:
+        yield from _of_zip(source, (), file, _LARGEST_LIST)
+
+
+def within(file: File) -> Iterator[File | NotPlaced]:
+    """The files of an archive that a student has handed in; archives in it are not opened."""
+    try:
+        data = file.read()
+    except NotTaken as error:
+        yield NotPlaced(file.label, str(error))
+        return
+    yield from _of_zip(file.source, file.parts, io.BytesIO(data), _LARGEST_LIST_WITHIN)
+
+
+def _of_folder(source: Path) -> Iterator[File | NotPlaced]:
+    count = 0
+    for folder, folders, names in os.walk(source):
+        folders[:] = sorted(name for name in folders if name not in _NOBODYS)
+        for name in sorted(names):
+            path = Path(folder) / name
+            if name in _NOBODYS or name.startswith("._"):
+                continue
+            count += 1
+            if count > MOST_FILES:
+                yield NotPlaced(
+                    source.name, f"it has more than {MOST_FILES} files; the others were not looked at"
+                )
+                return
+            yield File(
+                source.parent, path.relative_to(source.parent).parts, functools.partial(_read_file, path)
+            )
+        for name in folders:
+            if (Path(folder) / name).is_symlink():
+                yield NotPlaced(str((Path(folder) / name).relative_to(source.parent)), "it is a link")
+
+
+def _read_file(path: Path) -> bytes:
+    try:
+        return read_bytes(path)
+    except UnreadableSubmission as error:
+        raise NotTaken(str(error)) from error
+
+
+def _of_zip(
+    source: Path, above: tuple[str, ...], file: BinaryIO, largest_list: int
+) -> Iterator[File | NotPlaced]:
+    label = "/".join((source.name, *above))
+    try:
+        _check_list(file, largest_list)
+        archive = zipfile.ZipFile(file)
+        entries = [entry for entry in archive.infolist() if not entry.is_dir()]
+    except (NotTaken, zipfile.BadZipFile, ValueError, NotImplementedError, OSError) as error:
+        yield NotPlaced(label, f"it is no zip file that can be read: {error}")
+        return
+    if len(entries) > MOST_FILES or sum(entry.file_size for entry in entries) > _MOST_UNPACKED:
+        yield NotPlaced(
+            label,
+            f"it has {len(entries)} files that unpack to {sum(e.file_size for e in entries) / 1e6:.0f} MB; the limits "
+            f"are {MOST_FILES} files and {_MOST_UNPACKED / 1e6:.0f} MB",
+        )
+        return
+    for entry in entries:
+        name = _name_of(entry)
+        parts = tuple(part for part in name.replace("\\", "/").split("/") if part not in ("", "."))
+        if any(part in _NOBODYS or part.startswith("._") for part in parts):
+            continue
+        reason = _reason_against(entry, name, parts)
+        if reason:
+            yield NotPlaced(f"{label}/{name}", reason)
+        else:
+            # The archive stays open as long as any of its files may be read.
+            read = functools.partial(_read_entry, archive, entry)
+            yield File(source, above, read, parts) if above else File(source, parts, read)
+
+
+def _check_list(file: BinaryIO, most: int) -> None:
+    """Refuse a list of files that would fill the memory before anybody could count them."""
+    size = file.seek(0, os.SEEK_END)
+    file.seek(max(0, size - 65_557))
+    tail = file.read()
+    place = tail.rfind(_MARK_OF_THE_END)
+    if place < 0 or len(tail) < place + 16:
+        raise NotTaken("its end is missing")
+    (listed,) = struct.unpack_from("<I", tail, place + 12)
+    if listed > most:
+        raise NotTaken(f"its list of files has {listed / 1e6:.0f} MB")
+    file.seek(0)
+
+
+def _name_of(entry: zipfile.ZipInfo) -> str:
+    """The name as it was meant: many programs write UTF-8 and do not say so."""
+    if entry.flag_bits & 0x800:
+        return entry.filename
+    try:
+        return entry.filename.encode("cp437").decode("utf-8")
+    except UnicodeError:
+        return entry.filename
+
+
+def _reason_against(entry: zipfile.ZipInfo, name: str, parts: tuple[str, ...]) -> str:
+    mode = entry.external_attr >> 16
+    if not parts or ".." in parts or name.startswith(("/", "\\")) or (parts and parts[0].endswith(":")):
+        return "its name leads out of the archive"
+    if stat.S_IFMT(mode) not in (0, stat.S_IFREG):
+        return "it is a link, or no ordinary file"
+    if entry.flag_bits & 0x1:
+        return "it is encrypted; ask for it without a password"
+    if entry.file_size > MAX_BYTES and parts[-1].lower().endswith((".ipynb", ".zip")):
+        return f"it unpacks to {entry.file_size / 1e6:.0f} MB; the limit is {MAX_BYTES / 1e6:.0f} MB"
+    return ""
+
+
+def _read_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
+    try:
+        with archive.open(entry) as file:
+            data = file.read(MAX_BYTES + 1)
+    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, RuntimeError, NotImplementedError) as error:
+        raise NotTaken(f"it cannot be unpacked: {error}") from error
+    if len(data) > MAX_BYTES:
+        raise NotTaken(f"it unpacks to more than {MAX_BYTES / 1e6:.0f} MB")
+    return data

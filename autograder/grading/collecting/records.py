@@ -1,0 +1,107 @@
+"""What was collected, written down beside the class: only times that stand here are believed from then on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import datetime  # noqa: TC003  (msgspec reads the annotations)
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder.grading.entering.journal import write_whole
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+FOLDER = "collected"
+
+
+@dataclass(frozen=True)
+class Collected:
+    """One notebook that was collected.
+
+    Attributes:
+        notebook: Its name in the class.
+        content: The hash of its bytes.
+        source: Where it came from, for messages.
+        collected: When that was, in UTC.
+        when: When it was handed in, in UTC; None where nothing says so.
+        order: Grows with later files where there are no times.
+        late: Whether the LMS marks it as late.
+        lms: The system that it came from, empty for plain folders.
+        number: The student's number there: for Canvas of the student, for Moodle of the student in this assignment.
+        name: The student's name there.
+        file: The name of the file there, which its feedback goes back under.
+    """
+
+    notebook: str
+    content: str
+    source: str
+    collected: datetime
+    when: datetime | None = None
+    order: int = 0
+    late: bool = False
+    lms: str = ""
+    number: str = ""
+    name: str = ""
+    file: str = ""
+
+
+@dataclass(frozen=True)
+class History:
+    """What was collected of one student for one assignment.
+
+    Attributes:
+        now: What lies in ``submitted``, by notebook.
+        before: What was there before it, the oldest first; its bytes are kept.
+    """
+
+    now: dict[str, Collected]
+    before: tuple[Collected, ...] = ()
+
+    @property
+    def when(self) -> datetime | None:
+        """When the last of it was handed in, in UTC; None where nothing says so."""
+        return max((one.when for one in self.now.values() if one.when is not None), default=None)
+
+
+class CollectedRecords:
+    """One file a submission, and the notebooks that were replaced.
+
+    Args:
+        state: The class's folder of the autograder's own files.
+    """
+
+    def __init__(self, state: Path) -> None:
+        self._folder = state / FOLDER
+
+    @property
+    def is_used(self) -> bool:
+        """Whether anything was ever collected into this class."""
+        return self._folder.is_dir()
+
+    def get(self, assignment: str, student: str) -> History | None:
+        """What was collected; None where nothing was, or where the file is damaged."""
+        try:
+            return msgspec.json.decode(self._path(assignment, student).read_bytes(), type=History)
+        except (OSError, msgspec.MsgspecError):
+            return None
+
+    def put(self, assignment: str, student: str, history: History) -> None:
+        """Write down what was collected.
+
+        Raises:
+            OSError: It could not be written.
+        """
+        write_whole(self._path(assignment, student), msgspec.json.encode(history))
+
+    def keep(self, assignment: str, student: str, content: str, data: bytes) -> None:
+        """Keep the bytes of a notebook that is replaced.
+
+        Raises:
+            OSError: They could not be written.
+        """
+        write_whole(self._folder / assignment / student / f"{content[:16]}.ipynb", data)
+
+    def _path(self, assignment: str, student: str) -> Path:
+        return self._folder / assignment / f"{student}.json"

@@ -1,0 +1,154 @@
+"""What lies a little beside its place in ``submitted``: put there where that is certain, named where it is not."""
+
+from __future__ import annotations
+
+import contextlib
+import unicodedata
+from collections import defaultdict
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, Refused
+from autograder.grading.collecting.forms import base_and_number
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@dataclass
+class Tidied:
+    """What was found.
+
+    Attributes:
+        notices: What was put right or is worth knowing.
+        refused: What somebody has to put right.
+    """
+
+    notices: list[str] = field(default_factory=list)
+    refused: list[Refused] = field(default_factory=list)
+
+
+def tidy(directory: ClassDirectory) -> Tidied:
+    """Put notebooks and folders into their place: the content stays, and nothing is written over.
+
+    Args:
+        directory: The class, locked by this process.
+    """
+    found = Tidied()
+    submitted = directory.path / "submitted"
+    notebooks = {name: directory.notebooks(name) for name in directory.assignments()}
+    for entry in _entries(submitted):
+        if _is_folder(entry):
+            student = _composed(entry, found)
+            _tidy_student(student, notebooks, found)
+        elif _is_work(entry):
+            found.refused.append(
+                Refused(
+                    entry,
+                    f"whose it is cannot be seen: put it into {submitted}/<student>/<assignment>/, or hand it to "
+                    "`autograder collect`",
+                )
+            )
+    alike = defaultdict(list)
+    for entry in _entries(submitted):
+        if _is_folder(entry):
+            alike[unicodedata.normalize("NFC", entry.name).casefold()].append(entry.name)
+    found.notices += [
+        f"{' and '.join(names)} are two students, told apart by capitals alone"
+        for names in alike.values()
+        if names[1:]
+    ]
+    return found
+
+
+def _composed(folder: Path, found: Tidied) -> Path:
+    """A name as everybody else writes it: a Mac stores é as e and an accent."""
+    composed = folder.with_name(unicodedata.normalize("NFC", folder.name))
+    if composed.name == folder.name:
+        return folder
+    if composed.exists():
+        found.refused.append(
+            Refused(
+                folder,
+                f"its letters are in decomposed form, and {composed.name} is there, too: put them together",
+            )
+        )
+        return folder
+    with contextlib.suppress(OSError):
+        folder.rename(composed)
+        found.notices.append(f"the folder {composed.name} was renamed: its letters were in decomposed form")
+        return composed
+    return folder
+
+
+def _tidy_student(student: Path, notebooks: dict[str, list[str]], found: Tidied) -> None:
+    targets = {
+        name.casefold(): (assignment, name) for assignment, names in notebooks.items() for name in names
+    }
+    for entry in _entries(student):
+        if _is_folder(entry):
+            if entry.name in notebooks:
+                _tidy_assignment(entry, notebooks[entry.name], found)
+            continue
+        if not _is_work(entry):
+            continue
+        target = targets.get(base_and_number(entry.stem)[0].casefold())
+        place = student / target[0] / f"{target[1]}{SUFFIX}" if target else None
+        if place is None or place.exists() or entry.suffix.lower() != SUFFIX:
+            beside = f"; {place} is graded" if place and place.exists() else ""
+            found.refused.append(
+                Refused(
+                    entry,
+                    f"it lies one folder too high, where nothing is graded{beside}: move it, or remove it",
+                )
+            )
+        else:
+            _move(entry, place, found)
+
+
+def _tidy_assignment(folder: Path, names: list[str], found: Tidied) -> None:
+    expected = {name.casefold(): name for name in names}
+    others = [
+        entry
+        for entry in _entries(folder)
+        if _is_work(entry) and not (entry.suffix == SUFFIX and entry.stem in names)
+    ]
+    for entry in others:
+        base = base_and_number(entry.stem)[0].casefold()
+        name = expected.get(base)
+        alike = [other for other in others if base_and_number(other.stem)[0].casefold() == base]
+        place = folder / f"{name}{SUFFIX}"
+        label = f"{folder.parent.name}/{folder.name}/{entry.name}"
+        if name and entry.suffix.lower() == SUFFIX and not place.exists() and len(alike) == 1:
+            _move(entry, place, found)
+        elif (name and place.exists()) or (
+            not name and all((folder / f"{one}{SUFFIX}").exists() for one in names)
+        ):
+            found.notices.append(f"{label} was left out: the notebook beside it is graded")
+        elif name or entry.suffix.lower() == ".zip":
+            found.refused.append(Refused(entry, f"it is not graded: put the notebook that counts at {place}"))
+
+
+def _move(entry: Path, place: Path, found: Tidied) -> None:
+    label = f"{place.parent.parent.name}/{place.parent.name}/{place.name}"
+    try:
+        place.parent.mkdir(exist_ok=True)
+        entry.rename(place)
+    except OSError as error:
+        found.refused.append(Refused(entry, f"it belongs at {place} and cannot be moved: {error.strerror}"))
+    else:
+        found.notices.append(f"{label} was called {entry.relative_to(place.parent.parent)} and is graded")
+
+
+def _entries(folder: Path) -> list[Path]:
+    with contextlib.suppress(OSError):
+        return sorted(entry for entry in folder.iterdir() if not entry.name.startswith("."))
+    return []
+
+
+def _is_folder(entry: Path) -> bool:
+    return entry.is_dir() and not entry.is_symlink()
+
+
+def _is_work(entry: Path) -> bool:
+    return entry.is_file() and not entry.is_symlink() and entry.suffix.lower() in (SUFFIX, ".zip")

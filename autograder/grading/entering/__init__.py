@@ -1,0 +1,1 @@
+"""What came of tasks, entered into journal and gradebook by one writer."""

@@ -1,0 +1,162 @@
+"""A graded submission as ``nbgrader autograde`` leaves it behind, made in this process and once a notebook.
+
+nbgrader's application reads, validates and writes every notebook twice and opens the gradebook a dozen times. What is
+here does the same in a twentieth of the time, for a class whose configuration is the one that ``new-class`` writes. A
+class that was configured otherwise goes through nbgrader itself (:mod:`autograder.grading.entering.writer`).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+from nbformat.v4 import rwbase
+from nbgrader.preprocessors import LimitOutput
+from nbgrader.utils import compute_checksum, determine_grade, is_grade, is_solution, is_task
+
+from autograder.grading.classes.class_directory import SUFFIX
+from autograder.grading.classes.timestamps import companions
+from autograder.grading.entering.gradebook import NotebookEntry
+from autograder.grading.preprocessors import with_results
+from autograder.grading.rebuilding.task_making import rebuilt_notebook, task_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from nbformat import NotebookNode
+    from traitlets.config import Config
+
+    from autograder.boxes.execution import Execution
+    from autograder.grading.classes.class_directory import ClassDirectory, Submission
+    from autograder.grading.task import Task
+
+_READ_ONLY = 0o444
+
+_USUAL_AUTOGRADE = {
+    "exporter_class": "autograder.grading.exporter.SubmissionExporter",
+    "pre_convert_hook": "autograder.grading.hooks.before_autograde",
+    "sanitize_preprocessors": ["nbgrader.preprocessors.CheckCellMetadata"],
+    "autograde_preprocessors": [
+        "autograder.grading.preprocessors.WireExecute",
+        "nbgrader.preprocessors.LimitOutput",
+        "nbgrader.preprocessors.SaveAutoGrades",
+        "nbgrader.preprocessors.AssignLatePenalties",
+        "nbgrader.preprocessors.CheckCellMetadata",
+    ],
+}
+_KNOWN_OF_COURSE = {"root", "db_url"}
+_CHANGES_CONVERSION = (
+    "BaseConverter",
+    "NbConvertBase",
+    "Exporter",
+    "NotebookExporter",
+    "SubmissionExporter",
+    "NbGraderPreprocessor",
+    "SaveAutoGrades",
+    "FilesWriter",
+    "WriterBase",
+)
+
+
+class ChangedMeanwhile(RuntimeError):
+    """The submission is not any more what was executed; the message says what to do."""
+
+
+def is_usual(config: Config) -> bool:
+    """Whether a class converts submissions as ``new-class`` has it."""
+    return (
+        dict(config.Autograde) == _USUAL_AUTOGRADE
+        and set(config.CourseDirectory) <= _KNOWN_OF_COURSE
+        and not any(config.get(section) for section in _CHANGES_CONVERSION)
+    )
+
+
+def convert(
+    directory: ClassDirectory,
+    submission: Submission,
+    results: Sequence[tuple[Task, Execution]],
+    folder: Path,
+) -> dict[str, NotebookEntry]:
+    """Write the notebooks of a submission with their results, and say what the gradebook has to hold.
+
+    Args:
+        directory: The class.
+        submission: What was executed.
+        results: A pair for each notebook of the assignment.
+        folder: Where the notebooks go; made here, and not there before.
+
+    Returns:
+        By notebook.
+
+    Raises:
+        ChangedMeanwhile: A notebook was replaced while it was executed.
+        OSError: Something could not be written.
+    """
+    folder.mkdir(parents=True)
+    for name, data in directory.files(submission.assignment).items():
+        _write(folder / name, data)
+    write_companions(submission, folder)
+    entries = {}
+    for task, execution in results:
+        notebook = _graded(directory, submission, task, execution)
+        LimitOutput(config=directory.config).preprocess(notebook, {})
+        entries[task.notebook] = _entry(notebook)
+        _write(folder / f"{task.notebook}{SUFFIX}", _text(notebook))
+    return entries
+
+
+def write_companions(submission: Submission, folder: Path) -> None:
+    """Have nbgrader's files of when a submission came, and by which secret, follow it to a folder.
+
+    Raises:
+        OSError: They could not be written.
+    """
+    for name, data in companions(submission.folder).items():
+        (folder / name).unlink(missing_ok=True)
+        _write(folder / name, data)
+
+
+def _graded(
+    directory: ClassDirectory, submission: Submission, task: Task, execution: Execution
+) -> NotebookNode:
+    master = directory.master(submission.assignment, task.notebook)
+    rebuilt, problem = rebuilt_notebook(submission.folder / f"{task.notebook}{SUFFIX}", master)
+    now = task_of(directory, task.student, task.assignment, task.notebook, rebuilt.notebook, problem)
+    if now.key() != task.key():
+        raise ChangedMeanwhile(
+            f"{task.label} was changed while it was graded: grade it again to take the new one"
+        )
+    rebuilt.notebook.metadata["autograder"]["problem"] = problem
+    return with_results(rebuilt.notebook, task, execution)
+
+
+def _text(notebook: NotebookNode) -> bytes:
+    """The notebook as nbformat writes it, which takes pure Python to indent; ``notebook`` is changed."""
+    split: Any = rwbase.split_lines
+    strip: Any = rwbase.strip_transient
+    encoded = msgspec.json.encode(strip(split(notebook)), order="sorted")
+    return msgspec.json.format(encoded, indent=1) + b"\n"
+
+
+def _entry(notebook: NotebookNode) -> NotebookEntry:
+    """What nbgrader's SaveAutoGrades would enter."""
+    scores: dict[str, float | None] = {}
+    comments: dict[str, str | None] = {}
+    for cell in notebook.cells:
+        if is_grade(cell):
+            scores[cell.metadata.nbgrader.grade_id] = determine_grade(cell)[0]
+        if is_solution(cell) or is_task(cell):
+            comments[cell.metadata.nbgrader.grade_id] = _comment(cell)
+    return NotebookEntry(scores, comments)
+
+
+def _comment(cell: Any) -> str | None:
+    untouched = cell.metadata.nbgrader.get("checksum") == compute_checksum(cell)
+    return "No response." if untouched and not is_task(cell) else None
+
+
+def _write(path: Path, data: bytes) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(data)
+    path.chmod(_READ_ONLY)

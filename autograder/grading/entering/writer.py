@@ -1,0 +1,277 @@
+"""The one writer into gradebook, ``autograded/`` and ``feedback/``; everything in it fails closed."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import shutil
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from nbgrader.converters import BaseConverter, GenerateFeedback
+from nbgrader.coursedir import CourseDirectory
+from nbgrader.preprocessors import AssignLatePenalties
+from traitlets.config import Config
+
+from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, Submission
+from autograder.grading.classes.timestamps import handed_in_at
+from autograder.grading.entering import conversion, gradebook
+from autograder.grading.entering.nbgrader_guard import GuardedAutograde
+from autograder.grading.entering.points import scores_of
+from autograder.grading.entering.records import Records, Written
+from autograder.grading.errors import is_disk_full
+from autograder.grading.rebuilding import nodes
+from autograder.grading.returning import feedback
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from datetime import datetime
+
+    from autograder.boxes.execution import Execution
+    from autograder.grading.reporting.report import Row
+    from autograder.grading.task import Task
+
+
+class NotWritten(RuntimeError):
+    """The gradebook does not say what the judge said; the message says where."""
+
+
+class Writer:
+    """Writes results into gradebook, ``autograded/`` and ``feedback/`` of one class.
+
+    Args:
+        directory: The class, locked by this process.
+        records: Where it is noted what was written.
+    """
+
+    def __init__(self, directory: ClassDirectory, records: Records) -> None:
+        self._directory = directory
+        self._records = records
+        self._pages = feedback.FeedbackPages(directory)
+
+    def take_back(self, submissions: Sequence[Submission]) -> None:
+        """Remove what an earlier run left of these submissions: grades, converted notebooks, feedback."""
+        for submission in submissions:
+            self._records.forget(submission)
+            for step in ("autograded", "feedback"):
+                _remove(self._folder(step, submission))
+        pairs = [(submission.assignment, submission.student) for submission in submissions]
+        gradebook.reset(self._directory.gradebook_url, pairs)
+
+    def write(
+        self,
+        submission: Submission,
+        fingerprint: str,
+        results: Sequence[tuple[Task, Execution]],
+        rows: tuple[Row, ...],
+    ) -> None:
+        """Convert the submission and enter its grades.
+
+        Args:
+            submission: What was executed.
+            fingerprint: Of all that it was made from.
+            results: A pair for each notebook of the assignment.
+            rows: The same for the report.
+
+        Raises:
+            NotWritten: That failed, or the gradebook then says something else. The grades are zero then.
+            OSError: There is no room on the disk.
+        """
+        try:
+            with quiet(self._directory.state):
+                if conversion.is_usual(self._directory.config):
+                    self._convert_and_enter(submission, results)
+                else:
+                    _Autograde(submission, results, self._course()).convert()
+            self._verify(submission, results)
+        except NotWritten:
+            self.take_back([submission])
+            raise
+        except Exception as error:
+            self.take_back([submission])
+            raise NotWritten(f"{submission.student}/{submission.assignment}: {error}") from error
+        if any(execution.trouble for _, execution in results):
+            return  # the next run tries again
+        record = Written(
+            fingerprint=fingerprint,
+            keys={task.notebook: task.key() for task, _ in results},
+            scores={task.notebook: scores_of(task, execution) for task, execution in results},
+            rows=rows,
+            course=results[0][0].course if results else "",
+        )
+        self._records.put(submission, record)
+
+    def _convert_and_enter(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
+        """What nbgrader's conversion does. Notebooks first: without grades they are only files."""
+        folder = self._folder("autograded", submission)
+        _remove(folder)
+        entries = conversion.convert(self._directory, submission, results, folder)
+        url = self._directory.gradebook_url
+        has_due_date = gradebook.enter(
+            url, submission.assignment, submission.student, entries, handed_in_at(submission.folder)
+        )
+        if has_due_date:
+            self._assign_penalties(submission, [task.notebook for task, _ in results])
+
+    def enter_time(self, submission: Submission, at: datetime | None) -> None:
+        """Enter when a submission that is graded already was handed in, and what being late costs now.
+
+        Args:
+            submission: Its grades stay as they are.
+            at: In UTC; None where that is in the gradebook already.
+        """
+        names = submission.assignment, submission.student
+        with quiet(self._directory.state):
+            if at is not None:
+                gradebook.enter_time(self._directory.gradebook_url, *names, at)
+                conversion.write_companions(submission, self._folder("autograded", submission))
+            steps = self._directory.config.Autograde.autograde_preprocessors
+            if any(AssignLatePenalties.__name__ in str(step) for step in steps):
+                self._assign_penalties(submission, self._directory.notebooks(submission.assignment))
+
+    def _assign_penalties(self, submission: Submission, notebooks: Sequence[str]) -> None:
+        """Have nbgrader say what being late costs: a class may have a rule of its own."""
+        for notebook in notebooks:
+            names = {
+                "notebook": notebook,
+                "assignment": submission.assignment,
+                "student": submission.student,
+                "db_url": self._directory.gradebook_url,
+            }
+            AssignLatePenalties(config=self._directory.config).preprocess(
+                nodes.notebook([], {}), {"nbgrader": names}
+            )
+
+    def write_feedback(self, submission: Submission) -> None:
+        """Make the HTML pages that go back to a student; ask ``Records.has_pages`` afterwards.
+
+        Raises:
+            OSError: There is no room on the disk.
+        """
+        with quiet(self._directory.state):
+            try:
+                if feedback.is_usual(self._directory.config):
+                    self._pages.write(submission, self._directory.notebooks(submission.assignment))
+                    conversion.write_companions(submission, self._folder("feedback", submission))
+                else:
+                    _Feedback(submission, self._course()).convert()
+            except Exception as error:
+                if is_disk_full(error):
+                    raise
+                logging.getLogger("traitlets").exception("no page for %s", submission.folder)
+
+    def _verify(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
+        found = gradebook.scores_of_student(
+            self._directory.gradebook_url, submission.assignment, submission.student
+        )
+        for task, execution in results:
+            for name, score in scores_of(task, execution).items():
+                if found.get(task.notebook, {}).get(name) != score:
+                    raise NotWritten(f"{task.label}: the gradebook does not have {score:g} points for {name}")
+
+    def _course(self) -> CourseDirectory:
+        return CourseDirectory(config=self._directory.config)
+
+    def _folder(self, step: str, submission: Submission) -> Path:
+        return self._directory.path / step / submission.student / submission.assignment
+
+
+class _Remembering(BaseConverter):
+    """A conversion that remembers what went wrong, which nbgrader only logs."""
+
+    cause: BaseException | None = None
+
+    def convert_single_notebook(self, notebook_filename: str) -> None:
+        """Convert one notebook."""
+        try:
+            super().convert_single_notebook(notebook_filename)
+        except Exception as error:
+            self.cause = error
+            raise
+
+    def convert(self) -> None:
+        """Convert the submission.
+
+        Raises:
+            Exception: What nbgrader, or a step of it, ran into.
+        """
+        try:
+            self.start()
+        except Exception as error:
+            raise (self.cause or error) from error
+
+
+class _Autograde(_Remembering, GuardedAutograde):
+    """nbgrader's conversion of one submission.
+
+    It expects the notebooks of the assignment, not those that happen to be in the folder: a notebook that was
+    not handed in is graded, with zero.
+    """
+
+    def __init__(
+        self, submission: Submission, results: Sequence[tuple[Task, Execution]], course: CourseDirectory
+    ) -> None:
+        course.assignment_id, course.student_id = submission.assignment, submission.student
+        super().__init__(coursedir=course, config=course.config)
+        self.force = True
+        self.finished = {task.key(): execution for task, execution in results}
+        self._submission = submission
+        self._expected = [str(submission.folder / f"{task.notebook}{SUFFIX}") for task, _ in results]
+
+    def init_notebooks(self) -> None:
+        """Say what is to be converted."""
+        self.assignments = {str(self._submission.folder): self._expected}
+        self.notebooks: list[str] = []
+
+
+class _Feedback(_Remembering, GenerateFeedback):
+    """nbgrader's feedback for one submission."""
+
+    def __init__(self, submission: Submission, course: CourseDirectory) -> None:
+        course.assignment_id, course.student_id = submission.assignment, submission.student
+        config = Config(course.config)
+        config.HTMLExporter.template_name = "feedback"
+        super().__init__(coursedir=course, config=config)
+        self.force = True
+        self._submission = submission
+
+    def init_notebooks(self) -> None:
+        """Say what is to be converted."""
+        folder = Path(self._format_source(self._submission.assignment, self._submission.student))
+        self.notebooks: list[str] = []
+        self.assignments = {str(folder): sorted(str(path) for path in folder.glob(f"*{SUFFIX}"))}
+
+
+class _LogFile(logging.FileHandler):
+    """A log that gives up in silence: on a full disk its own complaints would drown the one that counts."""
+
+    def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802  (logging's name)
+        """Do nothing."""
+
+
+@contextlib.contextmanager
+def quiet(state: Path) -> Iterator[None]:
+    """Nbgrader's words go to a file beside the class, not between the lines of a progress bar."""
+    logger = logging.getLogger("traitlets")
+    handler = _LogFile(state / "nbgrader.log", delay=True)
+    handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
+    before, propagates = list(logger.handlers), logger.propagate
+    logger.handlers[:] = [handler]
+    logger.propagate = False
+    try:
+        with warnings.catch_warnings():
+            # nbgrader 0.9 is written for an older SQLAlchemy, which had not much to say.
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        logger.handlers[:] = before
+        logger.propagate = propagates
+        handler.close()
+
+
+def _remove(folder: Path) -> None:
+    """Remove a folder of read-only files."""
+    if folder.is_dir():
+        folder.chmod(0o700)
+        shutil.rmtree(folder)

@@ -1,0 +1,155 @@
+"""Writing what goes back to an LMS into the class's folder ``export``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.collecting.records import CollectedRecords
+from autograder.grading.entering.journal import write_whole
+from autograder.grading.errors import GradingError, clear_disk_errors
+from autograder.grading.exporting import feedback_zips, forms, sheets
+from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
+from autograder.grading.table.class_table import ClassTable, read_table
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+TO = ("canvas", "moodle", "csv", "xlsx")
+
+
+@dataclass(frozen=True)
+class Exported:
+    """What was written.
+
+    Attributes:
+        files: Each file, and what it is for.
+        notices: What is worth knowing before it is uploaded.
+    """
+
+    files: tuple[tuple[Path, str], ...]
+    notices: tuple[str, ...]
+
+
+def export(
+    path: Path,
+    to: str,
+    *,
+    assignments: Sequence[str] = (),
+    into: Path | None = None,
+    folder: Path | None = None,
+) -> Exported:
+    """Write points and feedback in the form of an LMS.
+
+    Args:
+        path: The class directory.
+        to: One of :data:`TO`.
+        assignments: Only these; all that somebody has handed in by default.
+        into: A list that the LMS has exported, to be filled in; for one assignment.
+        folder: Where to write; ``export`` in the class by default.
+
+    Raises:
+        GradingError: There is nothing to export, or the list cannot be filled in.
+    """
+    directory = ClassDirectory(path)
+    with clear_disk_errors(directory.path):
+        table = read_table(directory)
+        wanted = _assignments(table, assignments)
+        folder = folder or directory.path / "export"
+        notices: list[str] = []
+        written = []
+        parts = (
+            _filled(table, to, wanted, into, notices)
+            if into
+            else _files(directory, table, to, wanted, notices)
+        )
+        for name, data, purpose in parts:
+            write_whole(folder / name, data)
+            written.append((folder / name, purpose))
+    if table.waiting:
+        notices.append(f"{len(table.waiting)} results wait for a person and are exported as they are now")
+    if table.stale:
+        notices.append(
+            f"{len(table.stale)} submissions came or changed after the last grading, or could not be graded: "
+            f"{', '.join(table.stale[:5])}{' …' if len(table.stale) > 5 else ''}. Grade first: autograder grade {path}"
+        )
+    return Exported(tuple(written), tuple(notices))
+
+
+def _assignments(table: ClassTable, wanted: Sequence[str]) -> list[str]:
+    if not table.assignments:
+        raise GradingError("Nothing was handed in yet, so there is nothing to export.")
+    for name in wanted:
+        if name not in table.assignments:
+            raise GradingError(f"Nobody has handed in {name}. There is: {', '.join(table.assignments)}.")
+    return list(wanted) or table.assignments
+
+
+def _files(
+    directory: ClassDirectory, table: ClassTable, to: str, assignments: Sequence[str], notices: list[str]
+) -> Iterator[tuple[str, bytes, str]]:
+    records = CollectedRecords(directory.state)
+    if to == "csv":
+        yield "students.csv", sheets.as_csv(table, assignments), "a line for each student"
+    elif to == "xlsx":
+        yield "grades.xlsx", sheets.as_xlsx(table, assignments), "sheets of students and of exercises"
+    elif to == "canvas":
+        text = forms.canvas(table, records, assignments)
+        yield "canvas.csv", text.encode(), "Canvas: Grades, Import"
+    else:
+        text = forms.moodle_gradebook(table, assignments)
+        yield (
+            "moodle.csv",
+            text.encode(),
+            "Moodle: Grades, Import, CSV file; map Email address and the assignments",
+        )
+        for assignment in assignments:
+            text, unknown = forms.moodle_worksheet(table, records, assignment)
+            yield (
+                f"moodle-{assignment}.csv",
+                text.encode(),
+                f"Moodle: the assignment {assignment}, Upload grading worksheet",
+            )
+            if unknown:
+                notices.append(
+                    f"Moodle's numbers for {assignment} are not known of {', '.join(unknown)}: they are in moodle.csv "
+                    f"only. Download the grading worksheet and say --into it"
+                )
+    if to not in feedback_zips.FORMS:
+        return
+    for assignment in assignments:
+        data, unknown = feedback_zips.feedback_zip(directory, table, records, assignment, to)
+        way = "Upload multiple feedback files in a zip" if to == "moodle" else "Upload submissions"
+        yield (
+            f"feedback-{to}-{assignment}.zip",
+            data,
+            f"{to.capitalize()}: the assignment {assignment}, {way}",
+        )
+        if unknown:
+            notices.append(
+                f"no feedback on {assignment} in the zip for {', '.join(unknown)}: their work was not collected from "
+                f"{to.capitalize()}, so nothing says under which name it takes the page"
+            )
+
+
+def _filled(
+    table: ClassTable, to: str, assignments: Sequence[str], into: Path, notices: list[str]
+) -> Iterator[tuple[str, bytes, str]]:
+    if len(assignments) != 1:
+        raise GradingError(
+            f"Say which assignment goes into {into}: --assignment NAME ({', '.join(assignments)})."
+        )
+    try:
+        data = read_bytes(into)
+    except UnreadableSubmission as error:
+        raise GradingError(f"{into} cannot be read: {error}") from error
+    filled, strangers = forms.filled_in(data, table, assignments[0])
+    if strangers:
+        notices.append(f"nobody in the class is called {', '.join(strangers)}: their lines stay as they were")
+    yield (
+        into.name,
+        filled,
+        f"{to.capitalize()}: the list that it exported, with the points of {assignments[0]}",
+    )

@@ -1,0 +1,65 @@
+"""Feedback as one zip in the form in which an LMS takes files back: each page under the name of what it answers.
+
+Moodle (*Upload multiple feedback files in a zip*) takes a page by the folder ``<name>_<number>_assignsubmission_file``;
+Canvas (*Upload submissions*) by the numbers of student and file in the name that it gave the file.
+"""
+
+from __future__ import annotations
+
+import io
+import unicodedata
+import zipfile
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
+
+from autograder.grading.exporting.forms import known_there
+
+if TYPE_CHECKING:
+    from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.collecting.records import CollectedRecords
+    from autograder.grading.table.class_table import ClassTable
+
+FORMS = ("moodle", "canvas")
+_MADE = (2000, 1, 1, 0, 0, 0)
+
+
+def feedback_zip(
+    directory: ClassDirectory, table: ClassTable, records: CollectedRecords, assignment: str, lms: str
+) -> tuple[bytes, list[str]]:
+    """The pages of one assignment.
+
+    Args:
+        directory: The class.
+        table: The same.
+        records: What was collected.
+        assignment: Whose feedback.
+        lms: One of :data:`FORMS`.
+
+    Returns:
+        The zip, and the students who have a page but whose name in that LMS is not known.
+    """
+    data = io.BytesIO()
+    unknown = []
+    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
+        for student in table.students:
+            pages = sorted((directory.path / "feedback" / student / assignment).glob("*.html"))
+            there = known_there(records, assignment, student, lms)
+            number = there.number if there else table.roster.students[student].lms.get(lms, "")
+            if not pages:
+                continue
+            if not number or (lms == "canvas" and there is None):
+                unknown.append(student)
+                continue
+            for page in pages:
+                if lms == "canvas" and there is not None:
+                    called = f"{PurePosixPath(there.file).stem}.html"
+                else:
+                    called = _moodle(table.roster.students[student].name or student, number, page.name)
+                # The same class gives the same zip: no time of this machine is in it.
+                archive.writestr(zipfile.ZipInfo(called, _MADE), page.read_bytes(), zipfile.ZIP_DEFLATED)
+    return data.getvalue(), unknown
+
+
+def _moodle(name: str, number: str, page: str) -> str:
+    plain = "".join(" " if character in "_/\\" else character for character in name)
+    return f"{unicodedata.normalize('NFC', plain)}_{number}_assignsubmission_file/{page}"

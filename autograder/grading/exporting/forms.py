@@ -1,0 +1,159 @@
+"""Points in the form of an LMS's own gradebook.
+
+Canvas reads ``Student, ID, SIS User ID, SIS Login ID, Section``, then a column for each assignment, and in the second
+line the points possible (https://community.canvaslms.com, "How do I import grades in the Gradebook?"). Moodle's
+assignment reads its grading worksheet by ``Identifier``, ``Grade`` and ``Last modified (grade)``; Moodle's gradebook
+reads any columns, of which one names the student (https://docs.moodle.org, "Grade import").
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import TYPE_CHECKING
+
+from autograder.grading.errors import GradingError
+from autograder.grading.reporting.spreadsheet import csv_text
+from autograder.grading.table.roster import Identity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from autograder.grading.collecting.records import Collected, CollectedRecords
+    from autograder.grading.table.class_table import ClassTable
+    from autograder.grading.table.roster import Student
+
+CANVAS = ("Student", "ID", "SIS User ID", "SIS Login ID", "Section")
+MOODLE_WORKSHEET = (
+    "Identifier",
+    "Full name",
+    "Email address",
+    "Status",
+    "Grade",
+    "Maximum Grade",
+    "Grade can be changed",
+    "Last modified (submission)",
+    "Last modified (grade)",
+    "Feedback comments",
+)
+MOODLE_GRADEBOOK = ("First name", "Last name", "ID number", "Email address")
+
+
+def known_there(records: CollectedRecords, assignment: str, student: str, lms: str) -> Collected | None:
+    """What an LMS called a student when the work was collected; None where it came another way."""
+    history = records.get(assignment, student)
+    found = [one for one in history.now.values() if one.lms == lms] if history else []
+    return found[-1] if found else None
+
+
+def canvas(table: ClassTable, records: CollectedRecords, assignments: Sequence[str]) -> str:
+    """The file that Canvas's *Grades → Import* takes."""
+    possible: list[str | float] = [
+        "    Points Possible",
+        "",
+        "",
+        "",
+        "",
+        *(table.max_score(name) for name in assignments),
+    ]
+    rows: list[list[str | float]] = [[*CANVAS, *assignments], possible]
+    for student in map(table.roster.students.__getitem__, table.students):
+        numbers = (known_there(records, name, student.id, "canvas") for name in assignments)
+        number = student.lms.get("canvas") or next((one.number for one in numbers if one), "")
+        name = ", ".join(part for part in (student.last_name, student.first_name) if part) or student.id
+        rows.append(
+            [name, number, "", student.id, "", *(table.score(student.id, name) for name in assignments)]
+        )
+    return csv_text(rows)
+
+
+def moodle_gradebook(table: ClassTable, assignments: Sequence[str]) -> str:
+    """The file that Moodle's *Grades → Import → CSV file* takes."""
+    rows: list[list[str | float]] = [[*MOODLE_GRADEBOOK, *assignments]]
+    for student in map(table.roster.students.__getitem__, table.students):
+        who = [student.first_name, student.last_name, student.id, student.email]
+        rows.append([*who, *(table.score(student.id, name) for name in assignments)])
+    return csv_text(rows)
+
+
+def moodle_worksheet(table: ClassTable, records: CollectedRecords, assignment: str) -> tuple[str, list[str]]:
+    """The grading worksheet of one assignment, and the students whose number there is not known."""
+    rows: list[list[str | float]] = [list(MOODLE_WORKSHEET)]
+    unknown = []
+    for student in map(table.roster.students.__getitem__, table.students):
+        there = known_there(records, assignment, student.id, "moodle")
+        number = there.number if there else student.lms.get("moodle", "")
+        if not number:
+            unknown.append(student.id)
+            continue
+        submitted = "Submitted for grading" if there else "No submission"
+        points = [table.score(student.id, assignment), table.max_score(assignment)]
+        who = [f"Participant {number}", student.name or student.id, student.email]
+        rows.append([*who, submitted, *points, "Yes", "", "", ""])
+    return csv_text(rows), unknown
+
+
+def filled_in(data: bytes, table: ClassTable, assignment: str) -> tuple[bytes, list[str]]:
+    """A list of the LMS's own with the points filled in; everything else in it stays as it is.
+
+    Args:
+        data: Moodle's grading worksheet, or Canvas's exported gradebook.
+        table: The class.
+        assignment: Whose points.
+
+    Returns:
+        The list, and the lines in it of which nobody is known here.
+
+    Raises:
+        GradingError: It is neither, or it has no column for the assignment.
+    """
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise GradingError(
+            "The list is not UTF-8. Download it from the LMS again and leave it as it is."
+        ) from error
+    rows = list(csv.reader(io.StringIO(text)))
+    header = [name.strip() for name in rows[0]] if rows else []
+    if {"Identifier", "Grade"} <= set(header):
+        column, lms, names = header.index("Grade"), "moodle", ("Email address", "ID number", "Full name")
+    elif {"Student", "ID", "Section"} <= set(header):
+        column, lms, names = _canvas_column(header, assignment), "canvas", ("ID", "SIS Login ID", "Student")
+    else:
+        raise GradingError("The list is neither Moodle's grading worksheet nor Canvas's exported gradebook.")
+    strangers = []
+    for row in rows[1:]:
+        if len(row) <= column or row[0].strip().startswith(
+            ("Points Possible", "Manual Posting", "Student, Test")
+        ):
+            continue
+        values = [row[header.index(name)].strip() for name in names if name in header]
+        student = _who(table, lms, values)
+        if student is None:
+            strangers.append(values[-1] if values else row[0])
+        else:
+            row[column] = f"{table.score(student.id, assignment):g}"
+    out = io.StringIO(newline="")
+    csv.writer(out, lineterminator="\n").writerows(rows)
+    mark = "\ufeff" if data.startswith("\ufeff".encode()) else ""
+    return f"{mark}{out.getvalue()}".encode(), strangers
+
+
+def _canvas_column(header: Sequence[str], assignment: str) -> int:
+    """Canvas writes an assignment's number behind its name: ``lab_1_2 (815)``."""
+    for place, name in enumerate(header):
+        if name == assignment or (name.startswith(f"{assignment} (") and name.endswith(")")):
+            return place
+    raise GradingError(
+        f"The list has no column for {assignment}. It has: {', '.join(header)}. Name the assignment in Canvas like the "
+        "one here, and export the gradebook again."
+    )
+
+
+def _who(table: ClassTable, lms: str, values: Iterable[str]) -> Student | None:
+    for value in values:
+        for identity in (Identity(lms, number=value), Identity(lms, login=value), Identity(lms, name=value)):
+            found = table.roster.find(identity) if value else ()
+            if len(found) == 1:
+                return found[0]
+    return None

@@ -1,0 +1,71 @@
+"""The table for a spreadsheet: a line for each student, and behind it a line for each exercise."""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING
+
+import xlsxwriter
+
+from autograder.grading.reporting.report import COLUMNS, LATE, csv_cells
+from autograder.grading.reporting.spreadsheet import csv_text
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.grading.table.class_table import ClassTable
+
+Cells = list[str | float]
+
+
+def student_rows(table: ClassTable, assignments: Sequence[str]) -> list[Cells]:
+    """The columns' names, then a line for each student."""
+    who = ["student", "first_name", "last_name", "email"]
+    rows: list[Cells] = [[*who, *assignments, "total", "max", "late_penalty", "waits_for_a_person"]]
+    for student in map(table.roster.students.__getitem__, table.students):
+        own = [row for row in table.of(student.id) if row.assignment in assignments]
+        rows.append(
+            [
+                student.id,
+                student.first_name,
+                student.last_name,
+                student.email,
+                *(table.score(student.id, name) for name in assignments),
+                round(sum(row.score for row in own), 4),
+                sum(row.max_score for row in own),
+                -sum(row.score for row in own if row.exercise == LATE),
+                sum(row.waits for row in own),
+            ]
+        )
+    return rows
+
+
+def as_csv(table: ClassTable, assignments: Sequence[str]) -> bytes:
+    """A line for each student, as CSV that Excel knows for UTF-8."""
+    return csv_text(student_rows(table, assignments)).encode("utf-8-sig")
+
+
+def as_xlsx(table: ClassTable, assignments: Sequence[str]) -> bytes:
+    """A workbook with two sheets: students, and exercises."""
+    exercises: list[Cells] = [list(COLUMNS)]
+    exercises += [list(csv_cells(row)) for row in table.rows if row.assignment in assignments]
+    data = io.BytesIO()
+    # Nothing that a student or an LMS wrote becomes a formula, a link or a number.
+    options = {
+        "in_memory": True,
+        "strings_to_formulas": False,
+        "strings_to_urls": False,
+        "strings_to_numbers": False,
+    }
+    with xlsxwriter.Workbook(data, options) as book:
+        bold = book.add_format({"bold": True})
+        for name, rows in (("students", student_rows(table, assignments)), ("exercises", exercises)):
+            sheet = book.add_worksheet(name)
+            for place, row in enumerate(rows):
+                for column, cell in enumerate(row):
+                    style = bold if place == 0 else None
+                    write = sheet.write_string if isinstance(cell, str) else sheet.write_number
+                    write(place, column, cell, style)
+            sheet.freeze_panes(1, 1)
+            sheet.autofit()
+    return data.getvalue()

@@ -1,0 +1,102 @@
+"""Which masters the sources of a class were made of, and which of them say something else now.
+
+A class has its own copy of each assignment, which its instructor may change. The judge has none: it expects what the
+course says today. So what is compared is a master then and now, and of it the cells that are graded or answered.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder.grading.entering.journal import write_whole
+from autograder.masters.errors import MasterError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from nbformat import NotebookNode
+
+    from autograder.grading.classes.class_directory import ClassDirectory
+
+
+class Origin(msgspec.Struct, frozen=True):
+    """What a source of a class was made of.
+
+    Attributes:
+        master: The master's file.
+        text: Stands for the whole of it.
+        work: Stands for its graded cells and those that students write.
+    """
+
+    master: str
+    text: str
+    work: str
+
+
+def remember(directory: ClassDirectory, made: Mapping[str, tuple[Path, NotebookNode]]) -> None:
+    """Write down what sources were just made of.
+
+    Args:
+        directory: The class.
+        made: The master and what came of it, by assignment.
+
+    Raises:
+        OSError: It could not be written.
+    """
+    known = _read(directory)
+    for name, (master, notebook) in made.items():
+        known[name] = Origin(str(master.absolute()), _digest([master.read_text("utf-8")]), _work(notebook))
+    write_whole(_path(directory), msgspec.json.encode(known))
+
+
+def moved_on(directory: ClassDirectory, assignments: Iterable[str]) -> list[str]:
+    """The assignments whose masters ask for something else now than when the class got its sources."""
+    known = _read(directory)
+    return [name for name in assignments if name in known and _has_moved(known[name])]
+
+
+def warning(directory: ClassDirectory, assignment: str) -> str:
+    """What to say of such an assignment, and what to do."""
+    return (
+        f"{assignment}: its master in the course was changed since this class got its source. The judge expects what "
+        "the course says now, so work that was written for the old text may fail. See first who would: "
+        f"./course grade {directory.path} --dry-run. To hand out and grade the new text: "
+        f"./course renew-class {directory.path} --assignment {assignment}. To grade the old one: use the version of "
+        "the course that it was handed out from."
+    )
+
+
+def _has_moved(origin: Origin) -> bool:
+    master = Path(origin.master)
+    try:
+        if _digest([master.read_text("utf-8")]) == origin.text:
+            return False
+        from autograder.masters.source import source_notebook  # a second, mostly for nothing
+
+        return _work(source_notebook(master)) != origin.work
+    except (OSError, UnicodeDecodeError, MasterError):
+        return False  # the course is elsewhere now, or being worked on
+
+
+def _work(notebook: NotebookNode) -> str:
+    marks = [(cell.metadata.get("nbgrader", {}), cell.source) for cell in notebook.cells]
+    return _digest([source for mark, source in marks if mark.get("grade") or mark.get("solution")])
+
+
+def _digest(parts: Iterable[str]) -> str:
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+
+def _path(directory: ClassDirectory) -> Path:
+    return directory.state / "masters.json"
+
+
+def _read(directory: ClassDirectory) -> dict[str, Origin]:
+    try:
+        return msgspec.json.decode(_path(directory).read_bytes(), type=dict[str, Origin])
+    except (OSError, msgspec.MsgspecError):
+        return {}

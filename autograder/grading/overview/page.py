@@ -1,0 +1,144 @@
+"""The page: one file without script and without anything from a network, readable in black and white."""
+
+from __future__ import annotations
+
+import statistics
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+from urllib.parse import quote
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.collecting.records import CollectedRecords
+from autograder.grading.entering.journal import Journal, write_whole
+from autograder.grading.errors import GradingError, clear_disk_errors
+from autograder.grading.overview import statistics as figures
+from autograder.grading.pages import POLICY
+from autograder.grading.reporting.report import LATE, NOT_SUBMITTED
+from autograder.grading.table.class_table import ClassTable, by_exercise, read_table
+
+if TYPE_CHECKING:
+    from autograder.grading.reporting.report import Row
+
+NAME = "report.html"
+
+
+@dataclass(frozen=True)
+class _Person:
+    """How a student is shown.
+
+    Attributes:
+        shown: The name, or a number where names are left out.
+        links: Feedback pages by assignment, relative to the page; empty where names are left out.
+    """
+
+    shown: str
+    links: dict[str, str]
+
+
+def write_report(path: Path, *, names: bool = True, to: Path | None = None) -> Path:
+    """Write the page about a class.
+
+    Args:
+        path: The class directory.
+        names: Show who it is, with links to the pages of feedback.
+        to: Where to write; ``report.html`` in the class by default.
+
+    Returns:
+        Where it is.
+
+    Raises:
+        GradingError: Nothing was handed in, or the class cannot be read.
+    """
+    directory = ClassDirectory(path)
+    to = (to or directory.path / NAME).absolute()
+    with clear_disk_errors(directory.path):
+        table = read_table(directory)
+        if not figures.handed_in(table):
+            raise GradingError("Nothing was handed in yet, so there is nothing to report.")
+        write_whole(to, _page(directory, table, names=names, folder=to.parent).encode())
+    return to
+
+
+def _page(directory: ClassDirectory, table: ClassTable, *, names: bool, folder: Path) -> str:
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    people = _people(directory, table, names=names, folder=folder)
+    there = figures.handed_in(table)
+    totals = figures.totals(table)
+    template = environment.get_template("overview.html.j2")
+    return template.render(
+        policy=POLICY,
+        title=directory.path.name,
+        table=table,
+        people=people,
+        there=there,
+        absent=[student for student in table.students if student not in there],
+        exercises=list(dict.fromkeys(row.exercise for row in table.rows if row.exercise != LATE)),
+        rows={student: by_exercise(table.of(student)) for student in table.students},
+        cell=_cell,
+        mean=statistics.fmean(totals),
+        median=statistics.median(totals),
+        most=table.max_score(),
+        bands=figures.bands(table),
+        items=figures.items(table, Journal(directory.state / "journal")),
+        mistakes=figures.mistakes(table),
+        times=_times(directory, table),
+        names=names,
+    )
+
+
+def _people(directory: ClassDirectory, table: ClassTable, *, names: bool, folder: Path) -> dict[str, _Person]:
+    if not names:
+        return {student: _Person(f"student {place}", {}) for place, student in enumerate(table.students, 1)}
+    people = {}
+    for student in table.students:
+        links = {}
+        for assignment in table.assignments:
+            pages = sorted((directory.path / "feedback" / student / assignment).glob("*.html"))
+            if pages:
+                # A page that was written elsewhere keeps the whole path.
+                inside = pages[0].is_relative_to(folder)
+                links[assignment] = quote(str(pages[0].relative_to(folder))) if inside else pages[0].as_uri()
+        name = table.roster.students[student].name
+        people[student] = _Person(f"{name} ({student})" if name else student, links)
+    return people
+
+
+def _cell(row: Row | None) -> str:
+    if row is None or row.state == NOT_SUBMITTED:
+        return "–"
+    mark = "?" if row.waits else "*" if row.by_hand is not None or row.extra else ""
+    return f"{row.score:g}{mark}"
+
+
+def _times(directory: ClassDirectory, table: ClassTable) -> list[dict[str, object]]:
+    """When work was handed in, before or after it was due, beside the points."""
+    records = CollectedRecords(directory.state)
+    found: list[dict[str, object]] = []
+    for (student, assignment), entry in sorted(
+        table.entries.items(), key=lambda item: str(item[1].handed_in)
+    ):
+        if entry.handed_in is None or student not in table.students:
+            continue
+        history = records.get(assignment, student)
+        before = None if entry.due is None else (entry.due - entry.handed_in).total_seconds() / 3600
+        found.append(
+            {
+                "student": student,
+                "assignment": assignment,
+                "at": f"{entry.handed_in:%Y-%m-%d %H:%M}",
+                "before": before,
+                "attempts": 1 + len(history.before) if history else 1,
+                "score": table.score(student, assignment),
+                "max": table.max_score(assignment),
+            }
+        )
+    return found

@@ -1,0 +1,192 @@
+"""What the table of a class says about the class: numbers only, no page."""
+
+from __future__ import annotations
+
+import statistics
+from collections import Counter, defaultdict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from autograder.grading.reporting.report import LATE, NOT_SUBMITTED
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.grading.entering.journal import Journal
+    from autograder.grading.reporting.report import Row
+    from autograder.grading.table.class_table import ClassTable
+
+BANDS = 10
+_FEWEST = 3
+"""Students without whom a correlation says nothing."""
+
+
+@dataclass(frozen=True)
+class Band:
+    """A tenth of the points.
+
+    Attributes:
+        low: Its lower end, in percent.
+        high: Its upper end; the last band has the full points, too.
+        students: Who is in it.
+    """
+
+    low: int
+    high: int
+    students: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class CriterionFigures:
+    """How often one thing that was asked for was seen.
+
+    Attributes:
+        title: What was asked for.
+        passed: In how many submissions it was seen.
+        of: In how many it was looked for.
+    """
+
+    title: str
+    passed: int
+    of: int
+
+
+@dataclass(frozen=True)
+class ItemFigures:
+    """The statistics of one exercise, over those who have handed it in.
+
+    Attributes:
+        exercise: Its id.
+        max_score: Points that can be had.
+        handed_in: How many have handed it in.
+        mean: Their mean points.
+        full: How many of them have all points.
+        none: How many of them have none.
+        difficulty: The mean as a share of the points that can be had: a high one is an easy exercise.
+        discrimination: How its points go along with those of all other exercises, from -1 to 1 (Pearson's correlation);
+            None where that cannot be said.
+        criteria: What was asked for, in the order of the exercise.
+    """
+
+    exercise: str
+    max_score: float
+    handed_in: int
+    mean: float
+    full: int
+    none: int
+    difficulty: float
+    discrimination: float | None
+    criteria: tuple[CriterionFigures, ...] = ()
+
+
+@dataclass(frozen=True)
+class MistakeFigures:
+    """A mistake that was recognised.
+
+    Attributes:
+        exercise: In which exercise.
+        key: The mistake's name.
+        reason: What the first of them was told.
+        students: Who made it.
+    """
+
+    exercise: str
+    key: str
+    reason: str
+    students: tuple[str, ...]
+
+
+def bands(table: ClassTable) -> list[Band]:
+    """How the students are spread over the points; who handed in nothing at all is left out."""
+    most = table.max_score()
+    found: dict[int, list[str]] = defaultdict(list)
+    for student in handed_in(table):
+        share = table.score(student) / most if most else 0.0
+        found[max(0, min(BANDS - 1, int(share * BANDS + 1e-9)))].append(student)
+    width = 100 // BANDS
+    return [Band(place * width, (place + 1) * width, tuple(found[place])) for place in range(BANDS)]
+
+
+def handed_in(table: ClassTable) -> list[str]:
+    """The students who have handed in anything."""
+    return [
+        student
+        for student in table.students
+        if any(row.state != NOT_SUBMITTED and row.exercise != LATE for row in table.of(student))
+    ]
+
+
+def totals(table: ClassTable) -> list[float]:
+    """The points of everybody who has handed in anything."""
+    return [table.score(student) for student in handed_in(table)]
+
+
+def items(table: ClassTable, journal: Journal) -> list[ItemFigures]:
+    """The statistics of each exercise.
+
+    Args:
+        table: The class.
+        journal: Where the judge's verdicts are kept.
+    """
+    criteria = _criteria(table, journal)
+    found = []
+    for exercise in dict.fromkeys(row.exercise for row in table.rows if row.exercise != LATE):
+        rows = [row for row in table.rows if row.exercise == exercise and row.state != NOT_SUBMITTED]
+        if not rows:
+            continue
+        scores, most = [row.score for row in rows], rows[0].max_score
+        mean = statistics.fmean(scores)
+        others = [sum(row.score for row in table.of(one.student) if row.exercise != exercise) for one in rows]
+        found.append(
+            ItemFigures(
+                exercise,
+                most,
+                len(rows),
+                mean,
+                sum(score >= most for score in scores),
+                sum(score <= 0 for score in scores),
+                mean / most if most else 0.0,
+                _correlation(scores, others),
+                tuple(criteria.get(exercise, ())),
+            )
+        )
+    return found
+
+
+def mistakes(table: ClassTable) -> list[MistakeFigures]:
+    """The mistakes that were recognised, the commonest first."""
+    found: dict[tuple[str, str], list[Row]] = defaultdict(list)
+    for row in table.rows:
+        if row.diagnosis:
+            found[row.exercise, row.diagnosis].append(row)
+    figures = [
+        MistakeFigures(exercise, key, rows[0].reason, tuple(row.student for row in rows))
+        for (exercise, key), rows in found.items()
+    ]
+    return sorted(figures, key=lambda one: (-len(one.students), one.exercise, one.key))
+
+
+def _correlation(ours: Sequence[float], others: Sequence[float]) -> float | None:
+    if len(ours) < _FEWEST or len(set(ours)) == 1 or len(set(others)) == 1:
+        return None
+    return statistics.correlation(ours, others)
+
+
+def _criteria(table: ClassTable, journal: Journal) -> dict[str, list[CriterionFigures]]:
+    """What was seen of each criterion, from the verdicts that the table's points came from."""
+    counted = {(row.student, row.assignment) for row in table.rows if row.state in ("passed", "failed")}
+    passed: Counter[tuple[str, str]] = Counter()
+    looked: Counter[tuple[str, str]] = Counter()
+    titles: dict[tuple[str, str], str] = {}
+    for student, assignment in sorted(counted):
+        for execution in journal.latest(student, assignment):
+            for verdict in execution.verdicts.values():
+                for criterion in verdict.criteria:
+                    key = (verdict.exercise, criterion.name)
+                    titles.setdefault(key, criterion.title)
+                    looked[key] += 1
+                    passed[key] += criterion.passed
+    found: dict[str, list[CriterionFigures]] = defaultdict(list)
+    for (exercise, name), title in titles.items():
+        found[exercise].append(CriterionFigures(title, passed[exercise, name], looked[exercise, name]))
+    return found

@@ -1,0 +1,1 @@
+"""From what a student handed in to a task: read, compared with the trusted master, rebuilt."""

@@ -1,0 +1,88 @@
+"""Whether anything has changed since a submission was written down, told from bytes alone.
+
+Rebuilding a notebook says it more exactly, but a class of a hundred students has a thousand notebooks, and most runs
+find nothing new. What differs here is looked at again, cell by cell.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+from typing import TYPE_CHECKING
+
+from autograder.grading.classes.class_directory import CONFIG_NAME, SUFFIX
+from autograder.grading.classes.timestamps import TIMESTAMP
+from autograder.grading.rebuilding.course_version import course_version
+from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
+from autograder.grading.running import sandboxing
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from autograder.grading.classes.class_directory import ClassDirectory, Submission
+
+
+class Fingerprints:
+    """The fingerprints of one class as it is now.
+
+    Args:
+        directory: The class.
+    """
+
+    def __init__(self, directory: ClassDirectory) -> None:
+        self._directory = directory
+
+    def of(self, submission: Submission) -> str:
+        """Changes with the submission and with everything that its grade, notebook and page are made from."""
+        files = [submission.folder / f"{name}{SUFFIX}" for name in self._notebooks(submission.assignment)]
+        return _digest(
+            [
+                self.of_sources(submission.assignment),
+                self._directory.secret.hex(),
+                str(sandboxing.switched_off(self._directory)),
+                submission.student,
+                *(_content(file) for file in (*files, submission.folder / TIMESTAMP)),
+            ]
+        )
+
+    def of_sources(self, assignment: str) -> str:
+        """Changes with an assignment's sources, with the class's configuration and with the code."""
+        return self._of_sources(assignment)
+
+    @functools.cache  # noqa: B019  (lives as long as one batch)
+    def _of_sources(self, assignment: str) -> str:
+        folder = self._directory.path / "source" / assignment
+        files = sorted(path for path in folder.rglob("*") if path.is_file())
+        return _digest(
+            [
+                course_version(),
+                _trusted(self._directory.path / CONFIG_NAME),
+                assignment,
+                *(f"{path.relative_to(folder)} {_trusted(path)}" for path in files),
+            ]
+        )
+
+    @functools.cache  # noqa: B019
+    def _notebooks(self, assignment: str) -> list[str]:
+        return self._directory.notebooks(assignment)
+
+
+def _trusted(path: Path) -> str:
+    """Stands for the bytes of a file of ours, which may be a link or have a second name."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def _content(path: Path) -> str:
+    """Stands for the bytes of a file that was handed in, or for the reason why it has none for us."""
+    try:
+        return hashlib.sha256(read_bytes(path)).hexdigest()
+    except UnreadableSubmission as error:
+        return str(error)
+
+
+def _digest(parts: Iterable[str]) -> str:
+    digest = hashlib.sha256()
+    for part in parts:
+        digest.update(f"{len(part)}:{part};".encode())
+    return digest.hexdigest()

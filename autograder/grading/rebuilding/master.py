@@ -1,0 +1,145 @@
+"""The trusted master of a submission: the class's source notebook with stubs for solutions."""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import functools
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from nbgrader.converters import GenerateAssignment
+from nbgrader.preprocessors import SaveCells
+
+from autograder import exercises
+from autograder.boxes.execution import Check
+from autograder.grading.errors import MasterUnusable
+from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding.rebuild import grade_id, is_answer, is_check
+from autograder.masters.errors import CellError
+from autograder.masters.regions import find_model_answer
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from nbformat import NotebookNode
+    from traitlets.config import Config
+
+
+def read_master(source: Path, config: Config) -> NotebookNode:
+    """The notebook as ``nbgrader generate_assignment`` enters it into the gradebook.
+
+    It is derived from the source, not read from ``release/``: hidden tests are in it, solutions are not. It is
+    shared by all who ask for it, because a copy for each submission would take as long as reading it: copy what you
+    change.
+
+    Args:
+        source: The notebook in the class's ``source`` folder.
+        config: The class's nbgrader configuration.
+
+    Raises:
+        MasterUnusable: It is no notebook, two cells have one name, or a cell asks the judge for no exercise.
+    """
+    try:
+        data = source.read_bytes()
+    except OSError as error:
+        raise MasterUnusable(f"{source} cannot be read: {error.strerror}.") from error
+    return _master(source, data, _steps(config))
+
+
+@functools.lru_cache(maxsize=32)
+def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
+    try:
+        notebook = nodes.read(data.decode())
+    except Exception as error:  # nbformat raises what its JSON and schema libraries raise
+        raise MasterUnusable(
+            f"{source} is not a notebook: {error}. Make it anew or put back a copy."
+        ) from error
+    resources: dict[str, Any] = {}
+    rubrics = _rubrics(notebook)
+    for step in steps:
+        notebook, resources = _step(step)().preprocess(notebook, resources)
+    _check_cells(source, notebook)
+    for cell in notebook.cells:
+        if grade_id(cell) in rubrics:
+            cell.metadata["autograder"] = {"rubric": rubrics[grade_id(cell)]}
+    return notebook
+
+
+def _rubrics(source: NotebookNode) -> dict[str, str]:
+    """What a source notebook has for whoever grades its questions, by grade_id."""
+    found = {}
+    for cell in source.cells:
+        if cell.cell_type == "markdown" and is_answer(cell):
+            with contextlib.suppress(CellError):
+                found[grade_id(cell)] = find_model_answer(cell.source)
+    return found
+
+
+def check_of(cell: NotebookNode) -> Check | None:
+    """What a master's cell checks, or None for a cell without an automatic grade.
+
+    Raises:
+        LookupError: It asks the judge, but no exercise has its name.
+    """
+    if not is_check(cell):
+        return None
+    name, worth = grade_id(cell), float(cell.metadata.nbgrader["points"])
+    if exercise_of(name) == name and not _asks_the_judge(cell.source):
+        return Check(exercise=name, title=name, points=worth, worth=worth, limit=0.0, asserts=True)
+    exercise = exercises.get(exercise_of(name))
+    return Check(
+        exercise=exercise.id,
+        title=exercise.title,
+        points=exercise.points,
+        worth=worth,
+        limit=exercise.limit,
+    )
+
+
+def exercise_of(name: str) -> str:
+    """The id of the exercise that a check cell of this name checks; the name itself where there is none."""
+    return next((known for known in exercises.all_ids() if exercises.grade_id(known) == name), name)
+
+
+def _asks_the_judge(source: str) -> bool:
+    """Whether a graded cell calls ``check`` with an exercise, so that no test of its own can decide."""
+    try:
+        tree = ast.parse(source)
+    except SyntaxError:
+        return "check(" in source  # it has a magic
+    return any(
+        isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "check"
+        for node in ast.walk(tree)
+    )
+
+
+def _check_cells(source: Path, notebook: NotebookNode) -> None:
+    seen: set[str] = set()
+    for cell in notebook.cells:
+        name = grade_id(cell)
+        if name and name in seen:
+            raise MasterUnusable(f"{source}: two cells have the grade_id {name!r}. Give one of them another.")
+        seen.add(name)
+        try:
+            check_of(cell)
+        except LookupError as error:
+            raise MasterUnusable(
+                f"{source}: the cell {name!r} carries points, but {error}. Only the judge's verdict earns "
+                "points there: name the cell after its exercise, or mark it as manually graded."
+            ) from error
+
+
+def _steps(config: Config) -> tuple[str, ...]:
+    """What happens to a source notebook before it is entered into the gradebook."""
+    configured = config.GenerateAssignment.get("preprocessors") or GenerateAssignment().preprocessors
+    names = [
+        step if isinstance(step, str) else f"{step.__module__}.{step.__qualname__}" for step in configured
+    ]
+    saving = [place for place, name in enumerate(names) if name.rpartition(".")[2] == SaveCells.__name__]
+    return tuple(names[: saving[0]] if saving else names)
+
+
+def _step(name: str) -> Any:
+    module, _, attribute = name.rpartition(".")
+    return getattr(importlib.import_module(module), attribute)

@@ -1,0 +1,250 @@
+"""The notebook that is executed: built from the trusted master, with nothing but text from the submission.
+
+Locked cells and check cells come from the master, in its order. From the submission come the text of the
+solution cells and the student's own cells, which keep their place relative to their neighbours. Everything
+else that a submission brings (metadata, tags, outputs, attachments, ids) is left behind. The figures that its text
+cells show are the master's, and each of them is there no more often than in the master.
+"""
+
+from __future__ import annotations
+
+import re  # noqa: TID251  (a class of characters each, nothing repeated: there is nothing to try twice)
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from nbformat import NotebookNode
+
+from autograder.boxes.execution import Kind
+from autograder.grading.rebuilding import nodes
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.grading.rebuilding.submission import SubmittedCell
+
+_START = ""
+_HIDDEN = re.compile(r"(BEGIN|END) (HIDDEN TESTS|MARK SCHEME)")
+_SHOWN = re.compile(r"\(attachment:([\w.-]+)\)")
+
+
+@dataclass(frozen=True)
+class Rebuilt:
+    """A notebook fit to be executed and graded.
+
+    Attributes:
+        notebook: nbformat 4.5; its first cell shows the remarks, where there are any.
+        remarks: What was put right, each a sentence for the student.
+    """
+
+    notebook: NotebookNode
+    remarks: tuple[str, ...]
+
+
+def rebuild(master: NotebookNode, submitted: Sequence[SubmittedCell], left_out: int = 0) -> Rebuilt:
+    """Build the notebook from the master and the submitted cells.
+
+    Args:
+        master: As it was released: stubs in place of solutions, every cell that matters named by its
+            grade_id.
+        submitted: The submission's cells.
+        left_out: How many cells could not be read.
+    """
+    sorting = _Sorting(master, submitted)
+    remarks = sorting.remarks()
+    if left_out:
+        remarks.append(f"{left_out} cell(s) had not the form of a notebook cell and were left out.")
+    return _finished(master, sorting.cells(), remarks)
+
+
+def rebuild_unreadable(master: NotebookNode, problem: str) -> Rebuilt:
+    """What stands for a submission that is no notebook: the unanswered master and the reason."""
+    remarks = [f"This submission could not be graded. {problem}"]
+    return _finished(master, [nodes.copied(cell) for cell in master.cells], remarks)
+
+
+class _Sorting:
+    """Which submitted cell is what."""
+
+    def __init__(self, master: NotebookNode, submitted: Sequence[SubmittedCell]) -> None:
+        self._master = {grade_id(cell): cell for cell in master.cells if grade_id(cell)}
+        self._submitted = submitted
+        self._places: dict[str, list[int]] = {}
+        for index, cell in enumerate(submitted):
+            if cell.grade_id in self._master:
+                self._places.setdefault(cell.grade_id, []).append(index)
+        self._chosen = {name: self._choose(name, places) for name, places in self._places.items()}
+
+    def cells(self) -> list[NotebookNode]:
+        """The cells of the rebuilt notebook."""
+        groups = self._extras_by_anchor()
+        built: list[NotebookNode] = []
+        pending: list[NotebookNode] = [_extra(cell) for cell in groups.get(_START, [])]
+        for name, cell in self._master.items():
+            present = name in self._chosen
+            if present or is_check(cell):
+                # A check that was deleted comes back behind the student's own cells, which it may need.
+                built += pending
+                pending = []
+            built.append(self._filled(name, cell))
+            # Any other deleted cell comes back before them: its stub must not replace an answer given
+            # elsewhere.
+            pending += [_extra(extra) for extra in groups.get(name, [])]
+        return built + pending
+
+    def remarks(self) -> list[str]:
+        """What differs from the master in a way that the student should know."""
+        found = [
+            f"The cell {_quoted(name)} was missing. It was put back."
+            for name in self._master
+            if name not in self._chosen
+        ]
+        for name, places in self._places.items():
+            found += self._remarks_on(name, places)
+        order = [name for name, _ in sorted(self._chosen.items(), key=lambda item: item[1])]
+        if order != [name for name in self._master if name in self._chosen]:
+            found.append("Cells of the notebook had changed places. They were put in their order again.")
+        strangers = {
+            cell.grade_id for cell in self._submitted if cell.grade_id and cell.grade_id not in self._master
+        }
+        found += [
+            f"There is no graded cell {_quoted(name)} in this notebook. It runs as a cell of your own."
+            for name in sorted(strangers)
+        ]
+        return found
+
+    def _remarks_on(self, name: str, places: list[int]) -> list[str]:
+        master, cell = self._master[name], self._submitted[self._chosen[name]]
+        found = []
+        if len(places) > 1 and is_answer(master):
+            found.append(
+                f"The cell {_quoted(name)} was there {len(places)} times. The last one that you changed "
+                "counts as your answer; the others run as cells of your own."
+            )
+        elif len(places) > 1:
+            found.append(f"The cell {_quoted(name)} was there {len(places)} times. It runs once.")
+        if cell.kind != master.cell_type:
+            found.append(
+                f"The cell {_quoted(name)} had become a {cell.kind} cell. "
+                f"It is a {master.cell_type} cell again."
+            )
+        handed_out = (master.source.strip(), _without_hidden(master.source).strip())
+        if not is_answer(master) and cell.source.strip() not in handed_out:
+            found.append(f"The cell {_quoted(name)} is not yours to change. The original was used.")
+        return found
+
+    def _choose(self, name: str, places: list[int]) -> int:
+        """The last one, as when all cells are run; but a copy of the untouched stub is nobody's answer."""
+        stub = self._master[name].source.strip()
+        answered = [place for place in places if self._submitted[place].source.strip() != stub]
+        return (answered or places)[-1]
+
+    def _extras_by_anchor(self) -> dict[str, list[SubmittedCell]]:
+        """The student's own cells, by the named cell that they follow."""
+        groups: dict[str, list[SubmittedCell]] = {}
+        anchor = _START
+        for index, cell in enumerate(self._submitted):
+            if self._chosen.get(cell.grade_id) == index:
+                anchor = cell.grade_id
+            elif cell.grade_id not in self._master or is_answer(self._master[cell.grade_id]):
+                groups.setdefault(anchor, []).append(cell)
+        return groups
+
+    def _filled(self, name: str, cell: NotebookNode) -> NotebookNode:
+        filled = nodes.copied(cell)
+        if is_answer(cell) and name in self._chosen:
+            filled["source"] = self._submitted[self._chosen[name]].source
+        return filled
+
+
+def grade_id(cell: NotebookNode) -> str:
+    """The name of a master's cell, empty where it has none."""
+    return str(cell.metadata.get("nbgrader", {}).get("grade_id", ""))
+
+
+def is_answer(cell: NotebookNode) -> bool:
+    """Whether the cell is one that students fill in."""
+    return bool(cell.metadata.get("nbgrader", {}).get("solution", False))
+
+
+def is_check(cell: NotebookNode) -> bool:
+    """Whether the cell is one that is graded automatically."""
+    marked = bool(cell.metadata.get("nbgrader", {}).get("grade", False))
+    return marked and not is_answer(cell) and cell.cell_type == Kind.CODE
+
+
+def _without_hidden(source: str) -> str:
+    """A master's cell as students get it: nbgrader leaves out its hidden tests and its mark scheme."""
+    kept, hidden = [], False
+    for line in source.splitlines():
+        if _HIDDEN.search(line):
+            hidden = "BEGIN" in line
+        elif not hidden:
+            kept.append(line)
+    return "\n".join(kept)
+
+
+def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str]) -> Rebuilt:
+    if remarks:
+        cells = [_remarks_cell(remarks), *cells]
+    figures = _Figures(master)
+    for index, cell in enumerate(cells):
+        # As items: to set an attribute, nbformat's nodes look for it in their class first.
+        cell["id"] = _cell_id(cell, index)
+        cell.pop("attachments", None)
+        if cell["cell_type"] == Kind.MARKDOWN and (shown := figures.of(cell["source"])):
+            cell["attachments"] = shown
+        if cell["cell_type"] == Kind.CODE:
+            cell["outputs"] = []
+            cell["execution_count"] = None
+    notebook = nodes.notebook(
+        cells,
+        {
+            "kernelspec": {"name": "python3", "display_name": "Python 3 (ipykernel)", "language": "python"},
+            "language_info": {"name": "python", "pygments_lexer": "ipython3", "file_extension": ".py"},
+            "autograder": {"remarks": remarks},
+        },
+    )
+    return Rebuilt(notebook, tuple(remarks))
+
+
+class _Figures:
+    """The master's figures, to be handed to the text cells that show them."""
+
+    def __init__(self, master: NotebookNode) -> None:
+        self._pictures: dict[str, NotebookNode] = {}
+        self._left: Counter[str] = Counter()
+        for cell in master.cells:
+            for name, picture in cell.get("attachments", {}).items():
+                self._pictures[name] = picture
+                self._left[name] += 1
+
+    def of(self, source: str) -> NotebookNode:
+        """The figures that a text shows, of those that are left: copies of one cell must not swell a page."""
+        names = [name for name in dict.fromkeys(_SHOWN.findall(source)) if self._left[name] > 0]
+        self._left.subtract(names)
+        return nodes.copied(NotebookNode({name: self._pictures[name] for name in names}))
+
+
+def _extra(cell: SubmittedCell) -> NotebookNode:
+    return nodes.cell(cell.kind, cell.source, "own")
+
+
+def _remarks_cell(remarks: list[str]) -> NotebookNode:
+    lines = ["**Remarks of the grader**", ""] + [f"- {_escaped(remark)}" for remark in remarks]
+    return nodes.cell(Kind.MARKDOWN, "\n".join(lines))
+
+
+def _escaped(text: str) -> str:
+    """A remark may quote what a student wrote; none of it may become markup."""
+    text = text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+    return re.sub(r"([\\\[\]*#!|~$])", r"\\\1", " ".join(text.split()))
+
+
+def _quoted(name: str) -> str:
+    return "`" + re.sub(r"[^\w.\-]", "?", name)[:80] + "`"
+
+
+def _cell_id(cell: NotebookNode, index: int) -> str:
+    """The same text gives the same notebook, byte for byte; nbformat draws ids at random."""
+    return re.sub(r"[^A-Za-z0-9_-]", "-", f"{index}-{grade_id(cell) or 'own'}")[:64]

@@ -1,0 +1,132 @@
+"""What the sources of a class carry points for, and whether the gradebook knows it.
+
+Reading a source means running nbgrader's steps on it, which takes a second for a chapter; what came of it is kept.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder import course
+from autograder.grading.entering import gradebook
+from autograder.grading.entering.journal import write_whole
+from autograder.grading.errors import ClassIncomplete, MasterUnusable
+from autograder.grading.reporting.report import LATE
+
+if TYPE_CHECKING:
+    from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.rebuilding.fingerprints import Fingerprints
+
+
+@dataclass(frozen=True)
+class GradedCell:
+    """A cell of a source that carries points.
+
+    Attributes:
+        notebook: The notebook it is in.
+        name: Its grade_id.
+        exercise: The exercise's id; the cell's own name where it has none.
+        worth: Points it carries.
+        by_judge: Whether the judge or the cell's own tests give the points, and not a person.
+    """
+
+    notebook: str
+    name: str
+    exercise: str
+    worth: float
+    by_judge: bool = True
+
+
+@dataclass(frozen=True)
+class _Kept:
+    fingerprint: str
+    cells: dict[str, tuple[GradedCell, ...]]
+
+
+@dataclass(frozen=True)
+class Released:
+    """What the sources of a class carry points for.
+
+    Attributes:
+        cells: The cells with points of each assignment, in the order of the course.
+        unusable: The assignments that cannot be graded against, with the reason.
+    """
+
+    cells: dict[str, tuple[GradedCell, ...]]
+    unusable: dict[str, str]
+
+
+def read_released(directory: ClassDirectory, fingerprints: Fingerprints) -> Released:
+    """The cells with points of all assignments."""
+    path = directory.state / "sources.json"
+    assignments = directory.assignments()
+    fingerprint = " ".join(fingerprints.of_sources(assignment) for assignment in assignments)
+    try:
+        kept = msgspec.json.decode(path.read_bytes(), type=_Kept)
+        if kept.fingerprint == fingerprint:
+            return Released(kept.cells, {})
+    except (OSError, msgspec.MsgspecError):
+        pass
+    cells, unusable = {}, {}
+    for assignment in assignments:
+        try:
+            cells[assignment] = tuple(_read(directory, assignment))
+        except MasterUnusable as error:
+            unusable[assignment] = str(error)
+    if not unusable:
+        write_whole(path, msgspec.json.encode(_Kept(fingerprint, cells)))
+    return Released(cells, unusable)
+
+
+def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, ...]]) -> None:
+    """See that the gradebook knows the cells that the sources have, with the same points.
+
+    Raises:
+        ClassIncomplete: There is no assignment, or the gradebook has it otherwise.
+    """
+    if not cells:
+        raise ClassIncomplete(
+            f"{directory.path / 'source'} holds no assignment. Put one there, or make a new class."
+        )
+    for assignment, wanted in cells.items():
+        entered = gradebook.worth(directory.gradebook_url, assignment)
+        for cell in wanted:
+            if entered.get(cell.notebook, {}).get(cell.name) != cell.worth:
+                raise ClassIncomplete(
+                    f"The gradebook does not know {cell.notebook} as it is in "
+                    f"{directory.path / 'source' / assignment}. Enter it: "
+                    f"cd {directory.path} && {course.root() / 'course'} nbgrader generate_assignment "
+                    f"{assignment} --force"
+                )
+
+
+def _read(directory: ClassDirectory, assignment: str) -> list[GradedCell]:
+    from nbgrader.utils import is_grade, is_task
+
+    from autograder.grading.rebuilding.master import check_of
+    from autograder.grading.rebuilding.rebuild import grade_id
+
+    found = []
+    for notebook in directory.notebooks(assignment):
+        for cell in directory.master(assignment, notebook).cells:
+            name = grade_id(cell)
+            if (check := check_of(cell)) is not None:
+                found.append(GradedCell(notebook, name, check.exercise, check.worth))
+            elif is_grade(cell) or is_task(cell):
+                points = float(cell.metadata.nbgrader["points"])
+                found.append(GradedCell(notebook, name, name, points, by_judge=False))
+    _check_names(directory, assignment, [cell.exercise for cell in found])
+    return found
+
+
+def _check_names(directory: ClassDirectory, assignment: str, names: list[str]) -> None:
+    """See that each line of the table will have a name of its own."""
+    twice = next((name for name in [*names, LATE] if [*names, LATE].count(name) > 1), "")
+    if twice:
+        raise MasterUnusable(
+            f"{directory.path / 'source' / assignment}: two of its lines in the table would be called {twice!r}. Give "
+            "one of the cells another name (grade_id)."
+        )

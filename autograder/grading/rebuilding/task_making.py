@@ -1,0 +1,110 @@
+"""From a submission to a task: the same way behind every door."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder.boxes.execution import Cell, Kind
+from autograder.boxes.limits import Limits
+from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, Submission
+from autograder.grading.classes.seeds import seed_for
+from autograder.grading.rebuilding.course_version import course_version
+from autograder.grading.rebuilding.demonstrations import are_run, demonstrations_of
+from autograder.grading.rebuilding.master import check_of
+from autograder.grading.rebuilding.rebuild import Rebuilt, grade_id, rebuild, rebuild_unreadable
+from autograder.grading.rebuilding.submission import UnreadableSubmission, parse, read_bytes
+from autograder.grading.returning.sanitize import is_the_masters
+from autograder.grading.running import sandboxing
+from autograder.grading.task import Task
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from nbformat import NotebookNode
+
+
+def rebuilt_notebook(path: Path, master: NotebookNode) -> tuple[Rebuilt, str]:
+    """The notebook that stands for the submitted file, and why it was not taken over (empty where it was)."""
+    try:
+        cells, left_out = parse(read_bytes(path))
+    except UnreadableSubmission as error:
+        return rebuild_unreadable(master, str(error)), str(error)
+    return rebuild(master, cells, left_out), ""
+
+
+def task_of(
+    directory: ClassDirectory,
+    student: str,
+    assignment: str,
+    notebook: str,
+    rebuilt: NotebookNode,
+    problem: str,
+) -> Task:
+    """The task that executes a rebuilt notebook under the class's limits."""
+    cells = cells_of(rebuilt, demonstrations=are_run(directory))
+    work = hashlib.sha256(msgspec.json.encode(cells)).hexdigest()
+    return Task(
+        student=student,
+        assignment=assignment,
+        notebook=notebook,
+        cells=cells,
+        seed=seed_for(directory.secret, student, assignment, notebook, work),
+        course=course_version(),
+        limits=limits_of(directory),
+        files=directory.files(assignment),
+        problem=problem,
+        boxed=not sandboxing.switched_off(directory),
+    )
+
+
+def tasks_of(directory: ClassDirectory, submission: Submission) -> list[Task]:
+    """The tasks of a submission, one a notebook of the assignment.
+
+    Raises:
+        MasterUnusable: A source notebook cannot be graded against.
+    """
+    tasks = []
+    for notebook in directory.notebooks(submission.assignment):
+        master = directory.master(submission.assignment, notebook)
+        rebuilt, problem = rebuilt_notebook(submission.folder / f"{notebook}{SUFFIX}", master)
+        tasks.append(
+            task_of(directory, submission.student, submission.assignment, notebook, rebuilt.notebook, problem)
+        )
+    return tasks
+
+
+def limits_of(directory: ClassDirectory) -> Limits:
+    """The limits that the class's configuration sets; the usual ones where it sets none."""
+    configured = directory.config.WireExecute
+    usual = Limits()
+    return Limits(
+        cell_seconds=float(configured.get("cell_seconds", usual.cell_seconds)),
+        notebook_seconds=float(configured.get("notebook_seconds", usual.notebook_seconds)),
+        cpu_seconds=float(configured.get("cpu_seconds", usual.cpu_seconds)),
+        memory_bytes=int(configured.get("memory_bytes", usual.memory_bytes)),
+        processes=int(configured.get("processes", usual.processes)),
+        scratch_bytes=int(configured.get("scratch_bytes", usual.scratch_bytes)),
+    )
+
+
+def cells_of(notebook: NotebookNode, *, demonstrations: bool = True) -> tuple[Cell, ...]:
+    """The cells of a rebuilt notebook as they are executed.
+
+    Args:
+        notebook: The notebook.
+        demonstrations: Also run the cells that only show something.
+    """
+    left_out = frozenset() if demonstrations else demonstrations_of(notebook)
+    return tuple(
+        Cell(
+            source="" if place in left_out else cell.source,
+            kind=Kind(cell.cell_type),
+            check=check_of(cell),
+            name=grade_id(cell),
+            own=not is_the_masters(cell),
+        )
+        for place, cell in enumerate(notebook.cells)
+    )

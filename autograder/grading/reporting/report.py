@@ -1,0 +1,192 @@
+"""What came of grading a class: rows, a table for a person, a CSV file for everything else."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from autograder.grading.entering.journal import write_whole
+from autograder.grading.entering.points import points
+from autograder.grading.reporting.spreadsheet import csv_text
+from autograder.grading.running.timings import Timings
+from autograder.verdict import State
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from autograder.boxes.execution import Execution
+    from autograder.grading.classes.class_directory import Refused
+    from autograder.grading.table.differences import Difference
+    from autograder.grading.task import Task
+
+NOT_SUBMITTED = "not_submitted"
+NOT_GRADED = "not_graded"
+"""Handed in, but left out of every run so far."""
+WAITS = "waits"
+"""A cell that only a person gives points for, and nobody has yet."""
+BY_HAND = "by_hand"
+"""The same, and somebody has."""
+LATE = "late"
+"""Stands in place of the exercise in the row that has what being late costs."""
+COLUMNS = (
+    "student",
+    "assignment",
+    "exercise",
+    "score",
+    "max",
+    "state",
+    "diagnosis",
+    "reason",
+    "judge",
+    "by_hand",
+    "extra",
+    "waits_for_a_person",
+    "name",
+)
+
+
+@dataclass(frozen=True)
+class Row:
+    """One student's result in one exercise.
+
+    Attributes:
+        student: The student's id.
+        assignment: The assignment's name.
+        exercise: The exercise's id; the name of a cell that a person gives points for; or ``late``.
+        score: Points in the gradebook, those that a person gave included.
+        max_score: Points that can be had.
+        state: ``passed``, ``failed``, ``not_checked``, ``not_graded``, ``not_submitted``, ``waits``, ``by_hand``
+            or ``late``.
+        diagnosis: The key of the mistake, empty for none.
+        reason: Its text, empty for none.
+        judged: The judge's points in the gradebook; None where it has none.
+        by_hand: Points that a person gave in their place; None where nobody did.
+        extra: Points that a person gave on top.
+        waits: Whether a person has to look at it.
+        name: The student's name, empty where it is not known.
+    """
+
+    student: str
+    assignment: str
+    exercise: str
+    score: float
+    max_score: float
+    state: str
+    diagnosis: str = ""
+    reason: str = ""
+    judged: float | None = None
+    by_hand: float | None = None
+    extra: float = 0.0
+    waits: bool = False
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class GradeReport:
+    """What came of a batch.
+
+    Attributes:
+        path: The class.
+        rows: By student, in the order of the course.
+        refused: What lies in ``submitted`` and cannot be graded under that name.
+        problems: What else went wrong, each a sentence; none of it earned anybody points.
+        notices: What is worth knowing and is nobody's mistake, each a sentence.
+        would_change: Who would get other points, where nothing was entered; None where it was.
+        executed: Notebooks that were run.
+        reused: Notebooks whose result was known.
+        written: Submissions entered into the gradebook in this run.
+        seconds: Wall time.
+        timings: Where it went.
+    """
+
+    path: Path
+    rows: tuple[Row, ...]
+    refused: tuple[Refused, ...] = ()
+    problems: tuple[str, ...] = ()
+    notices: tuple[str, ...] = ()
+    would_change: tuple[Difference, ...] | None = None
+    executed: int = 0
+    reused: int = 0
+    written: int = 0
+    seconds: float = 0.0
+    timings: Timings = field(default_factory=Timings)
+
+    @property
+    def note(self) -> str:
+        """What whoever reads the points has to know about how they came about; mostly empty."""
+        from autograder.grading.running import sandboxing
+
+        return sandboxing.note(self.path)
+
+    @property
+    def gradebook(self) -> Path:
+        """Nbgrader's gradebook."""
+        return self.path / "gradebook.db"
+
+    @property
+    def csv(self) -> Path:
+        """The file of all rows."""
+        return self.path / "grades.csv"
+
+    @property
+    def feedback(self) -> Path:
+        """The folder of pages that go back to the students."""
+        return self.path / "feedback"
+
+    @property
+    def exit_code(self) -> int:
+        """0 when everything was graded; 2 when something could not be checked or could not be taken."""
+        unchecked = any(row.state == State.NOT_CHECKED for row in self.rows)
+        return 2 if self.refused or self.problems or unchecked else 0
+
+
+def rows_of(task: Task, execution: Execution) -> list[Row]:
+    """The rows of one notebook."""
+    found = []
+    for index, cell in enumerate(task.cells):
+        if cell.check is None:
+            continue
+        verdict = execution.verdicts[index]
+        diagnosis = verdict.diagnosis
+        found.append(
+            Row(
+                student=task.student,
+                assignment=task.assignment,
+                exercise=cell.check.exercise,
+                score=points(cell.check, verdict),
+                max_score=cell.check.worth,
+                state=str(verdict.state),
+                diagnosis=diagnosis.key if diagnosis else "",
+                reason=diagnosis.text if diagnosis else "",
+            )
+        )
+    return found
+
+
+def write_csv(path: Path, rows: Iterable[Row]) -> None:
+    """Write the rows as UTF-8 CSV with the mark by which Excel knows it, replacing the file as a whole.
+
+    Raises:
+        OSError: It could not be written; an earlier file is still there then.
+    """
+    write_whole(path, csv_text([COLUMNS, *map(csv_cells, rows)]).encode("utf-8-sig"))
+
+
+def csv_cells(row: Row) -> tuple[str | float, ...]:
+    """A row as the cells of :data:`COLUMNS`."""
+    return (
+        row.student,
+        row.assignment,
+        row.exercise,
+        row.score,
+        row.max_score,
+        row.state,
+        row.diagnosis,
+        row.reason,
+        "" if row.judged is None else row.judged,
+        "" if row.by_hand is None else row.by_hand,
+        row.extra if row.extra else "",
+        "yes" if row.waits else "",
+        row.name,
+    )

@@ -1,0 +1,163 @@
+"""The end of a grading run, for the person who started it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from autograder.grading.reporting.report import LATE, NOT_SUBMITTED, WAITS
+from autograder.grading.task import UNREADABLE
+from autograder.verdict import State
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from autograder.grading.reporting.report import GradeReport, Row
+
+
+_WIDE = 130
+_STYLES = {State.PASSED: "green", State.FAILED: "red", State.NOT_CHECKED: "yellow", WAITS: "yellow"}
+
+
+def show(report: GradeReport, console: Console | None = None) -> None:
+    """Print the table, what could not be graded, and where everything is.
+
+    Args:
+        report: What came of the batch.
+        console: Standard output by default.
+    """
+    console = console or Console()
+    if not report.rows:
+        submitted = _near(report.path / "submitted")
+        _line(console, f"Nothing was submitted: put notebooks into {submitted}/<student>/<assignment>/.")
+    elif console.width >= _WIDE:
+        console.print(table(report.rows, diagnoses=True))
+    else:
+        console.print(table(report.rows, diagnoses=False))
+        console.print(_diagnoses(report.rows))
+    if report.would_change is not None:
+        _line(console, f"Nothing was entered. {len(report.would_change)} results would change:", "bold")
+        for change in report.would_change:
+            _line(console, f"would change {printable(change.line())}")
+    for words in _legend(report.rows):
+        _line(console, words)
+    for refused in report.refused:
+        _line(console, f"refused      {printable(str(refused.path))}: {refused.reason}", "yellow")
+    for where, reason in _unreadable(report):
+        _line(console, f"unreadable   {printable(where)}: {printable(reason)}", "yellow")
+    for notice in report.notices:
+        _line(console, f"note         {printable(notice)}")
+    for problem in report.problems:
+        _line(console, f"problem      {printable(problem)}", "red")
+    if report.note:
+        _line(console, f"unsafe       {report.note}", "red")
+    counts = (
+        f"{report.executed} notebooks run, {report.reused} unchanged, {report.written} submissions entered"
+    )
+    _line(console, f"{counts}, {report.seconds:.1f} s")
+    for name, path in (
+        ("gradebook", report.gradebook),
+        ("grades", report.csv),
+        ("feedback", report.feedback),
+    ):
+        if path.exists():
+            _line(console, f"{name:<10} {_near(path)}")
+    if report.executed:
+        _line(console, report.timings.line())
+
+
+def table(rows: Sequence[Row], *, diagnoses: bool) -> Table:
+    """Students down, exercises across.
+
+    Args:
+        rows: What is to be shown.
+        diagnoses: Also what is wrong where points are missing; takes about 130 columns.
+    """
+    exercises = list(dict.fromkeys(row.exercise for row in rows if row.exercise != LATE))
+    late = any(row.exercise == LATE for row in rows)
+    results = {(row.student, row.exercise): row for row in rows}
+    shown = Table(header_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
+    shown.add_column("student", overflow="fold")
+    for exercise in exercises:
+        # In two lines, so that four exercises fit a terminal of 80 columns.
+        shown.add_column(exercise.replace(".", "\n."), no_wrap=True)
+    if late:
+        shown.add_column("late", justify="right", no_wrap=True)
+    shown.add_column("total", justify="right", no_wrap=True)
+    for student in dict.fromkeys(row.student for row in rows):
+        own = [row for row in rows if row.student == student]
+        cells = [_cell(results.get((student, exercise)), diagnoses) for exercise in exercises]
+        if late:
+            cells.append(_taken_off(own))
+        total, most = sum(row.score for row in own), sum(row.max_score for row in own)
+        name = f"{student}\n{own[0].name}" if own[0].name else student
+        shown.add_row(Text("\n".join(map(printable, name.split("\n")))), *cells, f"{total:g}/{most:g}")
+    return shown
+
+
+def _taken_off(rows: Sequence[Row]) -> Text:
+    points = sum(row.score for row in rows if row.exercise == LATE)
+    return Text(f"{points:g}" if points else "", style="red")
+
+
+def _diagnoses(rows: Sequence[Row]) -> Table:
+    """A line for each exercise in which a mistake was recognised."""
+    shown = Table.grid(padding=(0, 2))
+    for row in rows:
+        if row.diagnosis:
+            shown.add_row(Text(printable(row.student)), row.exercise, row.diagnosis)
+    return shown
+
+
+def _unreadable(report: GradeReport) -> list[tuple[str, str]]:
+    """What was handed in and is no notebook, with the reason; what was refused has its line already."""
+    refused = {(entry.path.parent.parent.name, entry.path.parent.name) for entry in report.refused}
+    reasons = {
+        f"{row.student}/{row.assignment}": row.reason
+        for row in report.rows
+        if row.diagnosis == UNREADABLE and (row.student, row.assignment) not in refused
+    }
+    return list(reasons.items())
+
+
+def printable(text: str) -> str:
+    """``text`` with whatever could forge a line or move the cursor shown as an escape."""
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
+
+
+def _cell(row: Row | None, diagnoses: bool) -> Text:
+    if row is None or row.state == NOT_SUBMITTED:
+        return Text("–", style="dim")
+    text = Text(f"{row.score:g}/{row.max_score:g}{_mark(row)}", style=_STYLES.get(row.state, "yellow"))
+    if row.diagnosis and diagnoses:
+        text.append(f" {row.diagnosis}", style="default")
+    return text
+
+
+def _mark(row: Row) -> str:
+    return "?" if row.waits else "*" if row.by_hand is not None or row.extra else ""
+
+
+def _legend(rows: Sequence[Row]) -> list[str]:
+    """What the marks behind points say, as far as there are any."""
+    waiting = sum(row.waits for row in rows)
+    marks = {_mark(row) for row in rows}
+    found = ["*  a person gave these points, or some of them"] if "*" in marks else []
+    if waiting:
+        found.append(f"?  waits for a person ({waiting} in all): give the points in formgrader")
+    return found
+
+
+def _line(console: Console, text: str, style: str = "") -> None:
+    console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+
+
+def _near(path: Path) -> Path:
+    """A path as short as it can be typed from here."""
+    here = path.cwd()
+    return path.relative_to(here) if path.is_relative_to(here) else path

@@ -1,0 +1,95 @@
+"""The head of a feedback page: each exercise with its points, where nbgrader's calls each of them "Test cell"."""
+
+from __future__ import annotations
+
+import contextlib
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+import re2
+
+from autograder import exercises
+from autograder.grading.rebuilding.master import exercise_of
+from autograder.grading.rebuilding.rebuild import grade_id, is_check
+from autograder.grading.returning.sanitize import is_the_masters
+from autograder.grading.table.entries import SubmissionEntry, read_entries
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from nbformat import NotebookNode
+
+WAITS = "waits_for_a_person"
+"""The mark of a cell whose points nobody has given yet, among nbgrader's own."""
+_BEGIN, _END = '<div id="toc">', "</div>"
+_LINK = re2.compile(r'(?s)<a\b[^>]*\bhref="([^"]*)"[^>]*>(.*?)</a>')
+_LEADS_SOMEWHERE = re2.compile(r"#|[a-zA-Z][a-zA-Z+.-]*:")
+_CELL = "padding: 4px 14px 4px 0; vertical-align: top; text-align: left"
+
+
+def with_summary(body: str, notebook: NotebookNode, names: Mapping[str, Any]) -> str:
+    """A page with a table of its exercises at the top, in the place of nbgrader's list.
+
+    Args:
+        body: The page; nothing that a student wrote stands before the list.
+        notebook: What it was made of, with points filled in.
+        names: What the template knows of the whole.
+    """
+    before, begin, rest = body.partition(_BEGIN)
+    _, end, after = rest.partition(_END)
+    if not end:
+        return body
+    lines = "".join(
+        f'<tr><td style="{_CELL}">{name}</td><td style="{_CELL}; white-space: nowrap">{points}</td>'
+        f'<td style="{_CELL}">{words}</td></tr>'
+        for name, points, words in _lines(notebook, names)
+    )
+    return f"{before}{begin}<table>{lines}</table>{end}{after}"
+
+
+def mark_waiting(notebook: NotebookNode, url: str, names: Mapping[str, Any]) -> None:
+    """Mark the cells whose points a person still has to give.
+
+    Args:
+        notebook: A graded one; it is changed.
+        url: What SQLAlchemy opens the gradebook by.
+        names: Whose it is: ``student``, ``assignment`` and ``notebook``.
+    """
+    key = (str(names["student"]), str(names["assignment"]))
+    entry = read_entries(url, student=key[0], assignment=key[1]).get(key, SubmissionEntry())
+    kept = entry.cells.get(str(names["notebook"]), {})
+    for cell in notebook.cells:
+        if (name := grade_id(cell)) in kept and kept[name].waits:
+            cell.metadata.nbgrader[WAITS] = True
+
+
+def without_dead_links(page: str) -> str:
+    """A piece of HTML in which what would lead to a file beside the page is plain text: the page travels alone."""
+    return _LINK.sub(lambda link: link[0] if _LEADS_SOMEWHERE.match(link[1]) else link[2], page)
+
+
+def _lines(notebook: NotebookNode, names: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
+    """Name, points and a word on each of the cells with points, as HTML."""
+    for cell in notebook.cells:
+        marks = cell.metadata.get("nbgrader", {})
+        if not (marks.get("grade") or marks.get("task")):
+            continue
+        score, most = float(marks.get("score") or 0), float(marks.get("points") or 0)
+        link = f'<a href="#{escape(grade_id(cell))}">{escape(_title(cell))}</a>'
+        word = "✓ all points" if score >= most else "◐ some points, see below" if score > 0 else "✗ see below"
+        if marks.get(WAITS):
+            word = "… waits for your instructor"
+        if marks.get("comment"):
+            word += f', <a href="#comment-{escape(grade_id(cell))}">with a comment</a>'
+        yield link, f"{score:g} of {most:g}", word
+    if names.get("late_penalty"):
+        yield "Handed in late", f"−{float(names['late_penalty']):g}", ""
+
+
+def _title(cell: NotebookNode) -> str:
+    """The exercise's title for a check of the judge; the cell's own name for any other."""
+    name = grade_id(cell)
+    if is_check(cell) and is_the_masters(cell):
+        with contextlib.suppress(LookupError):
+            return str(exercises.get(exercise_of(name)).title)
+    return name.replace("_", " ")

@@ -1,0 +1,316 @@
+"""What a submission wrote, made harmless for the browser of whoever reads it.
+
+nbconvert hands raw HTML, Mermaid diagrams and any address through to the page, in nbgrader's feedback and in
+formgrader alike. So a student's text is looked at with nbconvert's own Markdown parser before it is written
+into ``autograded/``: plain Markdown stays as it was written, anything else is rendered, cleaned with Bleach and
+kept as that HTML. The pages are cleaned once more where they are made (:mod:`autograder.grading.pages`).
+"""
+
+from __future__ import annotations
+
+import functools
+from html import escape, unescape
+from typing import TYPE_CHECKING, Any
+
+import re2
+from bleach.css_sanitizer import CSSSanitizer
+from bleach.sanitizer import Cleaner
+from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
+from pygments.token import STANDARD_TYPES
+
+from autograder.boxes.execution import Kind
+from autograder.boxes.outputs import IMAGES
+from autograder.grading.rebuilding import nodes
+from autograder.grading.returning.page_limits import HARMLESS_LENGTH
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable
+
+    from nbformat import NotebookNode
+
+LONGEST_MARKDOWN = 50_000
+"""Characters of a text cell that are rendered; a longer one is shown as it was typed."""
+SHOWN = (*IMAGES, "text/plain")
+"""The types of output that a cell of a submission may show; none can carry code."""
+
+_TAGS = frozenset(
+    {
+        "a",
+        "abbr",
+        "b",
+        "blockquote",
+        "br",
+        "caption",
+        "center",
+        "code",
+        "dd",
+        "del",
+        "details",
+        "div",
+        "dl",
+        "dt",
+    }
+    | {
+        "em",
+        "h1",
+        "h2",
+        "h3",
+        "h4",
+        "h5",
+        "h6",
+        "hr",
+        "i",
+        "img",
+        "input",
+        "ins",
+        "kbd",
+        "li",
+        "mark",
+        "ol",
+        "p",
+    }
+    | {
+        "pre",
+        "q",
+        "s",
+        "samp",
+        "small",
+        "span",
+        "strike",
+        "strong",
+        "sub",
+        "summary",
+        "sup",
+        "table",
+        "tbody",
+    }
+    | {"td", "tfoot", "th", "thead", "tr", "tt", "u", "ul", "var"}
+)
+_ATTRIBUTES = {
+    "a": {"title"},
+    "abbr": {"title"},
+    "details": {"open"},
+    "img": {"alt", "title", "width", "height"},
+    "ol": {"start"},
+    "td": {"colspan", "rowspan"},
+    "th": {"colspan", "rowspan"},
+}
+# Only what opens a page when it is clicked. No "//" at the beginning: it would be another host.
+_LINK = re2.compile(r"https?://\S+|mailto:[^\s:]+|#\S*|(/|/?[\w%.-][\w%./-]*)(#\S*)?")
+_PICTURE = re2.compile(r"data:image/(png|jpeg|gif|webp);base64,[A-Za-z0-9+/=\s]*")
+_DATA, _ATTACHED = "data:image/png;base64,", "attachment:"
+Figures = tuple[tuple[str, str], ...]
+"""The names of PNGs and their contents, as a notebook keeps them."""
+# Those that Pygments gives to pieces of code, and mistune to a block of it: others could dress a text up as a
+# verdict, or lay it over the page.
+_CLASSES = {name for name in STANDARD_TYPES.values() if name} | {"highlight"}
+_LANGUAGE = re2.compile(r"language-[\w+-]{1,30}")
+
+
+_TURNS = {
+    code: f"\\u{code:04x}"
+    for code in (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))
+}
+"""What turns the direction of writing, so that a text reads as another one (Unicode TR 36, "Bidirectional Text")."""
+
+
+def visible(text: str) -> str:
+    """``text`` with whatever turns the direction of writing shown as an escape."""
+    return text if text.isascii() else text.translate(_TURNS)
+
+
+def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> NotebookNode:
+    """Change what a student wrote so that no browser executes, fetches or is misled by any of it.
+
+    Cells that the master brought along stay as they are, and so do the outputs of its check cells, which the
+    judge's verdict is in. Nothing else of a notebook is believed.
+
+    Args:
+        notebook: A rebuilt or graded notebook; it is changed.
+        as_they_are: The places of cells whose text nobody is to render, as it would take too long. Even what is shown
+            letter by letter goes through nbconvert's filters, so all of them together are cut to a length.
+
+    Returns:
+        The same notebook.
+    """
+    longest = _longest_shown([len(cell.source) for n, cell in enumerate(notebook.cells) if n in as_they_are])
+    for place, cell in enumerate(notebook.cells):
+        if not is_the_masters(cell):
+            cell.source = visible(cell.source)
+            if place in as_they_are:
+                cell.source = _cut(cell.source, longest)
+            if cell.cell_type == Kind.MARKDOWN:
+                if place in as_they_are:
+                    cell.source = as_typed(cell.source)
+                else:
+                    cell.source = harmless_markdown(cell.source, _figures(cell))
+            elif cell.cell_type == Kind.RAW:
+                cell.update(nodes.cell(Kind.MARKDOWN, as_typed(cell.source)) | {"id": cell.id})
+            elif place in as_they_are:
+                cell.metadata["magics_language"] = "text"  # what nbconvert then takes the code for
+        if cell.cell_type == Kind.CODE and not _is_check(cell):
+            cell.outputs = [harmless_output(output) for output in cell.outputs]
+    return notebook
+
+
+def is_the_masters(cell: Any) -> bool:
+    """Whether a cell of a rebuilt notebook is the master's, word for word."""
+    marks = cell.get("metadata", {}).get("nbgrader", {})
+    return bool(marks.get("locked")) and not marks.get("solution")
+
+
+# Most text cells of a class are the ones that were handed out: looked at once, not once a student.
+@functools.lru_cache(maxsize=1024)
+def harmless_markdown(source: str, figures: Figures = ()) -> str:
+    """Markdown that says the same as ``source`` and can do nothing.
+
+    Args:
+        source: Whatever a student typed into a text cell.
+        figures: Those of the master that the cell has been given; each may be shown once.
+    """
+    if len(source) > LONGEST_MARKDOWN:
+        return as_typed(source)
+    try:
+        looking = _Looking(figures)
+        rendered = MarkdownWithMath(renderer=looking).render(source)
+        if visible(plain := unescape(rendered)) != plain:
+            return as_typed(source)  # a change of direction may be written as an entity
+        cleaned = clean(rendered)
+        if looking.is_plain and cleaned.count("&lt;") == rendered.count("&lt;"):
+            return source
+        if cleaned.strip() == source:
+            return source  # it has been here before
+        block = f"<div>{_in_one_line(cleaned)}</div>"
+        return block if _as_shown(block).strip() == block else as_typed(source)
+    except Exception:  # what is nested too deeply, for one; a parser may raise anything on hostile text
+        return as_typed(source)
+
+
+def as_typed(source: str) -> str:
+    """Markdown that shows ``source`` letter by letter."""
+    fence = "`" * (3 + max((len(run) for run in re2.findall(r"`+", source)), default=0))
+    return f"{fence}text\n{_cut(source, LONGEST_MARKDOWN)}\n{fence}"
+
+
+def _figures(cell: Any) -> Figures:
+    """The figures of a text cell; anything else that is attached to it is taken off."""
+    attached = cell.pop("attachments", {})
+    figures = {name: str(kinds.get("image/png", "")) for name, kinds in attached.items()}
+    figures = {name: data for name, data in figures.items() if data and _PICTURE.fullmatch(_DATA + data)}
+    if figures:
+        cell["attachments"] = {name: {"image/png": data} for name, data in figures.items()}
+    return tuple(figures.items())
+
+
+def _longest_shown(lengths: Iterable[int]) -> int:
+    """To how many characters texts of these lengths are cut, so that all of them together are harmless."""
+    left, fewest_first = HARMLESS_LENGTH, sorted(lengths)
+    for place, length in enumerate(fewest_first):
+        share = left // (len(fewest_first) - place)
+        if length > share:
+            return share
+        left -= length
+    return HARMLESS_LENGTH
+
+
+def _cut(source: str, length: int) -> str:
+    return source if len(source) <= length else f"{source[:length]}\n[{len(source) - length} more characters]"
+
+
+def _in_one_line(page: str) -> str:
+    """HTML without line breaks: a blank line would end the block, and Markdown would be read again behind it."""
+    pieces = re2.split(r"(?s)(<pre\b.*?</pre>)", page.strip())
+    return "".join(("&#10;" if i % 2 else " ").join(piece.splitlines()) for i, piece in enumerate(pieces))
+
+
+@functools.lru_cache(maxsize=1024)
+def clean(page: str) -> str:
+    """A piece of HTML with nothing in it but text, its structure, links and pictures that it brings along."""
+    return Cleaner(
+        tags=_TAGS,
+        attributes=_may_stay,
+        protocols={"http", "https", "mailto", "data"},
+        css_sanitizer=CSSSanitizer(allowed_css_properties=["text-align"]),
+    ).clean(page)
+
+
+def _may_stay(tag: str, name: str, value: str) -> bool:
+    if name == "class":
+        return all(word in _CLASSES or _LANGUAGE.fullmatch(word) for word in value.split())
+    if name == "style":  # mistune's way of aligning a column
+        return tag in ("td", "th")
+    if tag == "input":  # a task list's box; it cannot be ticked or typed into
+        return name == "disabled" or (name == "type" and value == "checkbox")
+    if tag == "a" and name == "href":
+        return _LINK.fullmatch(unescape(value)) is not None
+    if tag == "img" and name == "src":
+        return _PICTURE.fullmatch(unescape(value)) is not None
+    return name in _ATTRIBUTES.get(tag, ())
+
+
+class _Looking(IPythonRenderer):
+    """Renders as nbconvert does, and notes whatever is more than plain Markdown."""
+
+    def __init__(self, figures: Figures = ()) -> None:
+        attachments = {name: {"image/png": data} for name, data in figures}
+        super().__init__(escape=False, exclude_anchor_links=True, attachments=attachments)
+        self.is_plain = True
+        self._left = set(attachments)
+
+    def block_html(self, html: str) -> str:
+        """HTML on lines of its own."""
+        self.is_plain = False
+        return super().block_html(html)
+
+    def inline_html(self, html: str) -> str:
+        """HTML within a line."""
+        self.is_plain = False
+        return super().inline_html(html)
+
+    def block_mermaidjs(self, code: str) -> str:
+        """A diagram, which nbconvert writes into the page without escaping it."""
+        self.is_plain = False
+        return f"<pre>{escape(code)}</pre>"
+
+    def link(self, text: str, url: str, title: str | None = None) -> str:
+        """A link."""
+        if not _LINK.fullmatch(unescape(url)):
+            self.is_plain = False
+        return super().link(text, url, title)
+
+    def image(self, text: str, url: str, title: str | None = None) -> str:
+        """A picture: one that comes from elsewhere would tell who reads the page, and when."""
+        if (name := url.removeprefix(_ATTACHED)) != url and name in self._left:
+            self._left.remove(name)
+            return super().image(text, url, title)
+        if not _PICTURE.fullmatch(url):
+            self.is_plain = False
+            return f"<em>[picture left out: {escape(text)}]</em>"
+        return super().image(text, url, title)
+
+
+def _as_shown(markdown: str) -> str:
+    """What nbconvert will make of it."""
+    return MarkdownWithMath(renderer=IPythonRenderer(escape=False)).render(markdown)
+
+
+def _is_check(cell: Any) -> bool:
+    return is_the_masters(cell) and bool(cell.metadata.nbgrader.get("grade"))
+
+
+def harmless_output(output: NotebookNode) -> NotebookNode:
+    """An output of a student's cell with nothing in it but texts and bitmaps; it is changed."""
+    if "data" in output:
+        output.data = {kind: _visible(output.data[kind]) for kind in SHOWN if kind in output.data}
+        output.metadata = {}
+    for words in ("text", "ename", "evalue", "traceback"):
+        if words in output:
+            output[words] = _visible(output[words])
+    return output
+
+
+def _visible(words: Any) -> Any:
+    """The same for the text, or the lines, of an output."""
+    if isinstance(words, str):
+        return visible(words)
+    return [_visible(line) for line in words] if isinstance(words, list) else words

@@ -1,0 +1,249 @@
+"""Executing tasks side by side, each in a worker process of its own, as many at once as the machine bears."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import queue
+import threading
+import time
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import psutil
+
+from autograder.boxes.scratch import remove_tree
+from autograder.grading.running.pacing import TICK, Gate, Machine, Pace, cores
+from autograder.grading.running.worker import JUDGE
+from autograder.grading.running.worker_process import GOODBYE_SECONDS, WorkerProcess
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator, Iterable, Iterator
+    from pathlib import Path
+
+    from autograder.boxes.execution import Execution
+    from autograder.grading.task import Task
+
+__all__ = ["Done", "execute_all", "execute_one"]
+
+
+@dataclass(frozen=True)
+class Done:
+    """A task that was executed, or could not be."""
+
+    task: Task
+    execution: Execution
+
+
+def execute_all(
+    tasks: Iterable[Task],
+    scratch: Path,
+    workers: int | None = None,
+    *,
+    on_start: Callable[[Task], None] = lambda _: None,
+    judge: str = JUDGE,
+) -> Generator[Done, None, None]:
+    """Execute tasks in parallel; results come as they are ready.
+
+    Leaving the loop early ends every worker and what it runs.
+
+    Args:
+        tasks: In the order in which they are begun; each is asked for, from a thread, when there is a place for it.
+        scratch: Where submissions run; emptied at the end.
+        workers: How many run at once; found out while they run where it is None.
+        on_start: Called from a thread when a task is begun.
+        judge: What makes a judge, as ``module:class``.
+    """
+    pace = Pace(cores(), psutil.virtual_memory().available)
+    gate = Gate(workers or pace.first)
+    crew = _Crew(_Feed(tasks), scratch, gate, judge, on_start, beside=workers != 1)
+    pacer = None if workers else _Pacer(crew, pace)
+    try:
+        crew.fill()
+        if pacer is not None:
+            pacer.start()
+        yield from crew.results()
+    finally:
+        if pacer is not None:
+            pacer.stop()
+        crew.end()
+        with contextlib.suppress(OSError):
+            remove_tree(scratch)
+            scratch.parent.rmdir()
+
+
+def execute_one(task: Task, scratch: Path, *, judge: str = JUDGE) -> Execution:
+    """Execute a single task; for the arguments see :func:`execute_all`."""
+    running = execute_all([task], scratch / str(os.getpid()), 1, judge=judge)
+    with contextlib.closing(running):
+        return next(running).execution
+
+
+class _Feed:
+    """Tasks, for many threads.
+
+    What could not be checked, or needs more memory than its share, comes once more when everything else is done, one at
+    a time: whatever the machine was short of was perhaps used up by another submission.
+    """
+
+    def __init__(self, tasks: Iterable[Task]) -> None:
+        self._tasks: Iterator[Task] = iter(tasks)
+        self._changed = threading.Condition()
+        self._again: list[Task] = []
+        self._running = 0
+        self.taken = 0
+        self.exhausted = False
+
+    def next(self) -> tuple[Task, bool] | None:
+        """The next task and whether it may come again, or None where there is none. To be followed by :meth:`done`."""
+        with self._changed:
+            task = None if self.exhausted else next(self._tasks, None)
+            if task is not None:
+                self.taken += 1
+                self._running += 1
+                return task, True
+            self.exhausted = True
+            if not self._again:
+                return None
+            self._changed.wait_for(lambda: self._running == 0)
+            if not self._again:
+                return None
+            self._running += 1
+            return self._again.pop(), False
+
+    def done(self, again: Task | None = None) -> None:
+        """A task is done, or is to come again."""
+        with self._changed:
+            self._running -= 1
+            if again is not None:
+                self._again.append(again)
+            self._changed.notify_all()
+
+
+class _Crew:
+    """The workers of a run, each with a thread that speaks with it."""
+
+    def __init__(
+        self,
+        feed: _Feed,
+        scratch: Path,
+        gate: Gate,
+        judge: str,
+        on_start: Callable[[Task], None],
+        *,
+        beside: bool,
+    ) -> None:
+        self.feed, self.gate = feed, gate
+        self._scratch, self._judge, self._on_start = scratch, judge, on_start
+        self._beside = beside
+        # None is a thread that found nothing more to do: whoever waits for results looks again.
+        self._done: queue.SimpleQueue[Done | BaseException | None] = queue.SimpleQueue()
+        self._threads: list[_WorkerThread] = []
+
+    def fill(self) -> None:
+        """Have as many threads as may be at work. From one thread at a time."""
+        while len(self._threads) < self.gate.allowed and not self.feed.exhausted:
+            worker = WorkerProcess(self._scratch / str(len(self._threads)), judge=self._judge)
+            thread = _WorkerThread(
+                worker, self.feed, self.gate, self._done, self._on_start, beside=self._beside
+            )
+            self._threads.append(thread)
+            thread.start()
+
+    def results(self) -> Iterator[Done]:
+        """Results until the last task is done."""
+        received = 0
+        while not (self.feed.exhausted and received == self.feed.taken):
+            result = self._done.get()
+            if isinstance(result, BaseException):
+                raise result
+            if result is not None:
+                received += 1
+                yield result
+
+    def end(self) -> None:
+        """End every worker and what it runs."""
+        self.feed.exhausted = True
+        self.gate.close()
+        for thread in self._threads:
+            thread.worker.stop()
+        deadline = time.monotonic() + GOODBYE_SECONDS
+        for thread in self._threads:
+            thread.join(max(0.0, deadline - time.monotonic()))
+        for thread in self._threads:
+            thread.worker.kill()
+        for thread in self._threads:
+            thread.join()
+
+
+class _WorkerThread(threading.Thread):
+    """Takes task after task until none is left."""
+
+    def __init__(
+        self,
+        worker: WorkerProcess,
+        feed: _Feed,
+        gate: Gate,
+        done: queue.SimpleQueue[Done | BaseException | None],
+        on_start: Callable[[Task], None],
+        *,
+        beside: bool,
+    ) -> None:
+        super().__init__(daemon=True)
+        self.worker = worker
+        self._beside = beside
+        self._feed, self._gate, self._done, self._on_start = feed, gate, done, on_start
+
+    def run(self) -> None:
+        """The thread's life."""
+        try:
+            while self._gate.enter():
+                try:
+                    given = self._feed.next()
+                    if given is None:
+                        return
+                    self._execute(*given)
+                finally:
+                    self._gate.leave()
+        except BaseException as error:  # the main thread waits for results: tell it
+            self._done.put(error)
+        finally:
+            self._done.put(None)
+            self.worker.end()
+
+    def _execute(self, task: Task, may_come_again: bool) -> None:
+        again = None
+        try:
+            if may_come_again:
+                self._on_start(task)
+            limits = replace(task.limits, beside=self._beside and may_come_again)
+            execution = self.worker.execute(replace(task, limits=limits))
+            says_nothing = bool(execution.trouble) or execution.needs_room
+            if says_nothing and may_come_again and not self.worker.stopping:
+                again = task
+            else:
+                self._done.put(Done(task, execution))
+        finally:
+            self._feed.done(again)
+
+
+class _Pacer(threading.Thread):
+    """Lets more or fewer run at once, by what the machine says."""
+
+    def __init__(self, crew: _Crew, pace: Pace) -> None:
+        super().__init__(daemon=True)
+        self._crew, self._pace = crew, pace
+        self._stopped = threading.Event()
+
+    def run(self) -> None:
+        """The thread's life."""
+        pace, machine, gate = self._pace, Machine(), self._crew.gate
+        while not self._stopped.wait(TICK) and not self._crew.feed.exhausted:
+            all_at_work = gate.inside >= gate.allowed
+            gate.allow(pace.next(gate.allowed, machine.look(), all_at_work=all_at_work))
+            self._crew.fill()
+
+    def stop(self) -> None:
+        """Change nothing any more."""
+        self._stopped.set()
+        self.join()

@@ -1,0 +1,76 @@
+"""Where tasks are executed: on this machine, or by the workers of a cluster. Open it, hand over tasks, leave it."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import TYPE_CHECKING
+
+from autograder.boxes.scratch import remove_tree
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator, Iterable, Iterator
+
+    from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.running.engine import Done
+    from autograder.grading.task import Task
+
+    Execute = Callable[[Iterable[Task], Callable[[Task], None]], Generator[Done, None, None]]
+    """Tasks in the order in which they are begun, and what to call when one is; results as they are ready."""
+
+_BATCH = "batch"
+"""The folder of a class's batch among its temporary files."""
+
+
+def remove_leftovers(directory: ClassDirectory) -> None:
+    """Remove what a killed batch has left among the temporary files, also where nothing is to be executed.
+
+    To be called by whoever holds the class's lock: nobody else is at work in it.
+    """
+    from autograder.grading.errors import ClassIncomplete
+
+    with contextlib.suppress(ClassIncomplete, OSError):
+        remove_tree(directory.scratch() / _BATCH)
+        directory.scratch().rmdir()
+
+
+@contextlib.contextmanager
+def here(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[Execute]:
+    """This machine.
+
+    Args:
+        directory: The class.
+        jobs: Notebooks at once; as many as load and memory allow where it is None.
+        judge: What makes a judge, as ``module:class``; the real one where empty.
+    """
+    from autograder.grading.running import engine
+    from autograder.grading.running.worker import JUDGE
+
+    def execute(tasks: Iterable[Task], on_start: Callable[[Task], None]) -> Generator[Done, None, None]:
+        scratch = directory.scratch() / _BATCH
+        return engine.execute_all(tasks, scratch, jobs, on_start=on_start, judge=judge or JUDGE)
+
+    yield execute
+
+
+@contextlib.contextmanager
+def on_cluster(
+    directory: ClassDirectory, scheduler: str, judge: str, tell: Callable[[str], None]
+) -> Iterator[Execute]:
+    """The workers of a Dask cluster.
+
+    Args:
+        directory: The class.
+        scheduler: The scheduler's address.
+        judge: What makes a judge, as ``module:class``; the real one where empty.
+        tell: Called with a sentence for the instructor.
+
+    Raises:
+        GradingError: The cluster cannot be used; the message says why.
+    """
+    from autograder.grading.cluster.connection import connected
+    from autograder.grading.running import sandboxing
+    from autograder.grading.running.worker import JUDGE
+
+    boxed = not sandboxing.switched_off(directory)
+    with connected(scheduler, judge=judge or JUDGE, boxed=boxed, tell=tell) as pool:
+        yield pool.execute_all

@@ -1,0 +1,190 @@
+"""What a person sees while a class is graded: a bar in a terminal, plain lines in a log file or in a notebook.
+
+The time left is reckoned from the notebooks that are done. Where that time has passed and somebody still runs, it was
+no good measure, and what is said then is who runs for how long, and when that one is stopped at the latest.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import TYPE_CHECKING, Self
+
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, TimeElapsedColumn
+from rich.progress import TextColumn as Words
+from rich.text import Text
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import TracebackType
+
+    from rich.console import Console
+    from rich.progress import Task
+
+_LINES = 20
+"""Lines at most that a whole batch puts into a log file."""
+_SILENCE = 30.0
+"""Seconds after which a log file is told of whoever takes longer than was said."""
+
+
+class _Now(ProgressColumn):
+    """What is going on now: asked whenever the bar is drawn, not only when a notebook begins or ends."""
+
+    def __init__(self, now: Callable[[], str]) -> None:
+        super().__init__()
+        self._now = now
+
+    def render(self, task: Task) -> Text:
+        """The words beside the bar."""
+        del task
+        return Text(self._now())
+
+
+class BatchProgress:
+    """Counts notebooks done, running, waiting and failed. Safe to call from any thread.
+
+    Args:
+        console: Where to show it.
+        total: Notebooks to execute.
+        doing: What is being done to them, as the bar says it.
+        did: The same when it is done.
+        longest: Seconds after which a notebook is stopped in any case; None where nobody knows.
+        clock: Tells seconds.
+    """
+
+    def __init__(
+        self,
+        console: Console,
+        total: int,
+        *,
+        doing: str = "grading",
+        did: str = "graded",
+        longest: float | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._console = console
+        self._total = total
+        self._did = did
+        self._done = 0
+        self._failed = 0
+        self._running: dict[str, float] = {}
+        self._longest = longest
+        self._clock = clock
+        self._began = self._last = clock()
+        self._closed = threading.Event()
+        self._lock = threading.Lock()
+        # A notebook is no terminal: what moves the cursor there is shown as it is.
+        self._lively = console.is_terminal and not console.is_jupyter
+        self._bar = Progress(
+            Words(doing),
+            BarColumn(bar_width=None),
+            MofNCompleteColumn(),
+            _Now(lambda: ", ".join(self._now())),
+            TimeElapsedColumn(),
+            console=console,
+            transient=True,
+            refresh_per_second=4,
+        )
+        self._task = self._bar.add_task("", total=total)
+
+    def __enter__(self) -> Self:
+        if self._lively and self._total:
+            self._bar.start()
+        elif self._total:
+            threading.Thread(target=self._break_silence, daemon=True).start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._closed.set()
+        if self._bar.live.is_started:
+            self._bar.stop()
+
+    def started(self, label: str) -> None:
+        """A notebook is being executed now.
+
+        Args:
+            label: What it is called.
+        """
+        with self._lock:
+            self._running[label] = self._clock()
+
+    def finished(self, label: str, failed: bool, note: str = "") -> None:
+        """A notebook is done.
+
+        Args:
+            label: What it is called, here and when it began.
+            failed: Whether the grader itself had trouble with it.
+            note: What a line says behind its name.
+        """
+        with self._lock:
+            self._running.pop(label, None)
+            self._done += 1
+            self._failed += failed
+            self._last = self._clock()
+            self._bar.update(self._task, completed=self._done)
+            step = max(1, self._total // _LINES)
+            line = failed or self._done % step == 0 or self._done == self._total
+            text = f"{self._did} {self._done} of {self._total}: {label}{note}{self._rest()}"
+        if line and not self._lively:
+            self._console.print(text, markup=False, highlight=False, soft_wrap=True)
+
+    def tell(self) -> None:
+        """Say in a log file who takes longer than was said, where somebody does."""
+        with self._lock:
+            late = self._is_late() and f"still {', '.join(self._now())}"
+        if late:
+            self._console.print(late, markup=False, highlight=False, soft_wrap=True)
+
+    def _break_silence(self) -> None:
+        while not self._closed.wait(_SILENCE):
+            self.tell()
+
+    def _rest(self) -> str:
+        """What stands in brackets behind a line of a log file; nothing behind the last one."""
+        return f" ({', '.join(self._now())})" if self._done < self._total else ""
+
+    def _now(self) -> list[str]:
+        waiting = max(0, self._total - self._done - len(self._running))
+        words = [f"{len(self._running)} running", f"{waiting} waiting"]
+        if self._failed:
+            words.append(f"{self._failed} not checked")
+        if self._is_late():
+            words += self._slowest()
+        elif self._done:
+            words.append(_rate(1 / self._each()))
+            words.append(f"about {_duration(self._last + self._rest_of_all() - self._clock())} left")
+        return words
+
+    def _each(self) -> float:
+        """Seconds from one notebook that was done to the next."""
+        return max(1e-3, self._last - self._began) / max(1, self._done)
+
+    def _rest_of_all(self) -> float:
+        return self._each() * (self._total - self._done)
+
+    def _is_late(self) -> bool:
+        """Whether the time that was said has passed, and somebody still runs."""
+        return bool(self._running and self._done) and self._clock() > self._last + self._rest_of_all()
+
+    def _slowest(self) -> list[str]:
+        # A copy, since notebooks begin and end in other threads.
+        label, since = min(self._running.copy().items(), key=lambda one: one[1])
+        seconds = self._clock() - since
+        words = [f"{label} for {_duration(seconds)} now"]
+        if self._longest is not None and seconds < self._longest:
+            words.append(f"it is stopped in {_duration(self._longest - seconds)} at the latest")
+        return words
+
+
+def _rate(per_second: float) -> str:
+    return f"{per_second:.1f}/s" if per_second >= 1 else f"{60 * per_second:.1f}/min"
+
+
+def _duration(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    if hours:
+        return f"{hours} h {minutes:02} min"
+    return f"{minutes} min {rest:02} s" if minutes else f"{rest} s"

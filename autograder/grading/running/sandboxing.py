@@ -1,0 +1,60 @@
+"""No sandbox, no silent grading: who may go on without one, and what is said then."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.errors import GradingError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+NOTE = (
+    "Graded without a sandbox: what was handed in ran with all rights of whoever graded it "
+    "and could have changed any grade."
+)
+"""In the report and on each page of feedback."""
+
+
+class SandboxMissing(GradingError):
+    """Submissions cannot be shut off here, and nobody has said to go on all the same."""
+
+
+_off: set[Path] = set()
+"""The classes for which it was typed. nbgrader makes its own objects of a class on the way to the notebooks."""
+
+
+def switch_off(path: Path) -> None:
+    """What ``--unsafe-no-sandbox`` does for the class at ``path``, in this process."""
+    _off.add(path.resolve())
+
+
+def switched_off(directory: ClassDirectory) -> bool:
+    """Whether this class is graded without boxes, by its configuration or by :func:`switch_off`."""
+    configured = directory.config.WireExecute.get("unsafe_no_sandbox", False)
+    return bool(configured) or directory.path.resolve() in _off
+
+
+def note(path: Path) -> str:
+    """What whoever reads the points of a class has to know about how they came about; mostly empty."""
+    return NOTE if switched_off(ClassDirectory(path)) else ""
+
+
+def require(directory: ClassDirectory) -> None:
+    """Make sure that submissions of this class can be boxed, or that it was said to go on without.
+
+    Raises:
+        SandboxMissing: The message says why there is none and what to do.
+    """
+    if switched_off(directory):
+        return
+    from autograder.boxes.sandbox import why_impossible
+
+    why = why_impossible()
+    if why:
+        raise SandboxMissing(
+            f"Submissions cannot be shut off from your files and from each other here: {why}. "
+            "To grade all the same, trusting every submission: --unsafe-no-sandbox, "
+            "or c.WireExecute.unsafe_no_sandbox = True in nbgrader_config.py."
+        )

@@ -1,0 +1,74 @@
+"""Where the time of a batch went."""
+
+from __future__ import annotations
+
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from autograder.boxes.execution import Cell, Execution
+
+
+@dataclass
+class Timings:
+    """Seconds of wall time by what they were spent on; those of notebooks that ran side by side are added up.
+
+    Attributes:
+        boxes: Boxes, kernels and judges, until they were ready and until they were gone.
+        students: Cells that are no checks: the student's own, and those that were given.
+        judge: Check cells, with the subject that is judged in them.
+        rebuild: Reading submissions and building the notebooks that run.
+        gradebook: Converting notebooks and entering grades.
+        feedback: Making pages.
+        first_started: When the first notebook began, in seconds since the start of the batch.
+        last_ended: When the last one was done, in the same seconds.
+    """
+
+    boxes: float = 0.0
+    students: float = 0.0
+    judge: float = 0.0
+    rebuild: float = 0.0
+    gradebook: float = 0.0
+    feedback: float = 0.0
+    first_started: float = 0.0
+    last_ended: float = 0.0
+
+    def count(self, cells: Sequence[Cell], execution: Execution) -> None:
+        """Add one notebook's execution."""
+        spent = [run.seconds for run in execution.cells]
+        checks = sum(
+            seconds
+            for cell, seconds in zip(cells, spent, strict=False)
+            if cell.check and not cell.check.asserts
+        )
+        self.judge += checks
+        self.students += sum(spent) - checks
+        self.boxes += max(0.0, execution.seconds - sum(spent))
+
+    @contextmanager
+    def measure(self, part: str) -> Iterator[None]:
+        """Add what the block takes to ``part``."""
+        began = time.monotonic()
+        try:
+            yield
+        finally:
+            setattr(self, part, getattr(self, part) + time.monotonic() - began)
+
+    def line(self) -> str:
+        """One line for a person; empty where nothing took any time."""
+        parts = (
+            ("boxes and kernels", self.boxes),
+            ("students' code", self.students),
+            ("judge", self.judge),
+            ("rebuilding", self.rebuild),
+            ("gradebook", self.gradebook),
+            ("feedback", self.feedback),
+        )
+        total = sum(seconds for _, seconds in parts)
+        if total < 0.05:
+            return ""
+        return "time went into " + ", ".join(f"{name} {seconds:.1f} s" for name, seconds in parts)

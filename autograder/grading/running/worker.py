@@ -1,0 +1,216 @@
+"""A process that executes tasks one after the other: JSON lines in, JSON lines out.
+
+It is a process of its own also when there is only one notebook to grade, because it makes itself the parent
+of every daemon that a submission starts, and ends them all. When the grader that started it goes away, so
+does it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import importlib
+import os
+import queue
+import signal
+import sys
+import threading
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO, Self
+
+import msgspec
+
+from autograder.boxes.execution import Ended, Execution
+from autograder.boxes.fork_server_client import Addresses
+from autograder.boxes.limits import raise_own
+from autograder.boxes.missing_verdict import grader_trouble
+from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
+from autograder.boxes.processes import adopt_orphans, end_descendants
+from autograder.boxes.runner import run_notebook
+from autograder.boxes.sandbox import NoSandbox
+from autograder.boxes.scratch import scratch_folder
+from autograder.grading.returning.page_budget import too_costly
+from autograder.grading.running.workspaces import arrange, served
+from autograder.grading.task import Task, decode_task, encode
+from autograder.judge.serving import attached
+from autograder.judge.serving.domain import lease
+from autograder.judge.settings import boxed_ros_environment, ros_environment
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterator, Mapping
+
+    from autograder.verdict import Verdict
+
+JUDGE = "autograder.judge.serving.process:JudgeProcess"
+SOCKET_VARIABLE = "AUTOGRADER_JUDGE_SOCKET"
+
+
+def main(arguments: list[str]) -> None:
+    """Work until standard input ends.
+
+    Args:
+        arguments: The scratch folder, what makes a judge (``module:class``), and where the fork servers listen,
+            as JSON.
+    """
+    scratch, judge = Path(arguments[0]), _imported(arguments[1])
+    addresses = msgspec.json.decode(arguments[2], type=Addresses)
+    results = _private_stdout()
+    raise_own()
+    adopt_orphans()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
+    for line in _lines():
+        execution = execute(decode_task(line), scratch, judge, addresses)
+        end_descendants()
+        results.write(encode(execution) + b"\n")
+        results.flush()
+
+
+def execute(task: Task, scratch: Path, judge: Any, addresses: Addresses) -> Execution:
+    """Execute one task; whatever fails on our side is in the result.
+
+    Args:
+        task: The task.
+        scratch: Where a folder for it is made.
+        judge: Makes a judge from a socket's path, a seed and what starts its process.
+        addresses: Where the fork servers listen; without one for supervisors there is no sandbox.
+    """
+    try:
+        with contextlib.ExitStack() as stack:
+            folder = stack.enter_context(scratch_folder(scratch))
+            execution = _execute(task, folder, judge, addresses, stack)
+        return replace(execution, as_typed=too_costly(task.cells))
+    except Exception as error:
+        reason = f"{type(error).__name__}: {error}"
+        verdicts = {i: grader_trouble(cell.check, reason) for i, cell in enumerate(task.cells) if cell.check}
+        return Execution(cells=(), verdicts=verdicts, trouble=reason)
+    finally:
+        # Also when we are being ended: nothing of the submission may outlive us.
+        end_descendants()
+
+
+def _execute(
+    task: Task, folder: Path, judge: Any, addresses: Addresses, stack: contextlib.ExitStack
+) -> Execution:
+    if task.boxed and not addresses.supervisors:
+        raise NoSandbox("this task is for a box, and there is none here")
+    boxed = task.boxed
+    kind: type[BoxedPlace] | type[UnboxedPlace] = BoxedPlace if boxed else UnboxedPlace
+    arrangement = arrange(task, folder)
+    place = kind(
+        addresses,
+        folder,
+        task.files,
+        {**_ros_variables(stack, boxed=boxed), **arrangement.variables()},
+        SOCKET_VARIABLE,
+        JudgeSetting(attached.environment(boxed=boxed), [*attached.readable(), arrangement.judges_folder]),
+        task.limits,
+        programs=bool(arrangement.runners),
+    )
+    stack.enter_context(place)
+    stack.enter_context(served(arrangement, place, addresses))
+
+    def made(of_programs: bool) -> Any:
+        start = functools.partial(place.start_judge, of_programs=of_programs)
+        process = judge(place.judge_socket, seed=task.seed, start=start)
+        process.workspaces = str(arrangement.judges_socket)
+        return process
+
+    first = next((cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts), "")
+    execution = run_notebook(
+        task.cells,
+        judge=_Judges(made, arrangement.runners, first),
+        start=place.start_kernel,
+        folder=folder,
+        limits=task.limits,
+        guard=place.guard,
+    )
+    return replace(execution, needs_room=task.limits.beside and place.guard.reason() is Ended.OUT_OF_MEMORY)
+
+
+class _Judges:
+    """A judge for each check, on the network where the check takes place; one lives at a time.
+
+    Tells a check that nobody asked for from one that the judge itself had trouble with.
+
+    Args:
+        made: Makes a judge that is not started, for programs or for the notebook's own nodes.
+        runners: The exercises whose subjects are programs.
+        first: The exercise of the first check; its judge starts beside the kernel.
+    """
+
+    def __init__(self, made: Callable[[bool], Any], runners: Collection[str], first: str) -> None:
+        self._made, self._runners, self._first = made, runners, first
+        self._open = contextlib.ExitStack()
+        self._of_programs = False
+
+    def __enter__(self) -> Self:
+        self._start(self._first in self._runners)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._open.close()
+
+    def _start(self, of_programs: bool) -> None:
+        self._of_programs = of_programs
+        self._judge = self._open.enter_context(self._made(of_programs))
+
+    def open(self, exercise_id: str) -> None:
+        of_programs = exercise_id in self._runners
+        if of_programs is not self._of_programs:
+            self._open.close()
+            self._start(of_programs)
+        self._judge.open(exercise_id)
+
+    def close(self) -> Verdict | None:
+        report = self._judge.close_report()
+        if report.verdict is None and report.trouble:
+            raise RuntimeError(report.trouble)
+        verdict: Verdict | None = report.verdict
+        return verdict
+
+
+def _ros_variables(stack: contextlib.ExitStack, *, boxed: bool) -> Mapping[str, str]:
+    """Loopback only, plain logs on stdout, and a domain of its own for the notebook's demonstrations."""
+    if boxed:
+        # Nobody else is on the network: any domain is the notebook's own.
+        return {**boxed_ros_environment(), "ROS_DOMAIN_ID": "0"}
+    return {**ros_environment(), "ROS_DOMAIN_ID": str(stack.enter_context(lease()))}
+
+
+def _imported(name: str) -> Any:
+    module, _, attribute = name.partition(":")
+    return getattr(importlib.import_module(module), attribute)
+
+
+def _private_stdout() -> BinaryIO:
+    """Standard output for results alone: whatever else prints goes to standard error."""
+    results = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
+    return results
+
+
+def _lines() -> Iterator[bytes]:
+    """Tasks as they come. When the grader goes away in the middle of one, end this process."""
+    lines: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
+    idle = threading.Event()
+
+    def read() -> None:
+        for line in sys.stdin.buffer:
+            lines.put(line)
+        lines.put(None)
+        if not idle.is_set():
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    threading.Thread(target=read, daemon=True).start()
+    while True:
+        idle.set()
+        line = lines.get()
+        if line is None:
+            return
+        idle.clear()
+        yield line
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

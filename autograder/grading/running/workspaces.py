@@ -1,0 +1,128 @@
+"""What a worker has beside a notebook for its checks of workspaces and launch files."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from autograder import exercises
+from autograder.boxes.environment import kernel_environment
+from autograder.boxes.place import SHARED_FOLDER, BoxedPlace
+from autograder.judge.settings import boxed_ros_environment, ros_environment
+from autograder.kit.runners import Launches
+from autograder.workspaces.building import cache, client
+from autograder.workspaces.grading.boxed_jobs import BoxedJobs
+from autograder.workspaces.grading.plain_jobs import PlainJobs
+from autograder.workspaces.grading.service import ServiceSockets, WorkspaceService
+from autograder.workspaces.running.plans import reference_package
+from autograder.workspaces.sources.finding import PACKAGE_VARIABLE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+    from autograder.boxes.fork_server_client import Addresses
+    from autograder.boxes.place import UnboxedPlace
+    from autograder.grading.task import Task
+
+_BUILDS, _PROGRAMS, _ROBOT = "builds", "bin", "my_robot_pkg"
+
+
+@dataclass(frozen=True)
+class Arrangement:
+    """Where things are for one notebook.
+
+    Attributes:
+        folder: Ours alone.
+        boxed: Whether there are boxes.
+        robot: Whether its student is handed the course's own package, as exercise 1.1 does.
+        runners: The exercises whose subjects the grader builds and starts by itself.
+    """
+
+    folder: Path
+    boxed: bool
+    robot: bool
+    runners: frozenset[str]
+
+    @property
+    def judges_folder(self) -> Path:
+        """What the judge's box must see, and the student's must not."""
+        return self.folder / "jobs"
+
+    @property
+    def judges_socket(self) -> Path:
+        """The judge's socket, for the judge and here alike."""
+        return self.judges_folder / "sock"
+
+    def variables(self) -> Mapping[str, str]:
+        """More variables of the notebook's environment."""
+        if not self.boxed:
+            return {}
+        robot = {PACKAGE_VARIABLE: str(SHARED_FOLDER / _ROBOT)} if self.robot else {}
+        path = f"{SHARED_FOLDER / _PROGRAMS}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
+        return {"PATH": path, client.VARIABLE: str(SHARED_FOLDER / _BUILDS), **robot}
+
+
+def arrange(task: Task, folder: Path) -> Arrangement:
+    """Prepare what there is to prepare before there are boxes.
+
+    Args:
+        task: The notebook.
+        folder: Ours alone; short, because a Unix socket will be in it.
+    """
+    checks = [cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts]
+    runners = {name: exercises.get(name).runner for name in checks if name in exercises.all_ids()}
+    arrangement = Arrangement(
+        folder,
+        task.boxed,
+        any(isinstance(runner, Launches) for runner in runners.values()),
+        frozenset(name for name, runner in runners.items() if runner),
+    )
+    arrangement.judges_folder.mkdir()
+    return arrangement
+
+
+@contextlib.contextmanager
+def served(
+    arrangement: Arrangement, place: BoxedPlace | UnboxedPlace, addresses: Addresses
+) -> Iterator[WorkspaceService]:
+    """Open the sockets for as long as the notebook runs.
+
+    Args:
+        arrangement: What :func:`arrange` has prepared.
+        place: Where the notebook runs.
+        addresses: The fork servers.
+    """
+    folder = arrangement.folder / "work-of-jobs"
+    folder.mkdir()
+    jobs: BoxedJobs | PlainJobs
+    if isinstance(place, BoxedPlace):
+        jobs = BoxedJobs(addresses.supervisors, place.programs, folder)
+        ros = boxed_ros_environment()
+        _furnish(place.shared, robot=arrangement.robot)
+        sockets = ServiceSockets(arrangement.judges_socket, place.shared / _BUILDS)
+    else:
+        jobs = PlainJobs(kernel_environment(folder / "home", {}))
+        ros = ros_environment()
+        sockets = ServiceSockets(arrangement.judges_socket, None)
+    # Programs that hang can be asked where, and what they say comes at once.
+    variables = {**ros, "PYTHONUNBUFFERED": "1", "PYTHONFAULTHANDLER": "1"}
+    with WorkspaceService(sockets, jobs, cache.graders_root(), variables, folder) as service:
+        yield service
+
+
+def _furnish(shared: Path, *, robot: bool) -> None:
+    """Put into the folder that the student's box can read what stands in for colcon, and the course's package."""
+    programs = shared / _PROGRAMS
+    programs.mkdir()
+    colcon = programs / "colcon"
+    colcon.write_text(
+        f'#!/bin/sh\nexec "{sys.executable}" -P -m autograder.workspaces.building.colcon_stand_in "$@"\n'
+    )
+    colcon.chmod(0o755)
+    if robot:
+        shutil.copytree(reference_package(), shared / _ROBOT)

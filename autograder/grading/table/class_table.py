@@ -1,0 +1,97 @@
+"""The table of a class as it is now, read without grading anything."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from autograder.grading.classes.class_directory import ClassDirectory, Submission
+from autograder.grading.entering.records import Records
+from autograder.grading.rebuilding.fingerprints import Fingerprints
+from autograder.grading.rebuilding.source_points import read_released
+from autograder.grading.reporting.report import LATE, Row
+from autograder.grading.table.entries import Entries, read_entries
+from autograder.grading.table.roster import Roster, Student, read_roster
+from autograder.grading.table.true_rows import true_rows
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+@dataclass(frozen=True)
+class ClassTable:
+    """The table of a class.
+
+    Attributes:
+        rows: By student, in the order of the course.
+        roster: Who is in the class.
+        entries: What the gradebook has, by student and assignment.
+        stale: Submissions that were handed in or changed after they were graded last, as student/assignment.
+    """
+
+    rows: tuple[Row, ...]
+    roster: Roster
+    entries: Entries
+    stale: tuple[str, ...] = ()
+
+    @property
+    def students(self) -> list[str]:
+        """The ids of all students in the table."""
+        return list(dict.fromkeys(row.student for row in self.rows))
+
+    @property
+    def assignments(self) -> list[str]:
+        """The assignments that somebody has handed in."""
+        return list(dict.fromkeys(row.assignment for row in self.rows))
+
+    def of(self, student: str, assignment: str = "") -> list[Row]:
+        """A student's rows, of one assignment or of all."""
+        return [
+            row
+            for row in self.rows
+            if row.student == student and (not assignment or row.assignment == assignment)
+        ]
+
+    def score(self, student: str, assignment: str = "") -> float:
+        """A student's points as the gradebook has them, less what being late costs."""
+        return round(sum(row.score for row in self.of(student, assignment)), 4)
+
+    def max_score(self, assignment: str = "") -> float:
+        """Points that can be had."""
+        student = next(iter(self.students), "")
+        return sum(row.max_score for row in self.of(student, assignment))
+
+    @property
+    def waiting(self) -> list[Row]:
+        """Rows that wait for a person."""
+        return [row for row in self.rows if row.waits]
+
+
+def read_table(directory: ClassDirectory) -> ClassTable:
+    """Read the table of a class.
+
+    Raises:
+        GradingError: The class, its sources or its list of students cannot be used.
+    """
+    fingerprints, records = Fingerprints(directory), Records(directory)
+    entries = read_entries(directory.gradebook_url)
+    found = {(one.student, one.assignment): one for one in directory.submissions()[0]}
+    judged: dict[tuple[str, str], tuple[Row, ...]] = {}
+    stale = []
+    for key in sorted({*found, *entries}):
+        submission = found.get(key)
+        record = records.get(submission or Submission(*key, directory.path / "submitted" / key[0] / key[1]))
+        if record is not None:
+            judged[key] = record.rows
+        if submission is not None and (record is None or record.fingerprint != fingerprints.of(submission)):
+            stale.append("/".join(key))
+    roster = read_roster(directory)
+    names: Mapping[str, str] = {id_: student.name for id_, student in roster.students.items()}
+    rows = true_rows(names, read_released(directory, fingerprints).cells, judged, entries, found)
+    others = [Student(row.student) for row in rows if row.student not in roster.students]
+    return ClassTable(tuple(rows), Roster([*roster.students.values(), *others]), entries, tuple(stale))
+
+
+def by_exercise(rows: list[Row]) -> dict[str, Row]:
+    """A student's rows by exercise, without what being late costs."""
+    return {row.exercise: row for row in rows if row.exercise != LATE}

@@ -1,0 +1,153 @@
+"""What the gradebook has for a whole class, read in a few queries."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import datetime  # noqa: TC003
+
+import msgspec
+import sqlalchemy
+
+from autograder.grading.entering import gradebook
+
+
+@dataclass(frozen=True)
+class CellEntry:
+    """What the gradebook has for one cell of a submission.
+
+    Attributes:
+        max_score: Points that can be had.
+        judged: Points that were given automatically; None where there are none.
+        by_hand: Points that a person gave instead; None where nobody did.
+        extra: Points that a person gave on top.
+        waits: Whether nbgrader says that a person has to look.
+        comment: A person's comment.
+    """
+
+    max_score: float
+    judged: float | None = None
+    by_hand: float | None = None
+    extra: float = 0.0
+    waits: bool = False
+    comment: str = ""
+
+    @property
+    def score(self) -> float:
+        """The points that count."""
+        return (self.by_hand if self.by_hand is not None else self.judged or 0.0) + self.extra
+
+
+@dataclass(frozen=True)
+class SubmissionEntry:
+    """What the gradebook has for one submission.
+
+    Attributes:
+        handed_in: When, in UTC; None where nobody wrote it down.
+        due: Until when it was due for this student, in UTC; None without a due date.
+        penalty: Points that are taken off for being late.
+        cells: By notebook and grade_id.
+    """
+
+    handed_in: datetime | None = None
+    due: datetime | None = None
+    penalty: float = 0.0
+    cells: Mapping[str, Mapping[str, CellEntry]] = field(default_factory=dict)
+
+    @property
+    def is_late(self) -> bool:
+        """Whether it was handed in after its due date."""
+        return self.handed_in is not None and self.due is not None and self.handed_in > self.due
+
+    @property
+    def raw(self) -> float:
+        """Points before what is taken off for being late."""
+        return sum(cell.score for cells in self.cells.values() for cell in cells.values())
+
+    @property
+    def taken_off(self) -> float:
+        """Points that being late costs; as with nbgrader, nobody has fewer than none."""
+        return min(self.penalty, max(0.0, self.raw))
+
+    def shown(self) -> str:
+        """Changes with whatever a page of feedback says about points and comments."""
+        return hashlib.sha256(msgspec.json.encode(self, order="deterministic")).hexdigest()
+
+
+Entries = Mapping[tuple[str, str], SubmissionEntry]
+"""By student and assignment."""
+
+_FROM = "submitted_assignment s JOIN assignment a ON a.id = s.assignment_id"
+_CELLS = f"""
+    SELECT s.student_id AS student, a.name AS assignment, n.name AS notebook, b.name AS cell,
+        g.auto_score AS judged, g.manual_score AS by_hand, g.extra_credit AS extra,
+        g.needs_manual_grade AS waits, COALESCE(gc.max_score, tc.max_score, 0) AS most,
+        (SELECT c.manual_comment FROM comment c WHERE c.notebook_id = sn.id AND c.cell_id = b.id) AS said
+    FROM {_FROM} JOIN submitted_notebook sn ON sn.assignment_id = s.id JOIN notebook n ON n.id = sn.notebook_id
+        JOIN grade g ON g.notebook_id = sn.id JOIN base_cell b ON b.id = g.cell_id
+        LEFT JOIN grade_cells gc ON gc.id = b.id LEFT JOIN task_cells tc ON tc.id = b.id
+"""
+_COMMENTS = f"""
+    SELECT s.student_id AS student, a.name AS assignment, n.name AS notebook, b.name AS cell,
+        c.manual_comment AS said
+    FROM {_FROM} JOIN submitted_notebook sn ON sn.assignment_id = s.id JOIN notebook n ON n.id = sn.notebook_id
+        JOIN comment c ON c.notebook_id = sn.id JOIN base_cell b ON b.id = c.cell_id
+    WHERE c.manual_comment IS NOT NULL AND NOT EXISTS
+        (SELECT 1 FROM grade g WHERE g.notebook_id = sn.id AND g.cell_id = c.cell_id)
+"""
+_SUBMISSIONS = f"""
+    SELECT s.student_id AS student, a.name AS assignment, s.timestamp AS timestamp, a.duedate AS duedate,
+        s.extension AS extension,
+        (SELECT COALESCE(SUM(sn.late_submission_penalty), 0) FROM submitted_notebook sn
+            WHERE sn.assignment_id = s.id) AS penalty
+    FROM {_FROM}
+"""
+
+
+def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entries:
+    """The submissions that the gradebook knows.
+
+    Args:
+        url: What SQLAlchemy opens the gradebook by.
+        student: Only this student's; everybody's where empty.
+        assignment: Only of this assignment; of all where empty.
+    """
+    names = {"student": student, "assignment": assignment}
+    narrow = "(:student = '' OR s.student_id = :student) AND (:assignment = '' OR a.name = :assignment)"
+    cells: dict[tuple[str, str], dict[str, dict[str, CellEntry]]] = {}
+    found: dict[tuple[str, str], SubmissionEntry] = {}
+    with gradebook.opened(url) as book:
+        if not gradebook.has_tables(book):
+            return {}
+        for row in book.execute(gradebook.sql(f"{_CELLS} WHERE {narrow}"), names):
+            of_notebook = cells.setdefault((row.student, row.assignment), {}).setdefault(row.notebook, {})
+            of_notebook[row.cell] = CellEntry(
+                row.most, row.judged, row.by_hand, row.extra or 0.0, bool(row.waits), row.said or ""
+            )
+        for row in book.execute(gradebook.sql(f"{_COMMENTS} AND {narrow}"), names):
+            of_notebook = cells.setdefault((row.student, row.assignment), {}).setdefault(row.notebook, {})
+            of_notebook[row.cell] = CellEntry(0.0, comment=row.said)
+        for row in book.execute(
+            sqlalchemy.text(f"{_SUBMISSIONS} WHERE {narrow}").columns(
+                timestamp=sqlalchemy.DateTime(),
+                duedate=sqlalchemy.DateTime(),
+                extension=sqlalchemy.Interval(),
+            ),
+            names,
+        ):
+            due = row.duedate
+            if due is not None and row.extension is not None:
+                due = due + row.extension
+            key = (row.student, row.assignment)
+            found[key] = SubmissionEntry(row.timestamp, due, float(row.penalty or 0.0), cells.get(key, {}))
+    return found
+
+
+def read_students(url: str) -> dict[str, str]:
+    """The students that the gradebook knows: their names, empty where it has none, by id."""
+    with gradebook.opened(url) as book:
+        if not gradebook.has_tables(book):
+            return {}
+        rows = book.execute(gradebook.sql("SELECT id, first_name, last_name FROM student")).all()
+    return {row.id: " ".join(part for part in (row.first_name, row.last_name) if part) for row in rows}

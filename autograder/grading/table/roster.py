@@ -1,0 +1,230 @@
+"""Who is in a class: ``students.csv`` and the students that the gradebook knows, and how the LMS calls them."""
+
+from __future__ import annotations
+
+import csv
+import io
+import unicodedata
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from autograder.grading.classes.class_directory import ClassDirectory, reason_against_name
+from autograder.grading.entering import gradebook
+from autograder.grading.errors import GradingError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+NAME = "students.csv"
+LMS = ("canvas", "moodle", "blackboard", "brightspace", "google", "github")
+"""Columns of the roster in which a student's id or user name in that system may stand."""
+_OWN = ("id", "first_name", "last_name", "email")
+
+
+class RosterError(GradingError):
+    """``students.csv`` cannot be used; the message says which line is wrong."""
+
+
+@dataclass(frozen=True)
+class Student:
+    """A student of the class.
+
+    Attributes:
+        id: The student's id, which is also the folder's name.
+        first_name: Empty where it is not known.
+        last_name: The same.
+        email: The same.
+        lms: Ids and user names in learning management systems, by the names of :data:`LMS`.
+    """
+
+    id: str
+    first_name: str = ""
+    last_name: str = ""
+    email: str = ""
+    lms: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        """First and last name, as far as they are known."""
+        return f"{self.first_name} {self.last_name}".strip()
+
+
+@dataclass(frozen=True)
+class Identity:
+    """How a file name, or a list of an LMS, calls somebody.
+
+    Attributes:
+        lms: Which system, one of :data:`LMS`; empty where a folder has a plain name.
+        number: The system's number of the student.
+        login: A user name, an address, or a name with its blanks left out.
+        name: A name as people write it.
+    """
+
+    lms: str = ""
+    number: str = ""
+    login: str = ""
+    name: str = ""
+
+    def __str__(self) -> str:
+        return self.name or self.login or self.number
+
+
+class Roster:
+    """The students of a class.
+
+    Args:
+        students: In any order.
+    """
+
+    def __init__(self, students: Iterable[Student]) -> None:
+        self.students = {student.id: student for student in students}
+
+    def find(self, identity: Identity) -> tuple[Student, ...]:
+        """Who may be meant: one where that is certain, several where it is not.
+
+        What identifies best is asked first: the number in that system, then user names and addresses, then names.
+        """
+        for known in (self._by_number, self._by_login, self._by_name):
+            found = known(identity)
+            if found:
+                return found
+        return ()
+
+    def _by_number(self, identity: Identity) -> tuple[Student, ...]:
+        if not identity.number:
+            return ()
+        return self._all(lambda one: one.lms.get(identity.lms, "") == identity.number)
+
+    def _by_login(self, identity: Identity) -> tuple[Student, ...]:
+        if not identity.login:
+            return ()
+        login = _folded(identity.login)
+        exact = self._all(
+            lambda one: login in (_folded(one.id), _folded(one.email), _folded(one.lms.get(identity.lms, "")))
+        )
+        return exact or self._all(lambda one: login == _folded(one.email.partition("@")[0]))
+
+    def _by_name(self, identity: Identity) -> tuple[Student, ...]:
+        words = sorted(_words(identity.name))
+        if words:
+            return self._all(lambda one: sorted(_words(one.name)) == words or _words(one.id) == words)
+        login = "".join(_words(identity.login))
+        return self._all(lambda one: bool(login) and login in _joined_names(one))
+
+    def _all(self, wanted: Callable[[Student], bool]) -> tuple[Student, ...]:
+        return tuple(student for student in self.students.values() if wanted(student))
+
+
+def read_roster(directory: ClassDirectory) -> Roster:
+    """The students of ``students.csv`` and of the gradebook; what the file says goes first.
+
+    Raises:
+        RosterError: The file cannot be used.
+    """
+    students = {student.id: student for student in _in_gradebook(directory.gradebook_url)}
+    for student in read_students_csv(directory):
+        known = students.get(student.id, student)
+        students[student.id] = replace(
+            student,
+            first_name=student.first_name or known.first_name,
+            last_name=student.last_name or known.last_name,
+            email=student.email or known.email,
+        )
+    return Roster(students.values())
+
+
+def read_students_csv(directory: ClassDirectory) -> list[Student]:
+    """The students of ``students.csv``; none where there is no such file.
+
+    Raises:
+        RosterError: A column or an id is missing, or stands there twice.
+    """
+    path = directory.path / NAME
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        return []
+    except (OSError, UnicodeDecodeError) as error:
+        raise RosterError(f"{path} cannot be read: {error}. Save it as CSV in UTF-8.") from error
+    first = text.partition("\n")[0]
+    reader = csv.DictReader(io.StringIO(text), delimiter=";" if first.count(";") > first.count(",") else ",")
+    columns = [(name or "").strip().lower() for name in reader.fieldnames or ()]
+    reader.fieldnames = columns
+    if "id" not in columns:
+        raise RosterError(
+            f"{path} has no column named id. Its first line has to name its columns: id, and as far as you have "
+            f"them {', '.join((*_OWN[1:], *LMS))}."
+        )
+    found: dict[str, Student] = {}
+    for row in reader:
+        values = {name: unicodedata.normalize("NFC", (row.get(name) or "").strip()) for name in columns}
+        if not any(values.values()):
+            continue
+        name = values["id"]
+        reason = "it has no id" if not name else reason_against_name(name)
+        if name in found:
+            reason = f"the id {name} stands there twice"
+        if reason:
+            raise RosterError(f"{path}, line {reader.line_num}: {reason}.")
+        lms = {system: values[system] for system in LMS if values.get(system)}
+        found[name] = Student(
+            name, values.get("first_name", ""), values.get("last_name", ""), values.get("email", ""), lms
+        )
+    return list(found.values())
+
+
+def enter_roster(directory: ClassDirectory) -> None:
+    """Have the gradebook know the students of ``students.csv``; of others nothing is changed.
+
+    Raises:
+        RosterError: The file cannot be used.
+    """
+    students = read_students_csv(directory)
+    if not students:
+        return
+    with gradebook.opened(directory.gradebook_url) as book:
+        if not gradebook.has_tables(book):
+            return  # whoever needs the gradebook says so
+        known = set(book.execute(gradebook.sql("SELECT id FROM student")).scalars())
+        for student in students:
+            values = {
+                "id": student.id,
+                "first": student.first_name or None,
+                "last": student.last_name or None,
+                "email": student.email or None,
+            }
+            if student.id not in known:
+                book.execute(gradebook.sql("INSERT INTO student (id) VALUES (:id)"), {"id": student.id})
+            book.execute(
+                gradebook.sql(
+                    "UPDATE student SET first_name = COALESCE(:first, first_name),"
+                    " last_name = COALESCE(:last, last_name), email = COALESCE(:email, email) WHERE id = :id"
+                ),
+                values,
+            )
+
+
+def _in_gradebook(url: str) -> list[Student]:
+    with gradebook.opened(url) as book:
+        if not gradebook.has_tables(book):
+            return []
+        rows = book.execute(gradebook.sql("SELECT id, first_name, last_name, email FROM student")).all()
+    return [Student(row.id, row.first_name or "", row.last_name or "", row.email or "") for row in rows]
+
+
+def _folded(text: str) -> str:
+    return unicodedata.normalize("NFC", text).casefold().strip()
+
+
+def _words(name: str) -> list[str]:
+    """A name's words, without accents and capitals."""
+    plain = "".join(
+        character for character in unicodedata.normalize("NFKD", name) if not unicodedata.combining(character)
+    )
+    return "".join(character if character.isalnum() else " " for character in plain.casefold()).split()
+
+
+def _joined_names(student: Student) -> tuple[str, str]:
+    """A student's names in one word, the last name first or last."""
+    first, last = "".join(_words(student.first_name)), "".join(_words(student.last_name))
+    return last + first, first + last

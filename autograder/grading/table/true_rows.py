@@ -1,0 +1,112 @@
+"""The rows of the table: the points are the gradebook's, the words are the judge's."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from autograder.grading.reporting.report import (
+    BY_HAND,
+    LATE,
+    NOT_GRADED,
+    NOT_SUBMITTED,
+    WAITS,
+    Row,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from autograder.grading.rebuilding.source_points import GradedCell
+    from autograder.grading.table.entries import CellEntry, Entries, SubmissionEntry
+
+    Judged = Mapping[tuple[str, str], Sequence[Row]]
+    """What the judge said of each submission, by student and assignment."""
+
+
+def true_rows(
+    students: Mapping[str, str],
+    cells: Mapping[str, Sequence[GradedCell]],
+    judged: Judged,
+    entries: Entries,
+    handed_in: Iterable[tuple[str, str]],
+) -> list[Row]:
+    """The rows of a class, by student, in the order of the course.
+
+    Assignments that nobody has handed in are left out; in the others every student has rows.
+
+    Args:
+        students: Their names, by id.
+        cells: The cells with points, by assignment.
+        judged: The judge's results.
+        entries: What the gradebook has.
+        handed_in: What lies in ``submitted``: students and assignments.
+    """
+    there = set(handed_in)
+    known = sorted({student for student, _ in [*there, *entries]} | students.keys())
+    assignments = [name for name in sorted(cells) if any(name == other for _, other in [*there, *entries])]
+    return [
+        row
+        for student in known
+        for assignment in assignments
+        for row in _rows_of(
+            Row(student, assignment, "", 0.0, 0.0, "", name=students.get(student, "")),
+            cells[assignment],
+            judged.get((student, assignment), ()),
+            entries.get((student, assignment)),
+            is_there=(student, assignment) in there,
+        )
+    ]
+
+
+def _rows_of(
+    blank: Row,
+    cells: Sequence[GradedCell],
+    judged: Sequence[Row],
+    entry: SubmissionEntry | None,
+    *,
+    is_there: bool,
+) -> list[Row]:
+    by_exercise = {row.exercise: row for row in judged}
+    found = []
+    for cell in cells:
+        row = replace(blank, exercise=cell.exercise, max_score=cell.worth)
+        said = by_exercise.get(cell.exercise)
+        kept = entry.cells.get(cell.notebook, {}).get(cell.name) if entry else None
+        if said is not None:
+            row = replace(row, state=said.state, diagnosis=said.diagnosis, reason=said.reason)
+        elif kept is None:
+            row = replace(row, state=NOT_GRADED if is_there else NOT_SUBMITTED)
+        else:
+            row = replace(row, state=_state(cell, kept))
+        found.append(row if kept is None else _with_points(row, kept))
+    if entry and entry.taken_off:
+        late = f"handed in {entry.handed_in:%Y-%m-%d %H:%M} UTC, due {entry.due:%Y-%m-%d %H:%M} UTC"
+        found.append(replace(blank, exercise=LATE, score=-entry.taken_off, state=LATE, reason=late))
+    return found
+
+
+def _with_points(row: Row, kept: CellEntry) -> Row:
+    return replace(
+        row,
+        score=kept.score,
+        judged=kept.judged,
+        by_hand=kept.by_hand,
+        extra=kept.extra,
+        waits=kept.waits and row.state in _IS_GRADED,
+    )
+
+
+_IS_GRADED = ("passed", "failed", WAITS, BY_HAND)
+"""What was taken back, or could not be checked, waits for a run and not for a person."""
+
+
+def _state(cell: GradedCell, kept: CellEntry) -> str:
+    """The state of a cell of which the judge has said nothing that is known."""
+    if not cell.by_judge:
+        if kept.by_hand is None and not kept.waits:
+            return "failed"  # nothing was written there, so nbgrader gives no points
+        return WAITS if kept.waits else BY_HAND
+    if kept.waits and kept.by_hand is None:
+        return NOT_GRADED  # taken back
+    return "passed" if (kept.judged or 0.0) >= kept.max_score else "failed"

@@ -1,0 +1,104 @@
+"""A submission on its way through a batch, and what may be said of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from autograder.grading.errors import GradingError
+from autograder.grading.reporting.report import Row
+from autograder.grading.table.differences import Difference
+from autograder.grading.table.entries import SubmissionEntry
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from autograder.boxes.execution import Execution
+    from autograder.grading.classes.class_directory import Submission
+    from autograder.grading.rebuilding.source_points import GradedCell
+    from autograder.grading.table.entries import Entries
+    from autograder.grading.task import Task
+
+
+@dataclass
+class Work:
+    """A submission on its way through the batch.
+
+    Attributes:
+        submission: Where it lies.
+        fingerprint: Of what it is made from, as it was at the start.
+        notebooks: The names of its notebooks.
+        results: What is known of the notebooks that are not written down yet, by notebook.
+        rows: What the judge says of it, or why it says nothing; None while nothing is known.
+        written: Whether the gradebook holds exactly these results.
+    """
+
+    submission: Submission
+    fingerprint: str
+    notebooks: Sequence[str]
+    results: dict[str, tuple[Task, Execution]] = field(default_factory=dict)
+    rows: tuple[Row, ...] | None = None
+    written: bool = False
+
+    @property
+    def complete(self) -> bool:
+        """Whether all of its notebooks have a result."""
+        return len(self.results) == len(self.notebooks)
+
+    @property
+    def pairs(self) -> list[tuple[Task, Execution]]:
+        """Tasks and results, in the order of the notebooks."""
+        return [self.results[notebook] for notebook in self.notebooks]
+
+
+def would_change(
+    works: Iterable[Work], entries: Entries, cells: Mapping[str, Sequence[GradedCell]]
+) -> list[Difference]:
+    """Who would get other points from the judge.
+
+    Args:
+        works: The submissions; those that are not written down are looked at.
+        entries: What the gradebook has.
+        cells: The cells with points, by assignment.
+    """
+    found = []
+    for work in works:
+        key = (work.submission.student, work.submission.assignment)
+        entry = entries.get(key, SubmissionEntry())
+        by_exercise = {cell.exercise: cell for cell in cells[key[1]]}
+        for row in () if work.written else work.rows or ():
+            cell = by_exercise[row.exercise]
+            kept = entry.cells.get(cell.notebook, {}).get(cell.name)
+            before = kept.judged if kept else None
+            if before != row.score:
+                note = "a person's points stay" if kept and kept.by_hand is not None else ""
+                found.append(Difference(*key, row.exercise, before, row.score, "", row.diagnosis, note))
+    return found
+
+
+def without_grade(row: Row) -> Row:
+    """The row of a result that could not be entered."""
+    reason = "The result could not be entered into the gradebook; it has zero points there."
+    return Row(
+        row.student,
+        row.assignment,
+        row.exercise,
+        0.0,
+        row.max_score,
+        "not_checked",
+        "not_written_down",
+        reason,
+    )
+
+
+def check_known(wanted: Sequence[str], known: Sequence[str], what: str) -> None:
+    """See that there is what was asked for by name.
+
+    Raises:
+        GradingError: There is not; the message says what there is.
+    """
+    for name in wanted:
+        if name not in known:
+            raise GradingError(
+                f"There is no {what} named {name} here. There is: {', '.join(known) or 'none'}."
+            )

@@ -1,0 +1,174 @@
+"""What students are handed: the notebooks and all that checks them, without a solution, an answer or the grader.
+
+The repository holds every solution, so it cannot be given to a class. What comes out of here is a course of its own,
+with the same ``./course``: its exercises and reference outputs are in ``exercises/``, and no folder is called
+``solutions``.
+"""
+
+from __future__ import annotations
+
+import shutil
+import stat
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from autograder import course
+from autograder.course import HANDED_OUT
+from autograder.exercises import REFERENCE
+from autograder.masters.work import holds_work
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+WHOLE = ("course", "pyproject.toml", "LICENSE", "environment", "autograder")
+"""What is handed out as it is, but for what follows."""
+KEPT_BACK = (
+    "autograder/authoring",
+    "autograder/execution",
+    "autograder/grading",
+    "autograder/handing_out.py",
+    "autograder/masters",
+    "autograder/recording.py",
+)
+"""What makes notebooks, knows their solutions or grades a class."""
+PAGES = ("students-guide.md", "mistakes.md", "fairness.md", "ros2-command.md", "robot.md")
+"""Of ``docs/``."""
+_MADE = frozenset({"__pycache__", ".ipynb_checkpoints"})
+_MADE_BY_COLCON = frozenset({"build", "install", "log"})
+"""Folders of what is made from other files; colcon's lie beside the folder ``src`` of a workspace."""
+README = """\
+# {title}
+
+Notebooks about ROS 2 in which a judge checks your nodes: it is a ROS node itself, and looks at what yours do.
+
+You need Linux on x86-64 (or Windows with WSL 2) and Python 3.11 or newer. Then:
+
+```console
+$ ./course lab
+```
+
+The first time this sets everything up, in one to three minutes. It opens a map of all notebooks; press *Begin*.
+
+| you want to | |
+| --- | --- |
+| know how to work with the notebooks | [the student's guide](docs/students-guide.md) |
+| see how far you are, or begin a notebook anew | that map; or `./course progress` and `./course reset` |
+| check a program of your own in a terminal | `./course check`, which lists the exercises |
+| know what a diagnosis means | [known mistakes](docs/mistakes.md) |
+| see what is missing on your machine | `./course doctor` |
+"""
+
+
+class CannotHandOut(Exception):
+    """Nothing can be handed out; the message says why and what to do."""
+
+
+@dataclass(frozen=True)
+class HandOut:
+    """What was made.
+
+    Attributes:
+        place: The folder, or the zip.
+        files: How many files are in it.
+        size: Their bytes together.
+    """
+
+    place: Path
+    files: int
+    size: int
+
+
+def hand_out(place: Path, root: Path, *, as_zip: bool = False) -> HandOut:
+    """Make what a class is handed.
+
+    Args:
+        place: A folder that is not there yet or is empty; with ``as_zip``, the zip file.
+        root: The whole course.
+        as_zip: Pack it.
+
+    Raises:
+        CannotHandOut: There is something in that place, somebody has worked in a notebook of the chapters, or this
+            course was handed out itself.
+        OSError: It cannot be written.
+    """
+    if not (root / course.SOLUTIONS).is_dir():
+        raise CannotHandOut(f"{root} was handed out itself: make a hand-out from the course with its masters")
+    if place.is_file() or (place.is_dir() and (as_zip or any(place.iterdir()))):
+        raise CannotHandOut(f"{place} is there already, and nothing is overwritten: name another place")
+    files = dict(_files(root))
+    files["README.md"] = README.format(title=course.chapters(root)[0].title).encode()
+    write = _pack if as_zip else _copy
+    write(place, files)
+    sizes = [
+        len(content) if isinstance(content, bytes) else content.stat().st_size for content in files.values()
+    ]
+    return HandOut(place, len(files), sum(sizes))
+
+
+def _files(root: Path) -> Iterator[tuple[str, Path | bytes]]:
+    """The files by the names that they get."""
+    for name in WHOLE:
+        yield from ((path.relative_to(root).as_posix(), path) for path in _below(root / name, root))
+    yield from ((f"docs/{name}", root / "docs" / name) for name in PAGES if (root / "docs" / name).is_file())
+    yield from ((path.relative_to(root).as_posix(), path) for path in _below(root / "docs" / "images", root))
+    for chapter in course.chapters(root):
+        for path in [chapter.folder / course.CHAPTER, *_judges_part(chapter)]:
+            if path.is_file():
+                yield f"{HANDED_OUT}/{path.relative_to(chapter.folder.parent).as_posix()}", path
+        for lab in chapter.labs:
+            yield from _notebook(root, chapter, lab)
+
+
+def _notebook(root: Path, chapter: course.Chapter, lab: Path) -> Iterator[tuple[str, Path]]:
+    """A lab's notebook twice: where students work in it, and as what `./course reset` puts back."""
+    notebook = root / course.CHAPTERS / chapter.folder.name / f"{lab.name}.ipynb"
+    if not notebook.is_file():
+        return
+    if holds_work(notebook):
+        raise CannotHandOut(
+            f"somebody has worked in {notebook}, and would be handed out: ./course reset {lab.name}"
+        )
+    yield notebook.relative_to(root).as_posix(), notebook
+    yield f"{HANDED_OUT}/{course.released(lab).relative_to(chapter.folder.parent).as_posix()}", notebook
+
+
+def _judges_part(chapter: course.Chapter) -> Iterator[Path]:
+    for lab in chapter.labs:
+        yield from sorted(lab.glob("*.py"))
+        yield from sorted(lab.glob(f"*{REFERENCE}"))
+    yield from _below(chapter.folder / course.INTERFACES, chapter.folder)
+
+
+def _below(place: Path, root: Path) -> Iterator[Path]:
+    kept_back = any(place == root / name for name in KEPT_BACK)
+    made = place.name in _MADE or (place.name in _MADE_BY_COLCON and (place.parent / "src").is_dir())
+    if kept_back or made or (place.name.startswith(".") and place != root):
+        return
+    if place.is_dir():
+        for inside in sorted(place.iterdir()):
+            yield from _below(inside, root)
+    elif place.is_file():
+        yield place
+
+
+def _copy(place: Path, files: dict[str, Path | bytes]) -> None:
+    for name, content in files.items():
+        target = place / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if isinstance(content, bytes):
+            target.write_bytes(content)
+        else:
+            shutil.copy(content, target)
+
+
+def _pack(place: Path, files: dict[str, Path | bytes]) -> None:
+    place.parent.mkdir(parents=True, exist_ok=True)
+    with zipfile.ZipFile(place, "x", zipfile.ZIP_DEFLATED) as packed:
+        for name, content in files.items():
+            entry = zipfile.ZipInfo(f"{place.stem}/{name}")  # one date for all: the same files, the same zip
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            runs = isinstance(content, Path) and content.stat().st_mode & stat.S_IXUSR
+            entry.external_attr = (0o755 if runs else 0o644) << 16
+            packed.writestr(entry, content if isinstance(content, bytes) else content.read_bytes())

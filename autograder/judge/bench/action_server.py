@@ -1,0 +1,220 @@
+"""An action server that does only what the scenario tells it to, and writes every request down.
+
+It is made of the three services and two topics that an action consists of (design.ros2.org, "Actions"), not of rclpy's
+ActionServer: that one does not call back for a second cancel of one goal and decides by itself when to answer, and here
+each cancel request counts.
+"""
+
+from __future__ import annotations
+
+import threading
+import uuid
+from typing import TYPE_CHECKING, Any
+
+from action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
+from action_msgs.srv import CancelGoal
+from rclpy.qos import QoSProfile, qos_profile_action_status_default
+
+from autograder.judge.bench.answering import LateAnswers, once_it_is_set, patiently
+from autograder.judge.bench.interfaces import filled, interface, to_data
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.judge.bench.recorder import Recorder
+    from autograder.judge.bench.wire import Wire
+
+STATUS = {
+    "accepted": GoalStatus.STATUS_ACCEPTED,
+    "executing": GoalStatus.STATUS_EXECUTING,
+    "canceling": GoalStatus.STATUS_CANCELING,
+    "succeeded": GoalStatus.STATUS_SUCCEEDED,
+    "canceled": GoalStatus.STATUS_CANCELED,
+    "aborted": GoalStatus.STATUS_ABORTED,
+}
+
+_SERVICES = ("send_goal", "cancel_goal", "get_result")
+FEEDBACK_MATCH = 3.0
+"""Seconds in which the subscription to feedback must have been met; without one there is none to send."""
+
+
+class ScriptedActionServer:
+    """One action; goals are accepted as they come (or all refused), the newest is the current one.
+
+    Attributes:
+        services: The full names of the services that it is made of.
+    """
+
+    def __init__(
+        self,
+        wire: Wire,
+        recorder: Recorder,
+        action: str,
+        type_name: str,
+        *,
+        accept_goal: bool,
+        accept_cancel: bool,
+        goal_answer_takes: float,
+        cancel_answer_takes: float,
+        client_is_gone: Callable[[], bool],
+    ) -> None:
+        self._wire = wire
+        self._recorder = recorder
+        self._name = action
+        self.services = tuple(f"{action}/_action/{name}" for name in _SERVICES)
+        self._type = interface(type_name)
+        self._accept_goal = accept_goal
+        self._accept_cancel = accept_cancel
+        self._client_is_gone = client_is_gone
+        self._goal_id: Any = None
+        self._status = GoalStatus.STATUS_UNKNOWN
+        self._lock = threading.Lock()
+        self._result: Any = None
+        node, parts = wire.node, self._type.Impl
+        self._feedback = node.create_publisher(
+            parts.FeedbackMessage, f"{action}/_action/feedback", QoSProfile(depth=10)
+        )
+        self._statuses = node.create_publisher(
+            GoalStatusArray, f"{action}/_action/status", qos_profile_action_status_default
+        )
+        self._waiting: list[Any] = []
+        made = threading.Event()
+        goals, cancels, results = self._services = [
+            node.create_service(kind, f"{action}/_action/{name}", once_it_is_set(made, take))
+            for name, kind, take in zip(
+                _SERVICES,
+                (parts.SendGoalService, CancelGoal, parts.GetResultService),
+                (self._take_goal, self._take_cancel, self._take_result_request),
+                strict=True,
+            )
+        ]
+        # rclpy answers a request when its callback returns; these answers come when it is time for them.
+        self._late = [
+            LateAnswers(goals, goal_answer_takes, sending=self._note_goal_answer, sent=self._repeat_status),
+            LateAnswers(cancels, cancel_answer_takes, sending=self._note_cancel_answer),
+        ]
+        self._answer = patiently(results)
+        results.send_response = self._answer_or_wait  # type: ignore[method-assign]
+        made.set()
+
+    def await_goal(self, within: float) -> bool:
+        """Wait until a goal arrived and was answered; False where none came in ``within`` seconds.
+
+        Feedback that is sent before its sender's subscription was met would be lost, so that is waited for,
+        too.
+        """
+        if not self._await("goal", within):
+            return False
+        self._await("goal_answered", within)
+        self._recorder.wait(
+            lambda: self._feedback.get_subscription_count() > 0 or self._client_is_gone(),
+            FEEDBACK_MATCH,
+            poll=0.005,
+        )
+        return True
+
+    def await_cancel(self, within: float) -> bool:
+        """Wait until somebody asked to cancel; False where nobody did in ``within`` seconds."""
+        return self._await("cancel", within, wall=True)
+
+    def await_result_request(self, within: float) -> bool:
+        """Wait until somebody asked for the result; False where nobody did in ``within`` seconds."""
+        return self._await("result_request", within)
+
+    def send_feedback(self, **fields: Any) -> None:
+        """Send one feedback message for the current goal."""
+        message = self._type.Impl.FeedbackMessage()
+        message.goal_id = self._goal_id
+        filled(message.feedback, fields)
+        self._recorder.record("feedback", self._name, fields=dict(fields))
+        self._feedback.publish(message)
+
+    def finish(self, status: str, **fields: Any) -> None:
+        """End the current goal with a status of :data:`STATUS` and this result."""
+        response = self._type.Impl.GetResultService.Response()
+        response.status = STATUS[status]
+        filled(response.result, fields)
+        self._recorder.record("result", self._name, status=status, fields=dict(fields))
+        self._set_status(STATUS[status])
+        with self._lock:
+            self._result = response
+            waiting, self._waiting = self._waiting, []
+        for header in waiting:
+            self._answer(response, header)
+
+    def close(self) -> None:
+        """Take the action away."""
+        for late in self._late:
+            late.close()
+        for service in self._services:
+            self._wire.node.destroy_service(service)
+        for publisher in (self._feedback, self._statuses):
+            self._wire.node.destroy_publisher(publisher)
+
+    def _await(self, kind: str, within: float, *, wall: bool = False) -> bool:
+        def came() -> bool:
+            return self._recorder.part().first(kind, self._name) is not None
+
+        self._recorder.wait(lambda: came() or self._client_is_gone(), within, wall=wall)
+        return came()
+
+    def _take_goal(self, request: Any, response: Any) -> Any:
+        response.accepted = self._accept_goal
+        response.stamp = self._wire.node.get_clock().now().to_msg()
+        if self._accept_goal:
+            self._goal_id = request.goal_id
+            self._result = None
+            self._set_status(GoalStatus.STATUS_EXECUTING)
+        self._recorder.record("goal", self._name, fields=to_data(request.goal))
+        return response
+
+    def _note_goal_answer(self, response: Any) -> None:
+        self._recorder.record("goal_answered", self._name, accepted=bool(response.accepted))
+
+    def _repeat_status(self, response: Any) -> None:
+        # Who has a goal handle only now has missed the first word on the status of its goal.
+        if response.accepted:
+            self._set_status(self._status)
+
+    def _note_cancel_answer(self, response: Any) -> None:
+        self._recorder.record("cancel_answered", self._name, accepted=bool(response.goals_canceling))
+
+    def _take_cancel(self, request: Any, response: Any) -> Any:
+        # An all-zero id and stamp mean "cancel every goal" (action_msgs/srv/CancelGoal).
+        asked = goal_text(request.goal_info.goal_id)
+        known = self._goal_id is not None and asked in (goal_text(self._goal_id), str(uuid.UUID(int=0)))
+        accepted = self._accept_cancel and known and self._status in (
+            GoalStatus.STATUS_EXECUTING, GoalStatus.STATUS_CANCELING)  # fmt: skip
+        if accepted:
+            self._set_status(GoalStatus.STATUS_CANCELING)
+            response.goals_canceling = [GoalInfo(goal_id=self._goal_id)]
+            response.return_code = CancelGoal.Response.ERROR_NONE
+        else:
+            response.return_code = (
+                CancelGoal.Response.ERROR_REJECTED if known else CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID
+            )
+        self._recorder.record("cancel", self._name, accepted=accepted, known=known)
+        return response
+
+    def _take_result_request(self, request: Any, response: Any) -> Any:
+        known = self._goal_id is not None and goal_text(request.goal_id) == goal_text(self._goal_id)
+        self._recorder.record("result_request", self._name, known=known)
+        response.status = GoalStatus.STATUS_UNKNOWN
+        return None if known else response
+
+    def _answer_or_wait(self, response: Any, header: Any) -> None:
+        with self._lock:
+            if response is None and self._result is None:
+                self._waiting.append(header)
+                return
+        self._answer(response or self._result, header)
+
+    def _set_status(self, status: int) -> None:
+        self._status = status
+        line = GoalStatus(goal_info=GoalInfo(goal_id=self._goal_id), status=status)
+        self._statuses.publish(GoalStatusArray(status_list=[line]))
+
+
+def goal_text(goal_id: Any) -> str:
+    """A goal's id (``unique_identifier_msgs/msg/UUID``) as text."""
+    return str(uuid.UUID(bytes=bytes(bytearray(int(b) & 0xFF for b in goal_id.uuid))))

@@ -1,0 +1,106 @@
+"""Answers that arrive, in their time: a service of the judge's waits until its client can hear it."""
+
+from __future__ import annotations
+
+import threading
+import warnings
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rclpy.service import Service
+
+    Take = Callable[[Any, Any], Any]
+    """What a service does with a request and an empty response."""
+
+ATTEMPTS = 30
+"""How often an answer is tried; the middleware waits about 0.1 s each time for the client's reader."""
+
+
+def patiently(service: Service, wanted: Callable[[], bool] = lambda: True) -> Callable[[Any, Any], None]:
+    """How to send an answer of this service, and make the service send its own answers so, as long as they are wanted.
+
+    A client whose request came at once may not be able to hear yet. The middleware waits 0.1 s for it, drops the
+    answer and warns ("client will not receive response", rmw_fastrtps_shared_cpp/rmw_response.cpp): on a busy machine
+    a right client would then wait for ever.
+    """
+    usual = service.send_response
+
+    def send(response: Any, header: Any) -> None:
+        for _ in range(ATTEMPTS):
+            if not wanted():
+                return
+            # Taken down and not made an error: an error that a warning makes in compiled code comes out as another one.
+            with _warnings_belong_to_all_threads, warnings.catch_warnings(record=True) as complaints:
+                warnings.simplefilter("always", RuntimeWarning)
+                usual(response, header)
+            if not any(issubclass(complaint.category, RuntimeWarning) for complaint in complaints):
+                return
+
+    service.send_response = send  # type: ignore[method-assign]
+    return send
+
+
+_warnings_belong_to_all_threads = threading.Lock()
+
+
+def once_it_is_set(made: threading.Event, take: Take) -> Take:
+    """A callback of a service of which nothing is taken before the event is set.
+
+    A service is served from the moment of its creation. Who has waited for it may ask before its maker has said how its
+    answers are to be sent, and would be answered behind the judge's back.
+    """
+
+    def wait_and_take(request: Any, response: Any) -> Any:
+        made.wait()
+        return take(request, response)
+
+    return wait_and_take
+
+
+class LateAnswers:
+    """Lets the answers of a service be sent some time after their requests; others are served meanwhile.
+
+    Args:
+        service: Whose answers.
+        seconds: Of wall time from the request to its answer.
+        sending: Called with each answer just before it is sent.
+        sent: Called with each answer when it has been sent.
+    """
+
+    def __init__(
+        self,
+        service: Service,
+        seconds: float,
+        *,
+        sending: Callable[[Any], None],
+        sent: Callable[[Any], None] = lambda _: None,
+    ) -> None:
+        self._closed = False
+        self._send_now = patiently(service, wanted=lambda: not self._closed)
+        self._seconds = seconds
+        self._sending, self._sent = sending, sent
+        self._delivering = threading.Lock()
+        service.send_response = self._send  # type: ignore[method-assign]
+
+    def close(self) -> None:
+        """Send nothing more. To be called before the service is destroyed."""
+        self._closed = True
+        with self._delivering:  # what is on its way just now needs the service
+            pass
+
+    def _send(self, response: Any, header: Any) -> None:
+        if self._seconds <= 0.0:
+            self._deliver(response, header)
+            return
+        timer = threading.Timer(self._seconds, self._deliver, (response, header))
+        timer.daemon = True
+        timer.start()
+
+    def _deliver(self, response: Any, header: Any) -> None:
+        with self._delivering:
+            if not self._closed:
+                self._sending(response)
+                self._send_now(response, header)
+                self._sent(response)

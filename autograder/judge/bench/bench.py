@@ -1,0 +1,427 @@
+"""The bench: what a scenario's words do. One bench serves one look at one subject."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from typing import TYPE_CHECKING, Any
+
+from autograder.judge.bench import clock, graph, own_endpoints, type_hashes
+from autograder.judge.bench.action_client import RecordedActionClient
+from autograder.judge.bench.action_server import ScriptedActionServer
+from autograder.judge.bench.borrowed_time import BorrowedTime
+from autograder.judge.bench.clock import SimulatedClock
+from autograder.judge.bench.decoy_nodes import DecoyNodes
+from autograder.judge.bench.interfaces import service_fields
+from autograder.judge.bench.presence import GRAPH_POLL, MATCH, Presence
+from autograder.judge.bench.recorder import Recorder, usable
+from autograder.judge.bench.service_client import RecordedCaller
+from autograder.judge.bench.service_server import Answer, RecordedServer
+from autograder.judge.bench.topics import LogReader, RecordedPublisher, RecordedSubscription
+from autograder.judge.bench.wire import JudgeFailed, Wire
+from autograder.kit.evidence import Evidence, Part, Reference
+from autograder.kit.giving_up import patience, spared, willing
+from autograder.kit.model import Look
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+    from random import Random
+
+    from autograder.judge.subjects.subject import Subject
+
+SETTLED = {Look.FAST: 1.0, Look.REAL_TIME: 3.0}
+"""Seconds without a change of the graph after which a command is taken to have made all that it makes."""
+GRAPH_LOOK = 0.02
+"""Seconds between two queries of the graph that are written down."""
+_NO_PART = "a scenario begins with bench.part(...)"
+
+
+class TestBench:
+    """Implements :class:`autograder.kit.model.Bench` on real ROS.
+
+    Attributes:
+        in_a_cell: The subject is a notebook's.
+        parts: The finished parts.
+        doubtful: Something in a fast look must be confirmed in real time.
+    """
+
+    __test__ = False  # not a pytest class
+
+    def __init__(
+        self,
+        subject: Subject,
+        domain_id: int,
+        reference: Reference,
+        look: Look,
+        random: Random,
+        before: Evidence | None = None,
+    ) -> None:
+        self.look = look
+        self.random = random
+        self.reference = reference
+        self.in_a_cell = subject.shares_participant
+        self.parts: list[Part] = []
+        self.doubtful = False
+        self.before = before
+        self._subject = subject
+        self._domain_id = domain_id
+        self._recorder = Recorder()
+        self._wire: Wire | None = None
+        self._decoys: DecoyNodes | None = None
+        self._open = contextlib.ExitStack()
+        self._on_graph: Presence | None = None
+        self._clock: SimulatedClock | None = None
+        self._clock_refused = False
+        self._deaf: set[str] = set()
+        self._there: set[own_endpoints.Endpoint] = set()
+        self._gone: set[own_endpoints.Endpoint] = set()
+        self._clean = True
+        self._in_part = False
+
+    # --- parts ---------------------------------------------------------------------------------------------
+
+    def part(self, name: str, **inputs: Any) -> None:
+        """Begin a part: a fresh run of the subject."""
+        self.stop()
+        self._recorder.begin(name, inputs)
+        self._in_part = True
+        if self._wire is None or not (self._subject.shares_participant and self._clean):
+            self._close_wire()
+            self._wire, self._decoys = Wire(self._domain_id), DecoyNodes(self._domain_id)
+            # One reader for all parts of a participant: a new one would be told the log of the parts before.
+            self._log = LogReader(self._wire, self._recorder)
+            self._subject.renew()
+        self._on_graph = Presence(self._wire.node, self._recorder, self._subject, SETTLED[self.look])
+
+    def again(self) -> None:
+        """Begin the last part anew: what was seen of it does not count."""
+        self.stop()
+        dropped = self.parts.pop()
+        self.part(dropped.name, **dropped.inputs)
+
+    def keep(self, name: str) -> bool:
+        """In a second look, take over what the first one saw in a part, if the subject came to its own end there."""
+        known = self.before.part(name) if self.before else Part(name)
+        if known.ending is None or known.of("spared") or patience(known) is not None:
+            return False
+        self.stop()
+        self.parts.append(known)
+        return True
+
+    def stop(self) -> None:
+        """End the subject, keep what was seen and take away what the judge put up for this part."""
+        if not self._in_part:
+            return
+        self._in_part = False
+        self._presence.note_interface()
+        self._presence.note_how_it_leaves()
+        self._presence.note_whom_it_met()
+        self._clean = self._subject.ended
+        self.parts.append(usable(self._recorder.part()))
+        self._subject.stop()
+        self._open.close()
+        self._gone, self._there = self._gone | self._there, set()
+        if self._decoys is not None:
+            self._decoys.clear()
+        self._deaf = set()
+        self._clock, self._clock_refused = None, False
+        if self.wire.failure is not None:
+            raise JudgeFailed(f"the judge's own node failed: {self.wire.failure!r}")
+
+    def close(self) -> None:
+        """End everything. Safe to call at any time."""
+        try:
+            self.stop()
+        finally:
+            self._close_wire()
+
+    def _close_wire(self) -> None:
+        if self._wire is not None and self._decoys is not None:
+            self._decoys.close()
+            self._wire.close()
+            self._wire = self._decoys = None
+            self._gone = set()  # with its participant; nobody who comes later will meet that
+
+    @property
+    def wire(self) -> Wire:
+        """The judge's participant in this part."""
+        if self._wire is None:
+            raise RuntimeError(_NO_PART)
+        return self._wire
+
+    @property
+    def _presence(self) -> Presence:
+        """The subject's presence on the graph in this part."""
+        if self._on_graph is None:
+            raise RuntimeError(_NO_PART)
+        return self._on_graph
+
+    # --- the subject ---------------------------------------------------------------------------------------
+
+    def start(self, *arguments: Any, **options: Any) -> None:
+        """Start the subject, once its participant knows which servers of the judge's there are, and which are gone."""
+        if (self._there or self._gone) and not self._subject.knows(there=self._there, gone=self._gone):
+            raise JudgeFailed("the news of which services there are did not arrive; is the machine too busy?")
+        self._subject.start(self._recorder, arguments, options)
+
+    def release(self) -> None:
+        """Let a held subject spin."""
+        self._subject.release()
+
+    def await_end(self, within: float) -> bool:
+        """Wait until the subject has ended by itself."""
+        return self._recorder.wait(lambda: self._subject.ended, within)
+
+    def let_wait(self, seconds: float, *, call: int = 0) -> None:
+        """Let the subject wait for what the judge keeps from it."""
+        began = time.monotonic()
+
+        def over() -> bool:
+            seen = self._recorder.part()
+            passed = time.monotonic() - began + (0.0 if call else spared(seen))
+            return passed >= seconds or (call > 0 and willing(seen, call) >= seconds) or self._subject.ended
+
+        self._recorder.wait(over, seconds, wall=True)
+
+    def await_endpoint(self, role: str, name: str) -> bool:
+        """Wait until the subject's endpoint is on the graph and matched with the judge's, if it has one."""
+        return self._presence.await_endpoint(role, name)
+
+    def await_node(self) -> bool:
+        """Wait until a node of the subject's is on the graph; gives up when the subject has ended."""
+        return self._presence.await_node()
+
+    def await_any_endpoint(self, roles: tuple[str, ...]) -> graph.Interface:
+        """Wait until the subject has an endpoint of one of these roles; the whole interface as it is then."""
+        return self._presence.await_interface(lambda interface: any(interface[role] for role in roles))
+
+    def watch_graph(self, condition: Callable[[Evidence], bool], within: float) -> bool:
+        """The same for what the graph tells of; each change of it is written down."""
+
+        def look() -> Evidence:
+            self.note_interface()
+            return self._evidence()
+
+        return self._wait_for(condition, look, within, poll=GRAPH_LOOK)
+
+    def note_interface(self) -> None:
+        """Write down the subject's endpoints as they are now, where they are others than before."""
+        self._presence.note_interface()
+
+    def _evidence(self) -> Evidence:
+        return Evidence([self._recorder.part()], self.reference, self.look is Look.REAL_TIME)
+
+    # --- counterparts --------------------------------------------------------------------------------------
+
+    def listen(self, topic: str, type_name: str, *, latched: bool = False) -> None:
+        """Subscribe as the course's listener does, or as one that asks for what was published before it came."""
+        subscription = RecordedSubscription(self.wire, self._recorder, topic, type_name, latched=latched)
+        self._presence.subscriptions[topic] = subscription
+        self._open.callback(self.wire.node.destroy_subscription, subscription.subscription)
+
+    def seen(self) -> Part:
+        """What has been seen so far in this part."""
+        return self._recorder.part()
+
+    def heard(self, topic: str) -> int:
+        """How many messages arrived on a topic so far in this part."""
+        return len(self._recorder.part().of("message", topic))
+
+    def speak(self, topic: str, type_name: str) -> RecordedPublisher:
+        """Create a publisher with the course's default QoS."""
+        publisher = RecordedPublisher(self.wire, self._recorder, topic, type_name)
+        self._presence.publishers[topic] = publisher
+        self._open.callback(self.wire.node.destroy_publisher, publisher.publisher)
+        return publisher
+
+    def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
+        """Put a node on the graph, until the next part has planted others."""
+        assert self._decoys is not None
+        self._decoys.plant(name, publishes=publishes, subscribes=subscribes)
+
+    def serve(self, service: str, type_name: str, answer: Answer, *, hold: int = 0) -> RecordedServer:
+        """Serve until the part ends; the answer to the request of the number ``hold`` waits for its release."""
+        server = RecordedServer(self.wire, self._recorder, service, type_name, answer, hold=hold)
+        self._open.callback(server.close)
+        self._announce(server.services)
+        return server
+
+    def call(self, service: str, type_name: str) -> RecordedCaller:
+        """Be a client of the subject's service until the part ends."""
+        caller = RecordedCaller(
+            self.wire, self._recorder, service, type_name, server_is_gone=lambda: self._subject.ended
+        )
+        self._open.callback(caller.close)
+        return caller
+
+    def call_action(self, action: str, type_name: str) -> RecordedActionClient:
+        """Be a client of the subject's action until the part ends."""
+        caller = RecordedActionClient(
+            self.wire, self._recorder, action, type_name, server_is_gone=lambda: self._subject.ended
+        )
+        self._open.callback(caller.close)
+        return caller
+
+    def serve_action(
+        self,
+        action: str,
+        type_name: str,
+        *,
+        accept_goal: bool = True,
+        accept_cancel: bool = True,
+        goal_answer_takes: float = 0.0,
+        cancel_answer_takes: float = 0.0,
+    ) -> ScriptedActionServer:
+        """Serve an action whose every step the scenario decides, until the part ends."""
+        server = ScriptedActionServer(
+            self.wire,
+            self._recorder,
+            action,
+            type_name,
+            accept_goal=accept_goal,
+            accept_cancel=accept_cancel,
+            goal_answer_takes=goal_answer_takes,
+            cancel_answer_takes=cancel_answer_takes,
+            client_is_gone=lambda: self._subject.ended,
+        )
+        self._open.callback(server.close)
+        self._announce(server.services)
+        return server
+
+    def _announce(self, services: Iterable[str]) -> None:
+        # The judge's own participant, too, may still see what was taken away.
+        self._there |= own_endpoints.endpoints(self.wire.node, services) - self._gone
+
+    # --- time ----------------------------------------------------------------------------------------------
+
+    def run_time(
+        self, seconds: float, *, until: Callable[[], bool] | None = None, quiet: float | None = None
+    ) -> bool:
+        """Let ``seconds`` of the subject's time pass, or fewer where ``until`` holds or nothing happens."""
+        over = until or (lambda: False)
+        if self.look is Look.FAST and self._follow_clock():
+            assert self._clock is not None
+            turns = self._clock.run(seconds, lambda: over() or self._subject.ended)
+            self.doubtful = self.doubtful or self._clock.doubtful
+            return turns
+        self._recorder.wait(lambda: over() or self._subject.ended, seconds, quiet=quiet, wall=True)
+        return True
+
+    def pass_time(self, seconds: float, role: str, name: str) -> None:
+        """Let simulated seconds pass for a subject that lives in real time, real ones where it does not follow."""
+        for node in graph.owners(self.wire.node, role, name):
+            if node.full not in self._deaf:
+                with contextlib.closing(BorrowedTime(self.wire, self._recorder, node)) as borrowed:
+                    if borrowed.let_pass(seconds, lambda: self._subject.ended):
+                        return
+        self._recorder.wait(lambda: self._subject.ended, seconds, wall=True)
+
+    def _follow_clock(self) -> bool:
+        if (
+            self._clock is None
+            and not self._clock_refused
+            and (self._presence.subscriptions or self._presence.publishers)
+        ):
+            self._clock_refused = True
+            if any(self.wire.node.count_publishers(topic) > 1 for topic in self._presence.subscriptions):
+                # Two nodes of one name share their parameter services: one of them would keep to real time.
+                self.doubtful = True
+                return False
+            node = next(iter(self._presence.counterparts()), None)
+            if node is not None:
+                stepped = SimulatedClock(self.wire, self._recorder, node)
+                self._open.callback(stepped.close)
+                if stepped.take_over() and stepped.stands_still(self._silence()):
+                    self._clock = stepped
+                else:
+                    # It may yet obey later and then stop: only a fresh run in real time can tell.
+                    self._recorder.simulated_now = None
+                    self.doubtful = self.doubtful or bool(self._presence.subscriptions)
+        return self._clock is not None
+
+    def _silence(self) -> Callable[[], bool]:
+        def heard() -> int:
+            return sum(map(self.heard, self._presence.subscriptions))
+
+        before = heard()
+        # One message may still have been on its way when the clock stopped.
+        return lambda: heard() <= before + 1
+
+    def doubt(self) -> None:
+        """What is seen in this look must be confirmed in real time."""
+        self.doubtful = True
+
+    def settle(self) -> None:
+        """Ask each node of the subject's twice; a node that did not answer once is not asked again in this part."""
+        limit = clock.ANSWER_LIMIT if self.look is Look.FAST else clock.PATIENT_ANSWER
+        for node in self._presence.counterparts():
+            if node.full in self._deaf or self._subject.ended:
+                continue
+            if not all(clock.answers(self.wire, self._recorder, node, limit) for _ in range(2)):
+                self._deaf.add(node.full)
+
+    def await_attention(self) -> None:
+        """Ask each node that the judge is matched with, by a client that is announced after the judge's publishers.
+
+        The announcements of one participant arrive in order (DDSI-RTPS, 8.5.4), so a node that answers the client knows
+        the publishers, too.
+        """
+        for node in self._presence.counterparts():
+            if not self._subject.ended:
+                clock.answers(self.wire, self._recorder, node, MATCH)
+
+    def note_whether_it_spins(self) -> None:
+        """Ask each node of the subject's for a parameter; write down which one does not answer."""
+        nodes = self._presence.counterparts()
+        if not nodes:
+            # A program that has destroyed its nodes is on its way out: how it ends says more than their silence.
+            self.await_end(MATCH)
+        for node in nodes:
+            if not self._subject.ended and not clock.answers(self.wire, self._recorder, node):
+                self._recorder.record("unanswered", node.full)
+                self.note_where_it_hangs()
+
+    def note_where_it_hangs(self) -> None:
+        """Write down the subject's stacks; a command ends by that. To be asked last in a part."""
+        if not self._subject.ended:
+            self.note_interface()
+            self._recorder.record("stack", "subject", text=self._subject.stack())
+
+    def wait_until(
+        self, condition: Callable[[Evidence], bool], within: float, *, quiet: float | None = None
+    ) -> bool:
+        """Wait for something in the evidence of this part; gives up when the subject has ended."""
+        return self._wait_for(condition, self._evidence, within, quiet=quiet)
+
+    def _wait_for(
+        self, condition: Callable[[Evidence], bool], look: Callable[[], Evidence], within: float, **how: Any
+    ) -> bool:
+        """Whether a condition held when it was asked last; it is not asked again, as it need not hold for ever."""
+        held = False
+
+        def over() -> bool:
+            nonlocal held
+            ended = self._subject.ended  # before the evidence, so that this has all that came before the end
+            held = condition(look())
+            return held or ended
+
+        self._recorder.wait(over, within, **how)
+        return held
+
+    def compare_type(self, service: str, like: str) -> None:
+        """Write down whether a service's type has the fields of the type ``like``, by its hashes on the graph."""
+        made = self._presence.survey()["service"].get(service, "")
+        expected = type_hashes.expected_hashes(like, made.partition("/")[0])
+        seen: dict[str, str] = {}
+
+        def hashes_known() -> bool:
+            seen.update(type_hashes.served_hashes(self.wire.node, service))
+            return len(seen) == len(expected) or self._subject.ended
+
+        self._recorder.wait(hashes_known, MATCH, poll=GRAPH_POLL)
+        self._recorder.record("type", service, type=made, same=seen == expected, fields=service_fields(like))
+
+    def note_its_log(self) -> None:
+        """Write down each text of its log once, for the reference output."""
+        for text in dict.fromkeys(event.data["text"] for event in self._recorder.part().of("log")):
+            self._recorder.record("said", "log", text=text)

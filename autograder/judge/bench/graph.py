@@ -1,0 +1,188 @@
+"""Who is on the graph, besides the judge: the public face of a subject.
+
+rclpy has no event for changes of the graph, so these queries are polled; one costs well under a millisecond.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from rclpy.action.graph import (
+    get_action_client_names_and_types_by_node,
+    get_action_server_names_and_types_by_node,
+)
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.node import Node, NodeNameNonExistentError
+
+RCLError = rclpy_implementation.RCLError
+
+ROLES = ("publisher", "subscription", "service", "client", "action_server", "action_client")
+
+_FAST_DDS = b"\x01\x0f"
+"""How its identifiers begin (DDSI-RTPS, vendor ids)."""
+_EVERY_NODE_HAS = frozenset({"/rosout", "/parameter_events", "/clock"})
+_EVERY_NODE_SERVES = (
+    "/describe_parameters",
+    "/get_parameter_types",
+    "/get_parameters",
+    "/list_parameters",
+    "/set_parameters",
+    "/set_parameters_atomically",
+    "/get_type_description",
+)
+
+
+@dataclass(frozen=True)
+class NodeName:
+    """A node of the subject's."""
+
+    name: str
+    namespace: str
+
+    @property
+    def full(self) -> str:
+        """Its full name, such as ``/robot/talker``."""
+        return f"{self.namespace.rstrip('/')}/{self.name}"
+
+
+UNNAMED = "_NODE_"
+"""How names begin of nodes that are not named yet (rmw_dds_common)."""
+
+Interface = dict[str, dict[str, str]]
+"""Role -> {name: type}; where a name has several types they are joined with a comma."""
+
+
+def subject_nodes(judge: Node, keeper: str) -> list[NodeName]:
+    """Every node on the domain but the judge's and one keeper, once each name.
+
+    Args:
+        judge: The judge's node.
+        keeper: What the node is called that a notebook's check makes; empty where it makes none. One node of that name
+            is nobody's work; a second one is the subject's, whoever has told it the name.
+    """
+    own = judge.get_name()
+    seen = judge.get_node_names_and_namespaces()
+    others = [NodeName(name, space) for name, space in seen if name != own and not name.startswith(UNNAMED)]
+    if keeper and (the_one := NodeName(keeper, "/")) in others:
+        others.remove(the_one)
+    return sorted(set(others), key=lambda node: (node.name, node.namespace))
+
+
+def survey(judge: Node) -> Interface:
+    """The endpoints of all of the subject's nodes, without those that every node has.
+
+    A keeper has no others, so its name hides none.
+    """
+    found: Interface = {role: {} for role in ROLES}
+    for end in topic_ends(judge):
+        _add(found[end.role], end.topic, [end.type_name])
+    for node in subject_nodes(judge, keeper=""):
+        for role, query in _QUERIES.items():
+            for name, types in _ask(query, judge, node):
+                if _is_own_work(role, name):
+                    _add(found[role], name, types)
+    return found
+
+
+@dataclass(frozen=True)
+class TopicEnd:
+    """A publisher or a subscription of the subject's.
+
+    Attributes:
+        role: ``"publisher"`` or ``"subscription"``.
+        topic: The topic's full name.
+        type_name: Such as ``"std_msgs/msg/String"``.
+        process: The lower 16 bits of the id of the process that it belongs to; 0 where nobody can tell.
+    """
+
+    role: str
+    topic: str
+    type_name: str
+    process: int
+
+
+def topic_ends(judge: Node) -> list[TopicEnd]:
+    """The subject's ends of topics.
+
+    They are asked for by topic: of two nodes of one name, a question by the node's name is answered for one of them.
+    An endpoint is also known before the node that it belongs to, as the two are announced separately.
+    """
+    own = judge.get_name()
+    return [
+        TopicEnd(role, topic, info.topic_type, _process(bytes(info.endpoint_gid)))
+        for topic, _ in judge.get_topic_names_and_types()
+        if _is_own_work("publisher", topic)
+        for role, infos in (
+            ("publisher", judge.get_publishers_info_by_topic(topic)),
+            ("subscription", judge.get_subscriptions_info_by_topic(topic)),
+        )
+        for info in infos
+        if info.node_name != own
+    ]
+
+
+def _process(gid: bytes) -> int:
+    """What an endpoint's identifier tells of its process: Fast DDS writes it into the fifth and sixth byte."""
+    return int.from_bytes(gid[4:6], "little") if gid[:2] == _FAST_DDS else 0
+
+
+def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeName]:
+    """The subject's nodes at the other end of topics, once their real names are known.
+
+    Args:
+        judge: The judge's node.
+        heard: Topics that the judge listens to.
+        spoken: Topics that the judge speaks on.
+    """
+    infos = [info for topic in heard for info in judge.get_publishers_info_by_topic(topic)]
+    infos += [info for topic in spoken for info in judge.get_subscriptions_info_by_topic(topic)]
+    names = [NodeName(info.node_name, info.node_namespace) for info in infos]
+    own = judge.get_name()
+    return [n for n in dict.fromkeys(names) if n.name and n.name != own and not n.name.startswith(UNNAMED)]
+
+
+def owners(judge: Node, role: str, name: str) -> list[NodeName]:
+    """The subject's nodes that have an endpoint of this role and name."""
+    query = _QUERIES[role]
+    return [node for node in subject_nodes(judge, keeper="") if name in dict(_ask(query, judge, node))]
+
+
+def shows(judge: Node, marker: str) -> bool:
+    """Whether a node is known to have both a publisher and a subscription of this name.
+
+    Made last, they are known last: each kind of endpoint is announced in order (DDSI-RTPS, 8.5.4).
+    """
+    return any(
+        marker in dict(_ask(Node.get_publisher_names_and_types_by_node, judge, node))
+        and marker in dict(_ask(Node.get_subscriber_names_and_types_by_node, judge, node))
+        for node in subject_nodes(judge, keeper="")
+    )
+
+
+_Query = Callable[[Node, str, str], list[tuple[str, list[str]]]]
+
+_QUERIES: dict[str, _Query] = {
+    "service": Node.get_service_names_and_types_by_node,
+    "client": Node.get_client_names_and_types_by_node,
+    "action_server": get_action_server_names_and_types_by_node,
+    "action_client": get_action_client_names_and_types_by_node,
+}
+
+
+def _ask(query: _Query, judge: Node, node: NodeName) -> list[tuple[str, list[str]]]:
+    try:
+        return query(judge, node.name, node.namespace)
+    except (NodeNameNonExistentError, RCLError):
+        return []  # it went away between the two questions
+
+
+def _is_own_work(role: str, name: str) -> bool:
+    if name in _EVERY_NODE_HAS or "/_action/" in name or name.startswith("/_ready"):
+        return False
+    return not (role in ("service", "client") and name.endswith(_EVERY_NODE_SERVES))
+
+
+def _add(found: dict[str, str], name: str, types: list[str]) -> None:
+    known = set(filter(None, found.get(name, "").split(",")))
+    found[name] = ",".join(sorted(known | set(types)))

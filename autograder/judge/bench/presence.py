@@ -1,0 +1,190 @@
+"""What the graph tells of the subject in one part: its endpoints and nodes, as they come and go.
+
+A program that ends takes its endpoints along, so what was seen is written down at once and never asked for again.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from autograder.judge.bench import graph
+from autograder.judge.bench.settling import Settling
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rclpy.node import Node
+
+    from autograder.judge.bench.recorder import Recorder
+    from autograder.judge.bench.topics import RecordedPublisher, RecordedSubscription
+    from autograder.judge.subjects.subject import Subject
+
+    Counterparts = Mapping[str, RecordedSubscription | RecordedPublisher]
+
+APPEAR = 12.0
+"""Seconds of wall time in which a subject that runs must show up on the graph at all. Generous: starting slowly is
+not wrong, and a program needs a quarter of a second."""
+MATCH = 5.0
+"""Seconds in which two endpoints that fit must have met."""
+GRAPH_POLL = 0.004
+"""Seconds between two queries of the graph, which has no event to wait for."""
+
+
+class Presence:
+    """The subject's presence on the graph, as the judge's node sees it.
+
+    Attributes:
+        subscriptions: The judge's, topic -> subscription.
+        publishers: The judge's, topic -> publisher.
+
+    Args:
+        node: The judge's.
+        recorder: Where what is seen is written down.
+        subject: Whose presence it is.
+        settled: Seconds without a change of the graph after which a command is taken to have made all that it makes.
+    """
+
+    def __init__(self, node: Node, recorder: Recorder, subject: Subject, settled: float) -> None:
+        self.subscriptions: dict[str, RecordedSubscription] = {}
+        self.publishers: dict[str, RecordedPublisher] = {}
+        self._node = node
+        self._recorder = recorder
+        self._subject = subject
+        self._settled = settled
+
+    def survey(self) -> graph.Interface:
+        """The subject's endpoints as they are now."""
+        return graph.survey(self._node)
+
+    def nodes(self) -> list[graph.NodeName]:
+        """The subject's nodes as they are now."""
+        return graph.subject_nodes(self._node, self._subject.keeper)
+
+    def counterparts(self) -> list[graph.NodeName]:
+        """The subject's nodes, those that the judge is matched with first, once their names are known."""
+        found: list[graph.NodeName] = []
+
+        def named() -> bool:
+            found[:] = graph.counterparts(self._node, list(self.subscriptions), list(self.publishers))
+            return bool(found) or self._subject.ended
+
+        if not (self.subscriptions or self.publishers):
+            return self.nodes()
+        self._recorder.wait(named, 1.0, poll=GRAPH_POLL)
+        return found
+
+    # --- waiting -------------------------------------------------------------------------------------------
+
+    def await_endpoint(self, role: str, name: str) -> bool:
+        """Wait until the subject's endpoint is on the graph and matched with the judge's, if it has one."""
+        self.await_interface(
+            lambda interface: name in interface.get(role, {}) or name in self._met().get(role, {})
+        )
+        self.note_whom_it_met()
+        if name not in self._recorder.part().endpoints(role):
+            return False
+        counterparts: dict[str, Counterparts] = {
+            "publisher": self.subscriptions,
+            "subscription": self.publishers,
+        }
+        counterpart = counterparts.get(role, {}).get(name)
+        if counterpart is None or counterpart.type_name != self._recorder.part().endpoints(role)[name]:
+            return True  # there is nobody to be matched with
+        return self._recorder.wait(
+            lambda: counterpart.matched > 0 or self._subject.ended or self._mismatched(name), MATCH
+        )
+
+    def await_node(self) -> bool:
+        """Wait until a node of the subject's is on the graph; gives up when the subject has ended."""
+        nodes: list[graph.NodeName] = []
+
+        def there() -> bool:
+            nodes[:] = self.nodes()
+            return bool(nodes)
+
+        self._recorder.wait(lambda: there() or self._subject.ended, APPEAR, poll=GRAPH_POLL)
+        self.note_interface()
+        return bool(nodes)
+
+    def await_interface(self, there: Callable[[graph.Interface], bool]) -> graph.Interface:
+        """Wait for something on the graph, until the subject has ended or has surely made all that it makes.
+
+        Returns:
+            The interface that was looked at last. It is written down as it was seen, and not asked for again: a subject
+            that ends takes its endpoints along.
+        """
+        settled = Settling(self._settled)
+        interface: graph.Interface = {}
+
+        def over() -> bool:
+            nonlocal interface
+            marker = self._subject.marker
+            # Asked before the endpoints: what was made before the marker is announced before it.
+            all_made = marker is not None and graph.shows(self._node, marker)
+            interface = self.survey()
+            if there(interface) or self._subject.ended or all_made:
+                return True
+            return marker is None and settled.unchanged(interface, len(self.nodes()))
+
+        self._recorder.wait(over, APPEAR, poll=GRAPH_POLL)
+        self.note_interface(interface)
+        return interface
+
+    def _subject_nodes(self) -> list[graph.NodeName]:
+        return graph.subject_nodes(self._node, self._subject.keeper)
+
+    def _survey(self) -> graph.Interface:
+        return graph.survey(self._node)
+
+    # --- writing down --------------------------------------------------------------------------------------
+
+    def note_interface(self, interface: graph.Interface | None = None) -> None:
+        """Write down the subject's endpoints, where they are others than before.
+
+        Args:
+            interface: As they were seen a moment ago; without it, as they are now.
+        """
+        nodes = [node.full for node in self.nodes()]
+        ends = [[e.role, e.topic, e.process] for e in graph.topic_ends(self._node)]
+        seen = {"nodes": nodes, "ends": sorted(ends), **(interface or self.survey())}
+        surveys = self._recorder.part().of("interface", "graph")
+        if not surveys or surveys[-1].data != seen:
+            self._recorder.record("interface", "graph", **seen)
+
+    def note_how_it_leaves(self) -> None:
+        """Wait for the end of a program whose endpoints were on the graph and are gone: it is on its way out.
+
+        How it ends, and what it says last, must not depend on the moment in which it was looked at.
+        """
+        surveys = self._recorder.part().of("interface", "graph")
+        had_endpoints = [any(survey.data[role] for role in graph.ROLES) for survey in surveys]
+        if not self._subject.shares_participant and any(had_endpoints) and not had_endpoints[-1]:
+            self._recorder.wait(lambda: self._subject.ended, MATCH)
+
+    def note_whom_it_met(self) -> None:
+        """Write down endpoints that met the judge's: they were there, also if the graph never told of them."""
+        known = self._recorder.part()
+        for role, ends in self._met().items():
+            for name, type_name in ends.items():
+                if name not in known.endpoints(role):
+                    self._recorder.record("interface", "topic", **{role: {name: type_name}})
+
+    def _met(self) -> graph.Interface:
+        """The subject's endpoints that met one of the judge's."""
+        part = self._recorder.part()
+        sides: tuple[tuple[str, Counterparts, Counterparts], ...] = (
+            ("publisher", self.subscriptions, self.publishers),
+            ("subscription", self.publishers, self.subscriptions),
+        )
+        return {
+            role: {
+                name: end.type_name
+                for name, end in ends.items()
+                # Where the judge listens to what it says itself, it meets itself.
+                if name not in others and any(event.data["count"] for event in part.of("matched", name))
+            }
+            for role, ends, others in sides
+        }
+
+    def _mismatched(self, name: str) -> bool:
+        return self._recorder.part().first("mismatch", name) is not None

@@ -1,0 +1,124 @@
+"""Watching and feeding topics."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any
+
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_policy_name_from_kind,
+)
+
+from autograder.judge.bench.interfaces import filled, interface, to_data
+
+if TYPE_CHECKING:
+    from autograder.judge.bench.recorder import Recorder
+    from autograder.judge.bench.wire import Wire
+
+# Reliable as the course's own listener, so that what cannot reach that one is seen not to reach this one; deep, so that
+# a slow moment of the judge loses nothing.
+_AS_THE_LISTENER = QoSProfile(depth=1000)
+_AS_A_LATE_LISTENER = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_LOG_HISTORY = QoSProfile(
+    depth=1000, history=HistoryPolicy.KEEP_LAST, reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.TRANSIENT_LOCAL,
+)  # fmt: skip
+
+
+class RecordedSubscription:
+    """A subscription that writes every message into the transcript."""
+
+    def __init__(
+        self, wire: Wire, recorder: Recorder, topic: str, type_name: str, *, latched: bool = False
+    ) -> None:
+        self.matched = 0
+        self.type_name = type_name
+        self._recorder = recorder
+        self._topic = topic
+        self.subscription = wire.node.create_subscription(
+            interface(type_name),
+            topic,
+            self._hear,  # type: ignore[arg-type]  # rclpy gives the message info to whoever takes two arguments
+            _AS_A_LATE_LISTENER if latched else _AS_THE_LISTENER,
+            event_callbacks=SubscriptionEventCallbacks(
+                matched=self._match, incompatible_qos=self._mismatch, use_default_callbacks=False
+            ),
+        )
+
+    def _hear(self, message: Any, info: Any) -> None:
+        # The publisher's own count of its messages tells what was sent before anybody could hear it, and its own time
+        # of sending is not blurred by the way here (rmw_message_info_t; given by rmw_fastrtps).
+        self._recorder.record(
+            "message",
+            self._topic,
+            fields=to_data(message),
+            number=info["publication_sequence_number"],
+            sent=info["source_timestamp"] / 1e9,
+            arrived=time.time(),
+        )
+
+    def _match(self, info: Any) -> None:
+        self.matched = info.current_count
+        # All that it ever met: who comes and goes at once is told of once, and nobody is there any more.
+        self._recorder.record("matched", self._topic, count=info.total_count)
+
+    def _mismatch(self, info: Any) -> None:
+        _record_mismatch(self._recorder, self._topic, info)
+
+
+class RecordedPublisher:
+    """A publisher as the course makes them (reliable, depth 10) that writes down what it sends."""
+
+    def __init__(self, wire: Wire, recorder: Recorder, topic: str, type_name: str) -> None:
+        self.matched = 0
+        self.type_name = type_name
+        self._recorder = recorder
+        self._topic = topic
+        self._type = interface(type_name)
+        self.publisher = wire.node.create_publisher(
+            self._type,
+            topic,
+            QoSProfile(depth=10),
+            event_callbacks=PublisherEventCallbacks(
+                matched=self._match, incompatible_qos=self._mismatch, use_default_callbacks=False
+            ),
+        )
+
+    def send(self, **fields: Any) -> None:
+        """Publish one message with these fields."""
+        self._recorder.record("sent", self._topic, fields=dict(fields))
+        self.publisher.publish(filled(self._type(), fields))
+
+    def _match(self, info: Any) -> None:
+        self.matched = info.current_count
+        # All that it ever met: who comes and goes at once is told of once, and nobody is there any more.
+        self._recorder.record("matched", self._topic, count=info.total_count)
+
+    def _mismatch(self, info: Any) -> None:
+        _record_mismatch(self._recorder, self._topic, info)
+
+
+def _record_mismatch(recorder: Recorder, topic: str, info: Any) -> None:
+    recorder.record("mismatch", topic, policy=str(qos_policy_name_from_kind(info.last_policy_kind)).lower())
+
+
+class LogReader:
+    """Reads ``/rosout``, with what was said before the judge came (it is transient local, REP-2000's rcl)."""
+
+    def __init__(self, wire: Wire, recorder: Recorder) -> None:
+        self._recorder = recorder
+        self.subscription = wire.node.create_subscription(
+            interface("rcl_interfaces/msg/Log"), "/rosout", self._hear, _LOG_HISTORY
+        )
+
+    def _hear(self, line: Any) -> None:
+        sent = line.stamp.sec + line.stamp.nanosec / 1e9
+        if sent < self._recorder.began_at:
+            return  # said in an earlier part, by a node of the same participant, and slow to arrive
+        text, level = line.msg, int(line.level)
+        self._recorder.record("log", line.name, text=text, level=level, sent=sent, arrived=time.time())

@@ -1,0 +1,107 @@
+"""One check that a notebook asked for, in the judge's forked child: from its first word to the verdict."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+from typing import TYPE_CHECKING
+
+from autograder import exercises
+from autograder.judge.bench.wire import JudgeFailed
+from autograder.judge.serving import domain
+from autograder.judge.subjects.path_subject import PathSubject
+from autograder.judge.subjects.remote_subject import RemoteSubject
+from autograder.judge.verdicts import record, reference, trial
+from autograder.messages.checks import Check, Judged, Refused
+from autograder.messages.lines import Hangup, Lines, NotUnderstood
+from autograder.messages.orders import Report
+from autograder.verdict import Verdict, not_checked
+
+if TYPE_CHECKING:
+    import socket
+
+    from autograder.kit.model import Exercise
+    from autograder.messages.lines import Message
+
+FIRST_WORD = 5.0
+"""Seconds in which whoever connects must have said what is asked for."""
+MAX_NAME = 100
+"""Characters of the exercise's name that are looked at."""
+
+
+def converse(
+    connection: socket.socket, *, seed: str, expected: str | None, recording: bool, workspaces: str = ""
+) -> Report:
+    """Hear which exercise is asked for, judge it and tell the notebook.
+
+    Args:
+        connection: The notebook's end.
+        seed: What random inputs of this and other checks are drawn from.
+        expected: The only exercise that may be asked for; None for any.
+        recording: Record a reference output instead of judging against the stored one.
+        workspaces: The socket of the grader's side of checks of workspaces; empty where notebooks run these themselves.
+
+    Returns:
+        What came of it; nothing where nothing was asked, or something else than what is expected.
+    """
+    lines = Lines(connection)
+    connection.settimeout(FIRST_WORD)
+    try:
+        first = lines.hear(Check)
+    except Hangup:
+        return Report()  # somebody came and asked nothing
+    except NotUnderstood:
+        _tell(lines, Refused("the first message asks for a check"))
+        return Report()
+    connection.settimeout(None)
+    asked = first.exercise[:MAX_NAME].encode("utf-8", "replace").decode()
+    try:
+        exercise = exercises.get(asked)
+    except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
+        _tell(lines, Refused(str(error)))
+        return Report()
+    if expected is not None and asked != expected:
+        _tell(lines, Refused(f"the check cell of {expected} asked for {asked}"))
+        return Report()
+    subject: RemoteSubject | PathSubject
+    if workspaces and exercise.runner:
+        # Whatever the notebook calls its subject: here only sources count.
+        subject = PathSubject(lines, exercise.id, workspaces)
+    else:
+        subject = RemoteSubject(lines, is_class=first.kind == "class")
+    report = _report(exercise, subject, own_seed(seed, exercise.id), recording)
+    _tell(lines, Judged(_shown(exercise, report)))
+    return report
+
+
+def own_seed(seed: str, exercise_id: str) -> str:
+    """The seed of one check, from which nobody can tell that of another.
+
+    A verdict carries it, and the notebook hears its verdict before its next check.
+    """
+    return hashlib.sha256(f"{len(seed)}:{seed}{exercise_id}".encode()).hexdigest()[:16]
+
+
+def _tell(lines: Lines, message: Message) -> None:
+    # A verdict stands also where its notebook has gone away meanwhile.
+    with contextlib.suppress(Hangup):
+        lines.say(message)
+
+
+def _report(exercise: Exercise, subject: RemoteSubject | PathSubject, seed: str, recording: bool) -> Report:
+    try:
+        with domain.lease() as domain_id:
+            if not recording:
+                stored = reference.load(exercise.id)
+                return Report(trial.check(exercise, subject, stored, seed=seed, domain_id=domain_id))
+            recorded = record.record(exercise, subject, domain_id=domain_id)
+            verdict = trial.judge(exercise, record.as_evidence(recorded), seed)
+            return Report(verdict, reference.dump(recorded, exercise.recorded))
+    except (domain.NoFreeDomainError, reference.NoReference, record.NotRecordable, JudgeFailed) as error:
+        return Report(trouble=str(error))
+    except Hangup:
+        return Report()  # the notebook went away before it had sent its sources
+
+
+def _shown(exercise: Exercise, report: Report) -> Verdict:
+    return report.verdict or not_checked(exercise.id, exercise.title, exercise.points, report.trouble)

@@ -1,0 +1,169 @@
+"""A judge process, seen from the grader: start it, open and close checks, read its verdicts."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import select
+import socket
+import subprocess
+import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Protocol, Self
+
+import msgspec
+
+from autograder.judge.serving.sockets import listen
+from autograder.messages.orders import Close, Open, Report
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from types import TracebackType
+
+    from autograder.verdict import Verdict
+
+START_LIMIT = 60.0
+"""Seconds of wall time in which a judge must be up; it takes well under one on an idle machine."""
+ANSWER_LIMIT = 30.0
+"""Seconds of wall time in which a judge answers an order."""
+
+
+class JudgeDied(RuntimeError):
+    """The judge process is gone or does not answer: nothing can be said about the subject."""
+
+
+class StartedJudge(Protocol):
+    """The process of a judge, wherever it runs."""
+
+    def end(self) -> None:
+        """End it with all that it has forked; may be called twice."""
+        ...
+
+
+Start = Callable[[int, int], StartedJudge]
+"""Starts a judge on a listening socket and on a connected one for orders; both descriptors stay the caller's."""
+
+
+class JudgeProcess:
+    """A controlled judge. Only what :meth:`close` returns is a grade."""
+
+    def __init__(self, socket_path: Path, *, seed: str, start: Start | None = None) -> None:
+        """Name the socket that the kernel will reach the judge on.
+
+        Args:
+            socket_path: Unix socket; at most 107 bytes long (unix(7)).
+            seed: What the random inputs are drawn from; each exercise draws its own from it.
+            start: Starts the process; as a plain child where none is given.
+        """
+        self.socket_path = socket_path
+        self._seed = seed
+        self.workspaces = ""
+        """The socket of the grader's side of checks of workspaces, as the judge sees it; empty where there is none."""
+        self._start = start or _Child
+        self._process: StartedJudge | None = None
+        self._control: socket.socket | None = None
+
+    def __enter__(self) -> Self:
+        """Start the process and wait until it listens.
+
+        Raises:
+            JudgeDied: It did not come up.
+        """
+        self._control, orders = socket.socketpair()
+        try:
+            with orders, listen(self.socket_path) as listener:
+                self._process = self._start(listener.fileno(), orders.fileno())
+            self._answers = self._control.makefile("rb")
+            if self._read(START_LIMIT) != b"ready\n":
+                raise JudgeDied("the judge said something else than that it is ready")
+        except (JudgeDied, OSError) as error:
+            self.stop()
+            raise JudgeDied("the judge did not start; `autograder doctor` says what is missing") from error
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.stop()
+
+    def open(self, exercise_id: str, *, record: bool = False) -> None:
+        """Let the next check of this exercise be answered, once.
+
+        Raises:
+            JudgeDied: The judge is gone.
+        """
+        self._order(Open(exercise_id, f"{self._seed}:{exercise_id}", record, self.workspaces))
+
+    def close(self) -> Verdict | None:
+        """The verdict of the opened check; None where nobody asked for it or there is none.
+
+        Raises:
+            JudgeDied: The judge is gone.
+        """
+        return self.close_report().verdict
+
+    def close_report(self) -> Report:
+        """Like :meth:`close`, with the recorded reference output and the reason why there is no verdict.
+
+        Raises:
+            JudgeDied: The judge is gone, or says something else than a report.
+        """
+        try:
+            return msgspec.json.decode(self._order(Close()), type=Report)
+        except msgspec.MsgspecError as error:
+            raise JudgeDied("the judge says something else than a report") from error
+
+    def stop(self) -> None:
+        """End the judge and whatever it has forked."""
+        process, self._process = self._process, None
+        control, self._control = self._control, None
+        if control is not None:
+            control.close()
+        if process is not None:
+            process.end()
+        self.socket_path.unlink(missing_ok=True)
+
+    def _order(self, order: Open | Close) -> bytes:
+        if self._control is None:
+            raise JudgeDied("the judge was never started or is stopped")
+        try:
+            self._control.sendall(msgspec.json.encode(order) + b"\n")
+        except OSError as error:
+            raise JudgeDied("the judge is gone") from error
+        return self._read(ANSWER_LIMIT)
+
+    def _read(self, limit: float) -> bytes:
+        assert self._control is not None
+        ready, _, _ = select.select([self._control], [], [], limit)
+        try:
+            line = self._answers.readline() if ready else b""
+        except OSError:
+            line = b""
+        if not line:
+            raise JudgeDied("the judge does not answer" if not ready else "the judge is gone")
+        return line
+
+
+class _Child:
+    """A judge as a child of this process."""
+
+    def __init__(self, listener: int, orders: int) -> None:
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "autograder.judge", "--attached", str(listener), str(orders)],
+            stdin=subprocess.DEVNULL,
+            pass_fds=(listener, orders),
+            start_new_session=True,
+        )
+
+    @property
+    def pid(self) -> int:
+        """Its process id."""
+        return self._process.pid
+
+    def end(self) -> None:
+        """Give it a moment to go by itself: its orders have ended."""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(timeout=2.0)
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self._process.pid, 9)
+        self._process.wait()

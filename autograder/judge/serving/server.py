@@ -1,0 +1,143 @@
+"""The judge process of a notebook: warm, it forks a child for each check that is asked for on its socket.
+
+The parent has imported ROS and made no node and no thread, so that a fork is safe and each check begins with a fresh
+participant, which meets its subject at once.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import secrets
+import selectors
+import sys
+from typing import TYPE_CHECKING, BinaryIO
+
+import msgspec
+
+from autograder import exercises
+from autograder.judge.serving import conversation
+from autograder.judge.serving.fork import Child
+from autograder.judge.serving.sockets import listen
+from autograder.judge.subjects.command import SPARE
+from autograder.messages.checks import Refused
+from autograder.messages.lines import encode
+from autograder.messages.orders import Close, Open, Order, Report
+
+if TYPE_CHECKING:
+    import socket
+    from pathlib import Path
+
+REFUSE_LIMIT = 0.5
+"""Seconds that somebody who is to be refused has to ask."""
+CLOSE_LIMIT = 10.0
+"""Seconds that a check may still take after its cell has ended; its kernel is gone then or about to be."""
+
+
+class JudgeServer:
+    """Listens on a Unix socket. A controlled one answers only the check that its controller has opened, once."""
+
+    def __init__(self, listener: socket.socket, *, controlled: bool) -> None:
+        """Take over a listening Unix socket."""
+        self._controlled = controlled
+        self._order: Open | None = None
+        self._child: Child | None = None
+        self._children: dict[int, Child] = {}
+        self._listener = listener
+
+    def serve(self, control: BinaryIO, answers: BinaryIO) -> None:
+        """Serve until ``control`` ends: a judge does not outlive the one who started it."""
+        with selectors.DefaultSelector() as selector:
+            selector.register(self._listener, selectors.EVENT_READ, self._listener)
+            selector.register(control, selectors.EVENT_READ, control)
+            answers.write(b"ready\n")
+            answers.flush()
+            while True:
+                for key, _ in selector.select(timeout=1.0):
+                    if key.fileobj is self._listener:
+                        self._accept()
+                    elif not self._obey(control, answers):
+                        return
+                self._reap()
+
+    def _accept(self) -> None:
+        connection, _ = self._listener.accept()
+        with connection:
+            order = self._order
+            if self._controlled and (order is None or self._child is not None):
+                _refuse(connection, "no check is expected now: it counts once, while its cell is running")
+                return
+            seed = order.seed if order else secrets.token_hex(8)
+            expected, recording = (order.exercise, order.record) if order else (None, False)
+            workspaces = order.workspaces if order else ""
+            limit = max(
+                (e.limit for e in exercises.unbroken() if expected in (None, e.id)), default=REFUSE_LIMIT
+            )
+            child = Child(
+                lambda: msgspec.json.encode(
+                    conversation.converse(
+                        connection, seed=seed, expected=expected, recording=recording, workspaces=workspaces
+                    )
+                ),
+                limit + SPARE,
+                close=[self._listener.fileno()],
+            )
+            if self._controlled:
+                self._child = child
+            else:
+                self._children[child.pid] = child
+
+    def _obey(self, control: BinaryIO, answers: BinaryIO) -> bool:
+        """Take one order; False at the end of orders."""
+        line = control.readline()
+        if not line:
+            return False
+        order = msgspec.json.decode(line, type=Order)
+        if isinstance(order, Close):
+            answers.write(self._close() + b"\n")
+        else:
+            self._close()
+            self._order = order
+            answers.write(b"{}\n")
+        answers.flush()
+        return True
+
+    def _close(self) -> bytes:
+        """What the check has brought, as the JSON of a :class:`Report`: only who has given the order decodes it."""
+        child, self._child, self._order = self._child, None, None
+        if child is None:
+            return msgspec.json.encode(Report())
+        outcome = child.result(within=CLOSE_LIMIT)
+        if outcome.hurried:
+            # The cell had ended and its check had not: no judge's trouble, but a notebook that did not see it through.
+            return msgspec.json.encode(Report())
+        if outcome.data is None or b"\n" in outcome.data:
+            return msgspec.json.encode(
+                Report(trouble=outcome.trouble or "the judge said more than one report")
+            )
+        return outcome.data
+
+    def _reap(self) -> None:
+        """Free the children of an uncontrolled judge; their notebooks have their verdicts."""
+        for pid, child in list(self._children.items()):
+            if child.done():
+                del self._children[pid]
+
+
+def _refuse(connection: socket.socket, why: str) -> None:
+    """Say no. What was asked is read first: closing on unread words would lose the answer (unix(7), ECONNRESET)."""
+    with contextlib.suppress(OSError):
+        connection.settimeout(REFUSE_LIMIT)
+        connection.recv(65536)
+        connection.sendall(encode(Refused(why)))
+
+
+def run(path: Path) -> None:
+    """Serve whoever asks, until stdin ends; what anything prints goes to stderr."""
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
+    sys.stdout = sys.stderr
+    try:
+        JudgeServer(listen(path), controlled=False).serve(sys.stdin.buffer, answers)
+    finally:
+        path.unlink(missing_ok=True)

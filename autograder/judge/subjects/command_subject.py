@@ -1,0 +1,263 @@
+"""Any command as a subject: a script, a colcon executable, a C++ node, a launch."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import os
+import signal
+import subprocess
+import threading
+import time
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any, Protocol
+
+from autograder.judge.settings import subject_environment
+from autograder.judge.subjects.subject import CannotStart
+from autograder.short_lines import short_lines
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from autograder.judge.bench.own_endpoints import Endpoint
+    from autograder.judge.bench.recorder import Recorder
+
+    Record = Callable[..., None]
+
+MAX_LINE = 4_000
+"""Characters of one line that are kept."""
+MAX_OUTPUT = 2_000_000
+"""Bytes of output that are kept of one run."""
+READ_LIMIT = 2.0
+"""Seconds in which the last output of a command that has exited must have been read."""
+POLITE = 1.0
+"""Seconds that a command has to end after SIGINT, before it is killed."""
+
+_libc = ctypes.CDLL(None, use_errno=True)
+_PR_SET_PDEATHSIG = 1
+_PR_SET_CHILD_SUBREAPER = 36
+
+
+class Process(Protocol):
+    """What is used of ``subprocess.Popen``."""
+
+    @property
+    def pid(self) -> int:
+        """The process and, as it leads a group, its group."""
+        ...
+
+    @property
+    def stdout(self) -> IO[bytes] | None:
+        """What it prints."""
+        ...
+
+    @property
+    def stderr(self) -> IO[bytes] | None:
+        """What it prints as errors."""
+        ...
+
+    def poll(self) -> int | None:
+        """Its exit code, or None while it runs."""
+        ...
+
+    def wait(self) -> int:
+        """Wait for its end; its exit code."""
+        ...
+
+    def send_signal(self, sig: int, /) -> None:
+        """Send a signal."""
+        ...
+
+
+class Box(Protocol):
+    """Where commands are shut off from the user's files and network; this process is on the same network."""
+
+    def enter(self) -> None:
+        """Go there; called once, before anything of ROS is loaded.
+
+        Raises:
+            OSError: That is not possible here.
+        """
+        ...
+
+    def start_of(self, command: Sequence[str], environment: Mapping[str, str]) -> tuple[list[str], list[int]]:
+        """What to start in place of a command, and the descriptors to hand down, which the caller closes."""
+        ...
+
+    def limit(self) -> None:
+        """Take the limits of a box; called in the child."""
+        ...
+
+
+class CommandSubject:
+    """Runs a command in a session of its own, reads all it prints and ends it with everything it started."""
+
+    shares_participant = False
+    keeper = ""
+    marker = None
+
+    def __init__(self, command: Sequence[str], cwd: Path | None = None, box: Box | None = None) -> None:
+        self._command = list(command)
+        self._box = box
+        self._cwd = cwd
+        self._domain_id = 0
+        self._process: Process | None = None
+        self._done = threading.Event()
+        self._dying = threading.Event()
+        self._last_words: list[str] = []
+        # Whatever a subject leaves behind becomes this process's child and can be found and killed.
+        _libc.prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+
+    def begin(self, domain_id: int) -> None:
+        """Remember the domain that the command's environment will name."""
+        self._domain_id = domain_id
+
+    def renew(self) -> None:
+        """Each run of a command is a process of its own, with a participant of its own."""
+
+    def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
+        """Each run has a participant of its own, which has met nobody: it cannot know what is gone."""
+        del there, gone
+        return True
+
+    def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
+        """Start the command with the arguments appended.
+
+        Raises:
+            CannotStart: It does not exist or may not be executed.
+        """
+        del options  # only a notebook's function takes keyword arguments
+        command = [*self._command, *map(str, arguments)]
+        try:
+            self._process = self._spawn(
+                command, subject_environment(self._domain_id, boxed=self._box is not None)
+            )
+        except (OSError, ValueError) as error:
+            raise CannotStart(f"cannot start {self._command[0]!r}: {error}") from error
+        self._done, self._dying, self._last_words = threading.Event(), threading.Event(), []
+        follow = (recorder.in_this_part(), self._process, self._done)
+        threading.Thread(target=self._follow, args=follow, daemon=True).start()
+
+    def _spawn(self, command: Sequence[str], environment: Mapping[str, str]) -> Process:
+        descriptors: list[int] = []
+        if self._box is not None:
+            command, descriptors = self._box.start_of(command, environment)
+        try:
+            return subprocess.Popen(
+                command,
+                cwd=self._cwd,
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                start_new_session=True,
+                preexec_fn=self._in_the_child,
+                pass_fds=descriptors,
+            )
+        finally:
+            for descriptor in descriptors:
+                os.close(descriptor)
+
+    def _in_the_child(self) -> None:
+        if self._box is not None:
+            self._box.limit()
+        # A judge that runs in the background of a shell ignores Ctrl-C; its subjects must not.
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+
+    def release(self) -> None:
+        """A command runs from its start."""
+
+    @property
+    def ended(self) -> bool:
+        """Whether the command has exited and all it printed was read."""
+        return self._done.is_set()
+
+    def stack(self) -> str:
+        """Abort the command: Python's faulthandler, which its environment has switched on, prints the stacks."""
+        process = self._process
+        if process is None or self.ended:
+            return ""
+        self._dying.set()
+        process.send_signal(signal.SIGABRT)
+        self._done.wait(READ_LIMIT)
+        return "\n".join(self._last_words)
+
+    def stop(self) -> None:
+        """SIGINT to its process group, then SIGKILL to whatever is left of it."""
+        if self._process is None:
+            return
+        if self._process.poll() is None:
+            _signal_group(self._process.pid, signal.SIGINT)
+            self._done.wait(POLITE)
+        _signal_group(self._process.pid, signal.SIGKILL)
+        kill_leftovers(spare=self._helpers)
+        self._process.wait()
+        self._process = None
+
+    @property
+    def _helpers(self) -> Sequence[int]:
+        """Children of this process that are no part of the subject."""
+        return ()
+
+    def _follow(self, record: Record, process: Process, done: threading.Event) -> None:
+        budget = _Budget(MAX_OUTPUT)
+        readers = [
+            threading.Thread(target=self._read, args=(record, stream, name, budget), daemon=True)
+            for name, stream in (("stdout", process.stdout), ("stderr", process.stderr))
+        ]
+        for reader in readers:
+            reader.start()
+        code = process.wait()
+        for reader in readers:
+            # All that it printed must be read before its end is known. A grandchild may hold the pipe open,
+            # though.
+            reader.join(timeout=READ_LIMIT)
+        # What the judge has ended did not end by itself.
+        record("subject", "aborted" if self._dying.is_set() else "exited", code=code)
+        done.set()
+
+    def _read(self, record: Record, stream: IO[bytes] | None, name: str, budget: _Budget) -> None:
+        assert stream is not None
+        with stream:
+            for line in short_lines(stream, MAX_LINE):
+                if budget.left <= 0:
+                    continue
+                budget.left -= len(line)
+                text = line.decode("utf-8", "replace").rstrip("\r\n")
+                if self._dying.is_set() and name == "stderr":
+                    self._last_words.append(text)
+                else:
+                    record("output", name, text=text)
+
+
+class _Budget:
+    def __init__(self, size: int) -> None:
+        self.left = size
+
+
+def _signal_group(group: int, number: int) -> None:
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        os.killpg(group, number)
+
+
+def kill_leftovers(limit: float = 1.0, *, spare: Sequence[int] = ()) -> None:
+    """Kill every child of this process and wait for it, until none is left or ``limit`` seconds are over.
+
+    Args:
+        limit: Seconds of wall time.
+        spare: Process ids of children that are left alone.
+    """
+    deadline = time.monotonic() + limit
+    while time.monotonic() < deadline:
+        listed = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
+        children = [child for child in listed if int(child) not in spare]
+        if not children:
+            return
+        for child in children:
+            try:
+                os.kill(int(child), signal.SIGKILL)
+                os.waitpid(int(child), os.WNOHANG)
+            except (ProcessLookupError, ChildProcessError):
+                pass
+        time.sleep(0.005)

@@ -1,0 +1,215 @@
+"""A workspace or launch file of a notebook as a subject: the grader's side builds and runs it, and reports.
+
+The notebook sends its sources and has no further part in it. What it said about them becomes files on the grader's
+side (:mod:`autograder.workspaces.grading.service`); from there come the reports, and what the programs say.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import TYPE_CHECKING, Any
+
+from autograder.judge.bench.wire import JudgeFailed
+from autograder.kit.evidence import REPORTS
+from autograder.messages import workspaces
+from autograder.messages.checks import Collect, FromNotebook, Sources
+from autograder.messages.lines import Hangup, Lines, NotUnderstood
+from autograder.messages.workspaces import Source
+from autograder.workspaces.sources.collecting import MAX_BYTES, MAX_FILES, BadSources, checked
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.judge.bench.own_endpoints import Endpoint
+    from autograder.judge.bench.recorder import Recorder
+
+STOP_LIMIT = 15.0
+"""Seconds of wall time in which the grader's side must have ended a run."""
+PATIENCE = 60.0
+"""Seconds of wall time after which a scenario that has given up on a build had waited for it. One that gives up earlier
+has seen enough."""
+MAX_TEXT = 4_000
+"""Characters that are kept of one line."""
+
+
+class PathSubject:
+    """Implements :class:`autograder.judge.subjects.subject.Subject` on the grader's side.
+
+    Attributes:
+        trouble: Why nothing can be said about what was submitted, where the grader's side failed; else empty.
+    """
+
+    shares_participant = False
+    keeper = ""
+    marker = None
+
+    def __init__(self, notebook: Lines, exercise: str, socket_path: str) -> None:
+        """Take over a conversation.
+
+        Args:
+            notebook: The notebook's end.
+            exercise: The exercise's id.
+            socket_path: The socket of the grader's side.
+        """
+        self._notebook = notebook
+        self._exercise = exercise
+        self._socket = socket_path
+        self._lines: Lines | None = None
+        self._path = ""
+        self._run = 0
+        self._recorder: Recorder | None = None
+        self._ended = threading.Event()
+        self._stopped = threading.Event()
+        self._ready = threading.Event()
+        self._built = threading.Event()
+        self._began = 0.0
+        self.trouble = ""
+
+    def begin(self, domain_id: int) -> None:
+        """Take the sources and hand them over; from then on the notebook has no part in it.
+
+        Raises:
+            JudgeFailed: The grader's side is not there.
+            Hangup: The notebook hung up before it had sent everything.
+        """
+        sources, wrong = self._collected()
+        try:
+            self._lines = Lines.to(self._socket)
+            self._lines.say(
+                workspaces.Check(self._exercise, domain_id, self._path, len(sources), trouble=wrong)
+            )
+            for source in sources:
+                self._lines.say(source)
+        except Hangup as error:
+            raise JudgeFailed(f"the grader's side of workspaces is gone: {error}") from error
+        threading.Thread(target=self._listen, args=(self._lines,), daemon=True).start()
+        self._ready.wait()
+        self._check()
+
+    def renew(self) -> None:
+        """Each run is a process of its own, with a participant of its own."""
+
+    def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
+        """Each run has a participant of its own, which has met nobody: it cannot know what is gone."""
+        del there, gone
+        return True
+
+    def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
+        """Let it be built, where it is not yet, and run.
+
+        Raises:
+            JudgeFailed: The grader's side is gone.
+        """
+        del arguments, options
+        self._run += 1
+        self._recorder = recorder
+        self._ended.clear()
+        self._stopped.clear()
+        self._built.clear()
+        self._began = time.monotonic()
+        self._say(workspaces.Start(self._run))
+
+    def release(self) -> None:
+        """A program runs from its start."""
+
+    @property
+    def ended(self) -> bool:
+        """Whether this run has ended by itself, or there is nobody left to run it."""
+        return self._ended.is_set()
+
+    def stack(self) -> str:
+        """Nobody can tell: the program is not this process's child."""
+        return ""
+
+    def stop(self) -> None:
+        """Let the run be ended.
+
+        Raises:
+            JudgeFailed: Something failed on the grader's side, so that what was seen says nothing.
+        """
+        if self._recorder is None:
+            return
+        self._recorder = None
+        waited = not self._built.is_set() and not self.ended and time.monotonic() - self._began > PATIENCE
+        if not self.trouble:
+            self._say(workspaces.Stop(self._run))
+            if not self._stopped.wait(STOP_LIMIT):
+                raise JudgeFailed("the grader's side did not end what it ran")
+        if waited:
+            raise JudgeFailed("the build did not end in time; is the machine too busy?")
+        self._check()
+
+    def _check(self) -> None:
+        if self.trouble:
+            raise JudgeFailed(self.trouble)
+
+    def _say(self, message: workspaces.ToService) -> None:
+        assert self._lines is not None
+        try:
+            self._lines.say(message)
+        except Hangup as error:
+            raise JudgeFailed(self.trouble or f"the grader's side of workspaces is gone: {error}") from error
+
+    def _collected(self) -> tuple[list[Source], str]:
+        """What the notebook sends as its sources, and what is wrong with it."""
+        self._notebook.say(Collect())
+        sources: list[Source] = []
+        size = 0
+        try:
+            while not isinstance(said := self._notebook.hear(FromNotebook), Sources):
+                if isinstance(said, Source) and len(sources) <= MAX_FILES and size <= MAX_BYTES:
+                    sources.append(said)
+                    size += len(said.data or b"")
+        except NotUnderstood:
+            return [], "a file has not the form of one"
+        wrong = "".join(c for c in said.trouble[:500] if c.isprintable())
+        try:
+            self._path = checked([Source(said.path)])[0].path
+            return checked(sources), wrong
+        except BadSources as error:
+            return [], wrong or str(error)
+
+    def _listen(self, lines: Lines) -> None:
+        try:
+            while True:
+                self._take(lines.hear(workspaces.FromService))
+        except (Hangup, NotUnderstood) as error:
+            self._fail(f"the grader's side of workspaces is gone: {error}")
+
+    def _take(self, message: workspaces.FromService) -> None:
+        match message:
+            case workspaces.Trouble(why=why):
+                self._fail(why)
+            case workspaces.Ready():
+                self._ready.set()
+            case _ if message.run != self._run:
+                pass  # of an earlier run
+            case workspaces.Stopped():
+                self._stopped.set()
+            case workspaces.BuildEnded():
+                self._built.set()
+            case _ if self._recorder is not None:
+                self._record(message, self._recorder.record)
+
+    def _record(self, message: workspaces.FromService, record: Callable[..., None]) -> None:
+        match message:
+            case workspaces.ReportLine(text=text):
+                record("output", "report", text=text)
+            case workspaces.Output(text=text):
+                record("output", "stdout", text=as_words(text))
+            case workspaces.Exited(code=code):
+                self._ended.set()
+                record("subject", "exited", code=code)
+
+    def _fail(self, why: str) -> None:
+        self.trouble = self.trouble or why
+        for event in (self._ended, self._stopped, self._ready):
+            event.set()
+        if self._recorder is not None:
+            self._recorder.record("subject", "gone")
+
+
+def as_words(text: str) -> str:
+    """A line as a program's own words: whatever it begins with, it is none of a runner's reports."""
+    return f" {text[:MAX_TEXT]}" if text.startswith(REPORTS) else text[:MAX_TEXT]

@@ -1,0 +1,194 @@
+"""A node class or a function in a notebook as a subject: the kernel runs it, at the judge's word."""
+
+from __future__ import annotations
+
+import contextlib
+import secrets
+import threading
+from typing import TYPE_CHECKING, Any
+
+from autograder.messages import checks
+from autograder.messages.lines import Hangup, Lines, NotUnderstood
+from autograder.messages.workspaces import Source
+
+if TYPE_CHECKING:
+    from autograder.judge.bench.own_endpoints import Endpoint
+    from autograder.judge.bench.recorder import Recorder
+
+MAX_TEXT = 4_000
+"""Characters that are kept of one thing that the notebook says."""
+MAX_MARKER = 200
+"""Characters that are kept of the name of a marker."""
+MAX_STACK = 50_000
+"""Characters that are kept of a hung subject's stacks."""
+MAX_SECONDS = 3600.0
+"""What is believed of a time that the notebook tells, in seconds; nothing of the course takes as long."""
+CONSTRUCT_LIMIT = 10.0
+"""Seconds of wall time in which a node's constructor must have come to its end."""
+NEWS_LIMIT = 20.0
+"""Seconds in which the notebook's participant must know what the judge serves; it takes milliseconds."""
+STOP_LIMIT = 3.0
+"""Seconds of wall time in which the notebook must have stopped a run."""
+
+
+class RemoteSubject:
+    """Implements :class:`autograder.judge.subjects.subject.Subject` over a notebook's conversation."""
+
+    shares_participant = True
+
+    def __init__(self, lines: Lines, *, is_class: bool = False) -> None:
+        """Take over a conversation.
+
+        Args:
+            lines: The notebook's end.
+            is_class: The subject is a class, whose constructor must come to its end before anything else.
+        """
+        # Drawn for each check, so that nobody who writes a node can have its name in it.
+        self.keeper = f"_check_keeper_{secrets.token_hex(8)}"
+        self._lines = lines
+        self._is_class = is_class
+        self._recorder: Recorder | None = None
+        self._run = 0
+        self._fresh = True
+        self._marker: str | None = None
+        self._ended = False
+        self._ready = threading.Event()
+        self._stopped = threading.Event()
+        self._answered = threading.Event()
+        self._seen_as_told = False
+        self._gone = threading.Event()
+        self._stack = ""
+        self._told_stack = threading.Event()
+        self._thread = threading.Thread(target=self._listen, daemon=True)
+
+    def begin(self, domain_id: int) -> None:
+        """Let the notebook open a ROS context on the domain."""
+        self._thread.start()
+        self._tell(checks.Begin(domain_id, self.keeper))
+        self._ready.wait(STOP_LIMIT)
+
+    def renew(self) -> None:
+        """Let the next run have a fresh context."""
+        self._fresh = True
+
+    def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
+        """Ask the notebook, which looks with its own participant."""
+        self._answered.clear()
+        self._seen_as_told = False
+        fresh, self._fresh = self._fresh, False
+        self._tell(checks.Meet(fresh, sorted(there), sorted(gone), NEWS_LIMIT))
+        self._answered.wait(NEWS_LIMIT + STOP_LIMIT)
+        # Who has left the conversation is not kept waiting, and gets no points.
+        return self._seen_as_told or self._gone.is_set()
+
+    def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
+        """Let the notebook make the node (a class) or call the function."""
+        self._run += 1
+        self._recorder = recorder
+        self._marker, self._ended = None, False
+        self._stopped.clear()
+        fresh, self._fresh = self._fresh, False
+        hurry, spare = options.pop("hurry", 1.0), options.pop("spare", 0.0)
+        self._tell(checks.Start(self._run, fresh, list(arguments), options, hurry, spare))
+        if self._is_class and not recorder.wait(
+            lambda: self._marker is not None or self.ended, CONSTRUCT_LIMIT
+        ):
+            recorder.record("stack", "subject", text=self.stack())
+            recorder.record("subject", "never_constructed")
+            self._ended = True
+
+    def release(self) -> None:
+        """Let the made node spin."""
+        self._tell(checks.Release(self._run))
+
+    @property
+    def ended(self) -> bool:
+        """Whether the function has returned or something was raised, or the notebook is gone."""
+        return self._ended or self._gone.is_set()
+
+    @property
+    def marker(self) -> str | None:
+        """The topic that the notebook made after the subject's constructor had ended."""
+        return self._marker or None
+
+    def stack(self) -> str:
+        """Ask the notebook where the subject's threads are."""
+        self._told_stack.clear()
+        self._stack = ""
+        self._tell(checks.Stack(self._run))
+        self._told_stack.wait(STOP_LIMIT)
+        return self._stack
+
+    def stop(self) -> None:
+        """Let the notebook end the run and destroy its nodes."""
+        self._tell(checks.Stop(self._run))
+        self._stopped.wait(STOP_LIMIT)
+        self._recorder = None
+
+    def _tell(self, message: checks.FromJudge) -> None:
+        try:
+            self._lines.say(message)
+        except Hangup:
+            self._gone.set()
+
+    def _listen(self) -> None:
+        try:
+            while True:
+                with contextlib.suppress(NotUnderstood):
+                    self._take(self._lines.hear(checks.FromNotebook))
+        except Hangup as error:
+            self._gone.set()
+            for event in (self._ready, self._stopped, self._answered):
+                event.set()
+            if self._recorder is not None:
+                self._recorder.record("subject", "gone", why=str(error))
+
+    def _take(self, message: checks.FromNotebook) -> None:
+        match message:
+            case checks.Ready():
+                self._ready.set()
+            case checks.Met(seen=seen):
+                self._seen_as_told = seen
+                self._answered.set()
+            case checks.Check() | Source() | checks.Sources():
+                pass  # these have their place before
+            case _ if message.run == self._run and self._recorder is not None:
+                self._take_of_run(message, self._recorder)
+
+    def _take_of_run(self, message: checks.RunMessage, recorder: Recorder) -> None:
+        record = recorder.record
+        match message:
+            case checks.Stopped():
+                self._stopped.set()
+            case checks.Stacks(text=text):
+                self._stack = text[:MAX_STACK]
+                self._told_stack.set()
+            case checks.Output(text=text, logged=logged):
+                record("output", "notebook log" if logged else "notebook", text=text[:MAX_TEXT])
+            case checks.Started(accepted=names):
+                record("subject", "started", accepted=names)
+            case checks.Spared(seconds=seconds):
+                record("spared", "a wait for a server", seconds=_bounded(seconds))
+            case checks.Called():
+                record("called", "a service")
+            case checks.Willing(seconds=seconds, call=call):
+                record("willing", "to wait for an answer", seconds=_bounded(seconds), call=call)
+            case checks.Looked():
+                record("looked", "graph")
+            case checks.Constructed(marker=marker):
+                self._marker = marker[:MAX_MARKER]
+                record("subject", "constructed")
+            case checks.Exited(code=code):
+                self._ended = True
+                record("subject", "exited", code=code)
+            case checks.Returned(value=value):
+                self._ended = True
+                shown = None if value is None else value[:MAX_TEXT]
+                record("subject", "returned", value=shown, traceback="")
+            case checks.Raised(traceback=traceback):
+                self._ended = True
+                record("subject", "raised", value=None, traceback=traceback[:MAX_TEXT])
+
+
+def _bounded(seconds: float) -> float:
+    return min(max(seconds, 0.0), MAX_SECONDS)

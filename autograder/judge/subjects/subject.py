@@ -1,0 +1,74 @@
+"""The thing under test, seen from the judge: something that starts, speaks on the wire and perhaps ends."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from autograder.judge.bench.own_endpoints import Endpoint
+    from autograder.judge.bench.recorder import Recorder
+
+
+class Subject(Protocol):
+    """A node class or a function in a notebook, or a command.
+
+    Implementations write into the recorder: ``output`` events for each line it prints and ``subject`` events named
+    ``constructed``, ``returned``, ``raised`` or ``exited``.
+    """
+
+    shares_participant: bool
+    """Whether one run after the other lives in the same ROS participant."""
+    keeper: str
+    """The name of a node that keeps this participant and has no endpoint of its own; empty where there is none."""
+
+    def begin(self, domain_id: int) -> None:
+        """Called once, before the first run, with the domain of this check."""
+        ...
+
+    def renew(self) -> None:
+        """Begin the next run with a fresh participant: an old one would meet the judge's new one only slowly."""
+        ...
+
+    def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
+        """Wait until the participant of the next run sees what the judge serves, and nothing of what it has taken away.
+
+        Each participant learns that by itself and in its own time. A subject must not be told, by what it still sees
+        of an earlier run, that a service is there.
+
+        Returns:
+            False where that did not come within a generous limit: nothing can be said about the subject then.
+        """
+        ...
+
+    def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
+        """Start a run."""
+        ...
+
+    def release(self) -> None:
+        """Let a held run spin."""
+        ...
+
+    @property
+    def ended(self) -> bool:
+        """Whether this run has ended by itself."""
+        ...
+
+    @property
+    def marker(self) -> str | None:
+        """A topic that appears on the graph after everything the subject made; None where nobody can know."""
+        ...
+
+    def stack(self) -> str:
+        """Where each of its threads is, innermost call first, as faulthandler says it; empty where nobody can tell.
+
+        This may end the run, which does not count as ending by itself.
+        """
+        ...
+
+    def stop(self) -> None:
+        """End the run, whatever it takes. Afterwards nothing of it lives."""
+        ...
+
+
+class CannotStart(RuntimeError):
+    """The command does not exist or may not be executed."""

@@ -1,0 +1,71 @@
+"""Record a reference output: look at the reference solution with the same eyes as at anybody's."""
+
+from __future__ import annotations
+
+from random import Random
+from typing import TYPE_CHECKING
+
+from autograder.judge.bench.bench import TestBench
+from autograder.judge.verdicts.trial import look
+from autograder.kit.evidence import Evidence, Reference
+from autograder.kit.launch_report import processes
+from autograder.kit.model import Exercise, Look
+from autograder.kit.workspace_report import report_of
+
+if TYPE_CHECKING:
+    from autograder.judge.subjects.subject import Subject
+
+SEED = "reference"
+"""Recording draws the same inputs each time."""
+LOOKS = 3
+"""What a busy machine has blurred is looked at again so often in all."""
+
+
+class NotRecordable(RuntimeError):
+    """The reference solution did not show what the exercise is about."""
+
+
+def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference:
+    """Look at the reference solution's interface, then run the scenario on it.
+
+    Raises:
+        NotRecordable: It never had an endpoint of the exercise's roles, or it is not right by its own
+            measure.
+    """
+    subject.begin(domain_id)
+    interface = _interface(exercise, subject, domain_id)
+    if exercise.roles and not any(interface.get(role) for role in exercise.roles):
+        raise NotRecordable(f"{exercise.id}: the reference solution showed no {' or '.join(exercise.roles)}")
+    bare = Reference(exercise.id, interface)
+    for _ in range(LOOKS):
+        seen = look(exercise, subject, bare, Look.FAST, seed=SEED, domain_id=domain_id)
+        if not seen.doubtful:
+            return Reference(exercise.id, interface, seen.evidence.parts)
+    raise NotRecordable(
+        f"{exercise.id}: the reference solution did not follow the clock, or asked to cancel at another moment in "
+        "each run; is the machine busy?"
+    )
+
+
+def as_evidence(recorded: Reference) -> Evidence:
+    """The recording, as the evidence of a subject that is its own reference."""
+    return Evidence(recorded.parts, recorded)
+
+
+def _interface(exercise: Exercise, subject: Subject, domain_id: int) -> dict[str, dict[str, str]]:
+    bench = TestBench(subject, domain_id, Reference(exercise.id, {}), Look.FAST, Random(SEED))
+    try:
+        bench.part("interface")
+        bench.start(*exercise.sample_arguments)
+        if exercise.runner:
+            # A workspace is built first, and shows its face only then.
+            bench.wait_until(_is_at_work, exercise.limit)
+        found = bench.await_any_endpoint(exercise.roles)
+        # Several programs are not all there at once: only what was waited for is sure to be the same each time.
+        return {role: found[role] for role in exercise.roles} if exercise.runner else found
+    finally:
+        bench.close()
+
+
+def _is_at_work(evidence: Evidence) -> bool:
+    return report_of(evidence.main) is not None or bool(processes(evidence.main))

@@ -1,0 +1,243 @@
+"""From events to the dots of the card's timeline."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from action_msgs.msg import GoalStatus
+
+from autograder.verdict import Moment
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+
+    from autograder.kit.evidence import Event, Evidence, Part, Reference
+
+MAX_MOMENTS = 80
+"""Moments that a verdict carries: those that the story hangs on, and the first of the others."""
+MOST_MOMENTS = 120
+"""Moments that it carries where more than that are called important, as by a program that sends goals for ever."""
+
+MAX_LABEL = 200
+"""Characters of one of them."""
+
+_DIRECTION = {
+    "message": "from_subject",
+    "sent": "to_subject",
+    "request": "from_subject",
+    "response": "to_subject",
+    "goal": "from_subject",
+    "feedback": "to_subject",
+    "cancel": "from_subject",
+    "result_request": "from_subject",
+    "result": "to_subject",
+    "asked": "to_subject",
+    "answered": "from_subject",
+    "goal_sent": "to_subject",
+    "goal_answer": "from_subject",
+    "feedback_heard": "from_subject",
+    "cancel_sent": "to_subject",
+    "cancel_answer": "from_subject",
+    "result_heard": "from_subject",
+    "log": "from_subject",
+    "mismatch": "note",
+    "subject": "note",
+}
+
+
+_KEY = {"goal", "cancel", "result", "goal_sent", "cancel_sent", "result_heard", "mismatch"}
+"""What the story of a part hangs on."""
+
+_NUMBERED = {"goal_sent", "goal_answer", "feedback_heard", "cancel_sent", "cancel_answer", "result_heard"}
+"""What the judge says of goals of its own carries their number."""
+
+_STATUS = {
+    GoalStatus.STATUS_SUCCEEDED: "SUCCEEDED",
+    GoalStatus.STATUS_CANCELED: "CANCELED",
+    GoalStatus.STATUS_ABORTED: "ABORTED",
+}
+
+_ENDS = {
+    "publisher": "your publisher is here",
+    "subscription": "your subscription is here",
+    "service": "your service is here",
+    "client": "your client is here",
+    "action_server": "your action server is here",
+    "action_client": "your action client is here",
+}
+
+
+def moments(evidence: Evidence) -> tuple[Moment, ...]:
+    """What was on the wire, in order. Of too much of it the first ones are kept, and all that the story hangs on."""
+    several = len(evidence.parts) > 1
+    found = [
+        moment
+        for part in evidence
+        for moment in _of_part(part, evidence.reference, part.name if several else "")
+    ]
+    room = MAX_MOMENTS - sum(moment.key for moment in found)
+    kept = []
+    for moment in found:
+        room -= not moment.key
+        if moment.key or room >= 0:
+            kept.append(moment)
+    return tuple(kept[:MOST_MOMENTS])
+
+
+def _of_part(part: Part, reference: Reference, title: str) -> list[Moment]:
+    start = next((e.sim for e in part.events if e.sim is not None), None)
+    shown = [
+        event for event in _without_echoes(part.events) if event.kind in _DIRECTION and not _began(event)
+    ]
+    lanes = _lanes(shown)
+    unlike = _first_unlike(shown, part, reference)
+    found = [
+        (
+            # What happened at one simulated time is told in the order in which it was said.
+            (_time(event, start), _said_at(event)),
+            Moment(
+                t=_time(event, start),
+                lane=lane,
+                direction=_DIRECTION[event.kind],
+                label=_label(event),
+                part=title,
+                simulated=start is not None,
+                key=event.kind in _KEY
+                or event is unlike
+                or (event.kind == "subject" and event.name == "raised"),
+            ),
+        )
+        for event, lane in zip(shown, lanes, strict=True)
+    ]
+    found += [((moment.t, moment.t), moment) for moment in _astray(part, reference, title, start)]
+    return [moment for _, moment in sorted(found, key=lambda pair: pair[0])]
+
+
+def _said_at(event: Event) -> float:
+    """Seconds of wall time since the part began: when it was sent, where that is known, not when it arrived."""
+    sent, arrived = event.data.get("sent"), event.data.get("arrived")
+    if not isinstance(sent, float) or not isinstance(arrived, float):
+        return event.t
+    return min(max(event.t - max(arrived - sent, 0.0), 0.0), event.t)
+
+
+def _time(event: Event, start: float | None) -> float:
+    """Seconds on the axis of the event's part: simulated ones from ``start`` on, where the clock was stepped."""
+    if start is None:
+        return round(_said_at(event), 3)
+    return 0.0 if event.sim is None else round(event.sim - start, 3)
+
+
+def _began(event: Event) -> bool:
+    """Whether it says no more than that the subject got going, which every picture shows by what came after."""
+    return event.kind == "subject" and event.name in ("started", "constructed")
+
+
+def _without_echoes(events: Iterable[Event]) -> Iterator[Event]:
+    """All but the judge's own messages that came back to it, on a topic on which it also listens."""
+    on_their_way: Counter[str] = Counter()
+    for event in events:
+        if event.kind in ("sent", "message"):
+            text = repr((event.name, event.data.get("fields")))
+            if event.kind == "sent":
+                on_their_way[text] += 1
+            elif on_their_way[text]:
+                on_their_way[text] -= 1
+                continue
+        yield event
+
+
+def _lanes(events: Sequence[Event]) -> list[str]:
+    """For each event its lane: a name on the graph, and each goal of an action its own where there are several."""
+    number: dict[str, int] = {}
+    numbers = []
+    for event in events:
+        if event.kind == "goal":
+            number[event.name] = number.get(event.name, -1) + 1
+        own = event.data.get("goal") if event.kind in _NUMBERED else None
+        numbers.append(own if isinstance(own, int) and own >= 0 else number.get(event.name, 0))
+    several = {event.name for event, number in zip(events, numbers, strict=True) if number > 0}
+    return [
+        "log"
+        if event.kind == "log"
+        else "your code"
+        if event.kind == "subject"
+        else f"{event.name}, goal {number + 1}"
+        if event.name in several
+        else event.name
+        for event, number in zip(events, numbers, strict=True)
+    ]
+
+
+def _first_unlike(events: Sequence[Event], part: Part, reference: Reference) -> Event | None:
+    """The first message that the reference solution did not send in this part, where it sent any on that topic."""
+    known = next((other for other in reference.parts if other.name == part.name), None)
+    for event in events:
+        if event.kind == "message" and known is not None:
+            expected = [other.data.get("fields") for other in known.of("message", event.name)]
+            if expected and event.data.get("fields") not in expected:
+                return event
+    return None
+
+
+def _astray(part: Part, reference: Reference, title: str, start: float | None) -> Iterator[Moment]:
+    """Ends of the subject's that nobody asked for, where one that was asked for is missing, each when it was seen."""
+    for role, words in _ENDS.items():
+        expected = set(reference.interface.get(role, {}))
+        missing = expected - set(part.endpoints(role))
+        if not missing:
+            continue
+        seen: set[str] = set()
+        for survey in part.of("interface"):
+            for name in sorted(set(survey.data.get(role, {})) - expected - seen):
+                seen.add(name)
+                t = _time(survey, start)
+                yield Moment(t, name, "note", words, title, start is not None, key=True, stray=True)
+        if seen:
+            last = max(_time(event, start) for event in part.of("interface"))
+            for name in sorted(missing):
+                none = words.replace("your", "no", 1).replace("is here", "of yours")
+                yield Moment(last, name, "note", none, title, start is not None, key=True)
+
+
+def _fields(data: Mapping[str, Any]) -> str:
+    fields = data.get("fields", {})
+    inner = any(isinstance(value, Mapping) for value in fields.values())
+    if len(fields) == 1 and not inner:
+        return str(next(iter(fields.values())))
+    leaves = dict(_leaves(fields))
+    # A message in messages is mostly zeros: what a person looks for are the others.
+    told = {name: value for name, value in leaves.items() if value or not inner} or leaves
+    return ", ".join(f"{name}={value}" for name, value in told.items())
+
+
+def _leaves(fields: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
+    for name, value in fields.items():
+        if isinstance(value, Mapping):
+            yield from _leaves(value, f"{above}{name}.")
+        else:
+            yield f"{above}{name}", value
+
+
+_LABELS: dict[str, Callable[[Event], str]] = {
+    "goal": lambda e: f"goal {_fields(e.data)}",
+    "cancel": lambda _: "cancel request",
+    "result_request": lambda _: "asks for the result",
+    "result": lambda e: f"{str(e.data['status']).upper()} {_fields(e.data)}".rstrip(),
+    "goal_sent": lambda e: f"goal {_fields(e.data)}",
+    "goal_answer": lambda e: "accepted" if e.data["accepted"] else "refused",
+    "cancel_sent": lambda _: "cancel request",
+    "cancel_answer": lambda e: "will cancel" if e.data["accepted"] else "will not cancel",
+    "result_heard": lambda e: f"{_STATUS.get(e.data['status'], e.data['status'])} {_fields(e.data)}",
+    "log": lambda e: str(e.data["text"]),
+    "mismatch": lambda e: f"{e.data['policy']} does not fit",
+    "subject": lambda e: e.name.replace("_", " "),
+}
+
+
+def _label(event: Event) -> str:
+    label = _LABELS.get(event.kind)
+    text = label(event) if label else _fields(event.data)
+    return text if len(text) <= MAX_LABEL else f"{text[: MAX_LABEL - 1]}…"

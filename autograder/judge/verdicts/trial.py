@@ -1,0 +1,154 @@
+"""One check from beginning to end: look, judge, look again where that is fair, say what is wrong."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from random import Random
+from typing import TYPE_CHECKING
+
+from autograder.judge.bench.bench import TestBench
+from autograder.judge.verdicts import timeline
+from autograder.judge.verdicts.deciding import Undecided, limited, undecidable
+from autograder.kit.crashes import traceback_of
+from autograder.kit.evidence import Evidence, Reference
+from autograder.kit.model import Advice, Exercise, Look, Mistake
+from autograder.verdict import Criterion, Diagnosis, State, Verdict
+
+if TYPE_CHECKING:
+    from autograder.judge.subjects.subject import Subject
+
+MAX_DETAIL = 6_000
+"""Characters of a traceback that a card shows."""
+MAX_WORDS = 500
+"""Characters of one sentence of a verdict; what a subject said is quoted in them."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What one look brought.
+
+    Attributes:
+        evidence: What happened.
+        doubtful: Whether even a pass must be confirmed in real time.
+    """
+
+    evidence: Evidence
+    doubtful: bool
+
+
+def check(
+    exercise: Exercise, subject: Subject, reference: Reference, *, seed: str, domain_id: int
+) -> Verdict:
+    """Judge a subject.
+
+    A fast pass counts; what fails fast is looked at again in real time, unless the evidence proves the failure whatever
+    the machine's load is. What cannot be decided within :data:`autograder.judge.verdicts.deciding.LIMIT` has failed.
+    """
+    began = time.monotonic()
+    subject.begin(domain_id)
+    seen = look(exercise, subject, reference, Look.FAST, seed=seed, domain_id=domain_id)
+    try:
+        with limited():
+            verdict = judge(exercise, seen.evidence, seed)
+            again = exercise.second_look and (seen.doubtful or not verdict.passed)
+            again = again and not _is_certain(exercise, seen.evidence)
+        if again:
+            with_both = _look_again(exercise, subject, reference, seen, seed=seed, domain_id=domain_id)
+            with limited():
+                verdict = judge(exercise, with_both, seed)
+    except Undecided:
+        verdict = undecidable(exercise, seed)
+    return replace(verdict, seconds=round(time.monotonic() - began, 3))
+
+
+def _look_again(
+    exercise: Exercise, subject: Subject, reference: Reference, seen: Seen, *, seed: str, domain_id: int
+) -> Evidence:
+    """What a look in real time brings, with what the first one brought."""
+    again = look(
+        exercise,
+        subject,
+        reference,
+        Look.REAL_TIME,
+        seed=seed,
+        domain_id=domain_id,
+        before=seen.evidence,
+    )
+    return replace(again.evidence, before=seen.evidence)
+
+
+def look(
+    exercise: Exercise,
+    subject: Subject,
+    reference: Reference,
+    how: Look,
+    *,
+    seed: str,
+    domain_id: int,
+    before: Evidence | None = None,
+) -> Seen:
+    """Run the scenario once and hand over what was seen; ``before`` is what the first look brought."""
+    bench = TestBench(subject, domain_id, reference, how, Random(seed), before)
+    try:
+        exercise.scenario(bench)
+    finally:
+        bench.close()
+    # A scenario may draw the order of its parts; what is said of them must not depend on it.
+    places = {part.name: place for place, part in enumerate(reference.parts)}
+    parts = sorted(bench.parts, key=lambda part: places.get(part.name, len(places)))
+    return Seen(Evidence(parts, reference, how is Look.REAL_TIME), bench.doubtful)
+
+
+def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
+    """The verdict that follows from the evidence alone."""
+    criteria = tuple(
+        Criterion(c.name, c.title, c.points, finding.passed, _cut(finding.expected), _cut(finding.seen))
+        for c in exercise.criteria
+        for finding in [c.judge(evidence)]
+    )
+    passed = all(criterion.passed for criterion in criteria)
+    return Verdict(
+        exercise=exercise.id,
+        title=exercise.title,
+        state=State.PASSED if passed else State.FAILED,
+        score=float(sum(c.points for c in criteria if c.passed)),
+        max_score=float(exercise.points),
+        criteria=criteria,
+        diagnosis=None if passed else diagnose(exercise, evidence),
+        remarks=tuple(_cut(text) for remark in exercise.remarks if (text := remark(evidence))),
+        timeline=timeline.moments(evidence),
+        seed=seed,
+        detail="" if passed else traceback_of(evidence)[-MAX_DETAIL:],
+    )
+
+
+def diagnose(exercise: Exercise, evidence: Evidence) -> Diagnosis:
+    """The first known mistake that the evidence shows."""
+    found = _recognised(exercise, evidence)
+    if found is not None:
+        mistake, advice = found
+        return Diagnosis(mistake.key, _cut(advice.text, 2 * MAX_WORDS), _cut(advice.next_step, 2 * MAX_WORDS))
+    return Diagnosis(
+        "unknown",
+        "This is none of the mistakes that the judge knows by name.",
+        "Compare what was expected with what was seen, criterion by criterion.",
+    )
+
+
+def _recognised(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice] | None:
+    for mistake in exercise.mistakes:
+        advice = mistake.recognise(evidence)
+        if advice is not None:
+            return mistake, advice
+    return None
+
+
+def _is_certain(exercise: Exercise, evidence: Evidence) -> bool:
+    found = _recognised(exercise, evidence)
+    return found is not None and found[0].certain
+
+
+def _cut(text: str, limit: int = MAX_WORDS) -> str:
+    """A sentence that fits on a card, whatever a subject has said in it."""
+    return text if len(text) <= limit else f"{text[: limit - 1]}…"

@@ -1,0 +1,291 @@
+"""Mistakes that several exercises share, told from the graph and from how the subject ended."""
+
+from __future__ import annotations
+
+import difflib
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit.crashes import CRASHES, OTHER_CRASHES, traceback_of
+from autograder.kit.hangs import something_spins
+from autograder.kit.model import Advice, Mistake
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.kit.evidence import Evidence, Part
+
+__all__ = [
+    "CRASHES",
+    "NEVER_CONSTRUCTED",
+    "NOTHING_THERE",
+    "OTHER_CRASHES",
+    "ended_too_early",
+    "endpoint_name",
+    "everything_twice",
+    "message_type",
+    "never_spun",
+    "only_if_ended",
+    "qos_mismatch",
+    "usage_message",
+    "went_deaf",
+]
+
+_WORD = {
+    "publisher": ("publishes on", "topic"),
+    "subscription": ("subscribes to", "topic"),
+    "client": ("asks for the service", "service"),
+    "service": ("serves", "service"),
+    "action_client": ("asks for the action", "action"),
+    "action_server": ("serves the action", "action"),
+}
+_KEY = {"topic": "topic_name", "service": "service_name", "action": "action_name"}
+
+
+def endpoint_name(role: str) -> Mistake:
+    """The expected name is not on the graph, and another one of the same role is."""
+    verb, noun = _WORD[role]
+
+    def recognise(evidence: Evidence) -> Advice | None:
+        expected, _ = evidence.reference.only(role)
+        made: set[str] = set().union(*(part.endpoints(role) for part in evidence))
+        if not made or expected in made:
+            return None
+        near = difflib.get_close_matches(expected, made, n=1, cutoff=0.0) or sorted(made)
+        return Advice(
+            f"Your node {verb} {near[0]}; the {noun} is called {expected}.",
+            f"Correct the name. `ros2 {noun} list` shows what is on the graph: two nodes meet only where the "
+            f"names are "
+            "the same to the letter.",
+        )
+
+    return Mistake(_KEY[noun], recognise, certain=True)
+
+
+def message_type(role: str) -> Mistake:
+    """The name is right and the type is another one."""
+
+    def recognise(evidence: Evidence) -> Advice | None:
+        name, expected = evidence.reference.only(role)
+        made = evidence.main.endpoints(role).get(name)
+        if made is None or made == expected:
+            return None
+        return Advice(
+            f"On {name} your node uses {made}; the other side uses {expected}. Two types on one name never "
+            f"meet.",
+            f"Import and use {expected.split('/')[-1]} from "
+            f"{expected.split('/')[0]}.{expected.split('/')[1]}.",
+        )
+
+    return Mistake("message_type", recognise, certain=True)
+
+
+def qos_mismatch(role: str) -> Mistake:
+    """The two ends offer and ask for qualities that do not fit."""
+
+    def recognise(evidence: Evidence) -> Advice | None:
+        name, _ = evidence.reference.only(role)
+        mismatch = evidence.main.first("mismatch", name)
+        if mismatch is None or evidence.main.of("message", name):
+            return None
+        policy = mismatch.data["policy"]
+        return Advice(
+            f"Your node and the other side are both on {name}, but their {policy} does not fit, so nothing "
+            f"is "
+            "exchanged.",
+            "Use the queue depth 10 in place of the QoS profile: that is reliable and volatile, as the "
+            "other side is.",
+        )
+
+    return Mistake("qos_mismatch", recognise, certain=True)
+
+
+def everything_twice(role: str) -> Mistake:
+    """Each message comes twice: two nodes do the same work."""
+
+    def recognise(evidence: Evidence) -> Advice | None:
+        name, _ = evidence.reference.only(role)
+        messages = evidence.main.of("message", name)
+        heard = [str(event.data["fields"]) for event in messages]
+        pairs = [heard.count(text) for text in heard[:-1]]
+        if len(heard) < 4 or sum(count == 2 for count in pairs) < len(pairs) * 0.7:
+            return None
+        # Each publisher counts its messages. A single one that says a text again much later counts in a circle.
+        numbers = [event.data.get("number") for event in messages]
+        if len(set(numbers)) == len(numbers) and sum(a == b for a, b in pairwise(heard)) < len(heard) // 3:
+            return None
+        return Advice(
+            "Every message arrives twice: two of your nodes (or two timers) do the same work.",
+            "Make the node once. In a notebook, an earlier run of the cell may have left a node of its own.",
+        )
+
+    return Mistake("everything_twice", recognise, certain=True)
+
+
+def never_spun(role: str) -> Mistake:
+    """The endpoint is there, the node never did anything and does not answer."""
+
+    def recognise(evidence: Evidence) -> Advice | None:
+        part = evidence.main
+        if not _silent_node(evidence, role) or _worked(part, role) or something_spins(part):
+            return None
+        return Advice(
+            "The node is on the graph, but none of its callbacks is ever called: nothing spins it.",
+            "Call rclpy.spin(node) at the end of main(). In a notebook, `with spinning(node):` does it.",
+        )
+
+    return Mistake("never_spun", recognise)
+
+
+def went_deaf(role: str) -> Mistake:
+    """It worked for a moment and then fell silent for good, although it is still there."""
+
+    def recognise(evidence: Evidence) -> Advice | None:
+        part = evidence.main
+        # What it did at first may have come before anybody could see it; that something spins is seen in any case.
+        if not _silent_node(evidence, role) or not (_worked(part, role) or something_spins(part)):
+            return None
+        return Advice(
+            "Your node did its work once and then went deaf: something took it away from the executor that "
+            "spun it."
+            if _worked(part, role)
+            else "Your program spins, but not this node: it was taken away from the executor, or never added to it.",
+            "Spin a node in one place only. rclpy.spin_once or spin_until_future_complete, called in a "
+            "callback or "
+            "beside another executor, takes the node away from that one for good.",
+        )
+
+    return Mistake("node_taken_from_executor", recognise)
+
+
+def _silent_node(evidence: Evidence, role: str) -> bool:
+    name, _ = evidence.reference.only(role)
+    part = evidence.main
+    return name in part.endpoints(role) and part.ending is None and bool(part.of("unanswered"))
+
+
+def _worked(part: Part, role: str) -> bool:
+    if part.of("message") or part.of("answered") or part.of("goal_answer"):
+        return True
+    sent = part.first("sent")
+    return role == "subscription" and sent is not None and bool(part.said(after=sent))
+
+
+def _main_guard(evidence: Evidence) -> Advice | None:
+    ending = evidence.main.ending
+    if ending is None or ending.name != "exited" or ending.data.get("code") != 0 or evidence.main.said():
+        return None
+    if any(evidence.main.endpoints(role) for role in _WORD):
+        return None
+    return Advice(
+        "The program ended at once and said nothing: its main() was not called, or nothing keeps it alive.",
+        "End the file with `if __name__ == '__main__':` and `main()` below it (two underscores on each "
+        "side), and let "
+        "main() end with rclpy.spin(node).",
+    )
+
+
+def usage_message() -> Mistake:
+    """It says how it is to be called, and asks nobody for anything."""
+    return Mistake("usage_message", _usage_message, certain=True)
+
+
+_USAGE = re2.compile(r"(?i)\b(?:usage|uso|utilisation|aufruf|benutzung|verwendung|gebruik)\b")
+
+
+def _usage_message(evidence: Evidence) -> Advice | None:
+    told = [line for part in evidence for line in part.said() if _USAGE.search(line)]
+    if not told or any(part.of("request") or part.of("goal") for part in evidence):
+        return None
+    return Advice(
+        f"Your program did not accept the arguments that it was called with: “{told[0].strip()}”.",
+        "Count them: sys.argv[0] is the program itself, so two arguments make len(sys.argv) 3. Negative numbers are "
+        "numbers, too.",
+    )
+
+
+def ended_too_early(evidence: Evidence) -> Advice | None:
+    """It ended by itself while it had work to do, after it had said or done something."""
+    ending = evidence.main.ending
+    if ending is None or traceback_of(evidence) or _main_guard(evidence):
+        return None
+    how = {"exited": f"ended with exit code {ending.data.get('code')}", "returned": "returned"}.get(
+        ending.name, "ended"
+    )
+    return Advice(
+        f"The program {how} before its work was done.",
+        "Keep it alive while it has work to do, for example with rclpy.spin(node).",
+    )
+
+
+def only_if_ended(recognise: Callable[[Evidence], Advice | None]) -> Callable[[Evidence], Advice | None]:
+    """The same, but only where each run of the subject came to its own end: time had no part in it then."""
+
+    def ended(evidence: Evidence) -> Advice | None:
+        return recognise(evidence) if all(part.ending for part in evidence) else None
+
+    return ended
+
+
+def _not_written(evidence: Evidence) -> Advice | None:
+    part = evidence.main
+    nodes = any(survey.data.get("nodes") for survey in part.of("interface"))
+    returned = part.ending is not None and part.ending.name == "returned" and not part.said()
+    if not (nodes or returned) or any(part.endpoints(role) for role in _WORD):
+        return None
+    return Advice(
+        "Your code runs, but it has no publisher, subscription, client or server yet.",
+        "Find the TODO in your solution cell and write that step; the hints below it open one at a time.",
+    )
+
+
+def _returned_silently(evidence: Evidence) -> Advice | None:
+    """A function came back with nothing, said nothing and asked for nothing, in each run."""
+    for part in evidence:
+        ending = part.ending
+        silent = ending is not None and ending.name == "returned" and not part.said()
+        if not silent or any(part.of(kind) for kind in ("request", "goal", "message")):
+            return None
+    if not evidence.main.events:
+        return None
+    return Advice(
+        "Your function comes back at once, with nothing, and nobody was asked for anything: a step is not written yet.",
+        "Find the TODO in your solution cell and write that step; the hints below it open one at a time.",
+    )
+
+
+def _nothing_on_the_graph(evidence: Evidence) -> Advice | None:
+    if any(survey.data.get("nodes") for part in evidence for survey in part.of("interface")):
+        return None
+    if any(
+        part.of("log") or part.of("request") or part.of("goal") or part.of("message") for part in evidence
+    ):
+        return None
+    return Advice(
+        "No node of yours appeared on the graph.",
+        "Make the node (rclpy.init(), then your class or create_node) and keep the program running.",
+    )
+
+
+def _never_constructed(evidence: Evidence) -> Advice | None:
+    if not any(part.first("subject", "never_constructed") for part in evidence):
+        return None
+    return Advice(
+        "Making your node never comes to an end: its __init__ goes on and on, or waits for something.",
+        "Let __init__ only make what the node needs, and leave the work to callbacks: no loop and no wait in it.",
+    )
+
+
+NEVER_CONSTRUCTED = Mistake("never_ended", _never_constructed, certain=True)
+
+
+NOTHING_THERE = (
+    Mistake("not_written", _returned_silently, certain=True),
+    Mistake("main_guard", _main_guard, certain=True),
+    Mistake("nothing_on_the_graph", _nothing_on_the_graph, certain=True),
+    Mistake("not_written", _not_written),
+    Mistake("ended_too_early", ended_too_early),
+)
+"""What is asked last, when nothing more exact fits."""

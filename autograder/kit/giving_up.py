@@ -1,0 +1,170 @@
+"""Clients whose server is late or does not come: how long they wait, what they say meanwhile, and how they give up.
+
+One rule holds for every client of the course. Who ends and says why has given up well. Who says again and again that it
+waits has not left its user in the dark either, and may go on: a limit is then a remark on the card. Who is silent, or
+says something once and is silent then, does neither. A function that is told how long to wait, by a parameter
+``patience_sec``, keeps that time.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit.model import Advice
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from autograder.kit.evidence import Event, Part
+    from autograder.kit.model import Bench
+
+PATIENCE = "patience_sec"
+"""The parameter by which a notebook's function is told how long to wait; also its name among a part's inputs."""
+GIVE_UP_LIMIT = 12.0
+"""Seconds in which a client must have ended when nobody serves, or have said again and again that it waits."""
+LATENESS = 1.5
+"""Seconds that a late server comes after its client."""
+TOO_LONG = 2.0
+"""Seconds that a function may need on top of its patience: to make its node, to take it away, to be slow."""
+TOO_SHORT = 0.5
+"""The share of its patience that a function must at least wait: who waits in whole seconds may leave out a part."""
+AGAIN_AND_AGAIN = 3
+"""How often a client says that it waits, to have said it again and again."""
+MOMENT = 0.5
+"""Seconds: what is said within these is said once. A log line comes on two ways, and a loop may be in a hurry."""
+
+
+# --- time ----------------------------------------------------------------------------------------------------
+
+
+def spared(part: Part) -> float:
+    """Seconds of waiting for a server that a notebook has left out of a run so far."""
+    return sum(float(event.data["seconds"]) for event in part.of("spared"))
+
+
+def willing(part: Part, call: int) -> float:
+    """Seconds that a subject is known to wait for the answer to one of its calls, at least; 0 where nobody tells."""
+    told = [event for event in part.of("willing") if event.data["call"] == call]
+    return max((float(event.data["seconds"]) for event in told), default=0.0)
+
+
+def waited(part: Part) -> float:
+    """Seconds from a subject's start to its end, with those that it was spared; to the last event where it goes on."""
+    start = part.first("subject", "started")
+    end = part.ending or (part.events[-1] if part.events else None)
+    return (end.t if end else 0.0) - (start.t if start else 0.0) + spared(part)
+
+
+def patience(part: Part) -> float | None:
+    """How long the subject was told to wait; None where it has no parameter for that."""
+    start = part.first("subject", "started")
+    takes = start is not None and PATIENCE in start.data["accepted"]
+    return float(part.inputs[PATIENCE]) if takes and PATIENCE in part.inputs else None
+
+
+def await_it(bench: Bench) -> None:
+    """Wait until a subject without a server has given up, or could have; what it was spared counts as waited."""
+    bench.wait_until(lambda seen: spared(seen.main) >= GIVE_UP_LIMIT, GIVE_UP_LIMIT)
+
+
+# --- without a server ----------------------------------------------------------------------------------------
+
+
+def says_that_it_waits(part: Part) -> bool:
+    """Whether the subject says the same, but for numbers, again and again, and not only at the beginning."""
+    moments: dict[str, set[int]] = {}
+    passed = 0.0
+    for event in part.events:
+        if event.kind == "spared":
+            passed += float(event.data["seconds"])
+        for line in _words(part, event):
+            moments.setdefault(re2.sub(r"\d+", "#", line), set()).add(int((event.t + passed) / MOMENT))
+    late = GIVE_UP_LIMIT / 2 / MOMENT
+    return any(len(times) >= AGAIN_AND_AGAIN and max(times) >= late for times in moments.values())
+
+
+def _words(part: Part, event: Event) -> Iterator[str]:
+    yield from filter(str.strip, type(part)(part.name, part.inputs, [event]).said())
+
+
+def goes_on_waiting(part: Part) -> bool:
+    """Whether the subject waits without end and may: it says so, and was not told how long to wait."""
+    return bool(part.events) and part.ending is None and patience(part) is None and says_that_it_waits(part)
+
+
+def objection(part: Part) -> str:
+    """What is wrong about how a client took it that nobody serves, in words; empty where it is right."""
+    if not part.events:
+        return "not reached"
+    if part.ending is None:
+        return "" if goes_on_waiting(part) else f"still waiting after {GIVE_UP_LIMIT:g} s"
+    if not (part.said() or part.traceback or part.ending.name == "raised"):
+        return "ended without a word"
+    return broken_patience(part)
+
+
+def broken_patience(part: Part) -> str:
+    """How a function that has ended kept another time than its patience, in words; empty where it kept that."""
+    limit = patience(part)
+    if limit is None or part.ending is None or limit * TOO_SHORT <= waited(part) <= limit + TOO_LONG:
+        return ""
+    return f"gave up after {waited(part):.1f} s, where {PATIENCE} was {limit:g}"
+
+
+def patience_not_kept(part: Part) -> Advice | None:
+    """The advice for a function that waits by a limit of its own."""
+    wrong = broken_patience(part)
+    if not wrong:
+        return None
+    return Advice(
+        f"When nobody serves, your function {wrong}: it waits by a limit of its own.",
+        f"Use {PATIENCE} as the limit of the wait: `wait_for_service(timeout_sec={PATIENCE})`, "
+        f"`wait_for_server(timeout_sec={PATIENCE})`, or a loop that ends {PATIENCE} seconds after it began.",
+    )
+
+
+def remark(part: Part) -> str:
+    """What the card says of a client that goes on waiting; empty where there is nothing to say."""
+    if not goes_on_waiting(part):
+        return ""
+    return (
+        "When nobody serves, your client says that it waits, and waits on. That is right here; a robot that must "
+        "not stand still for ever needs a limit as well, such as a count of the tries."
+    )
+
+
+# --- with a server -------------------------------------------------------------------------------------------
+
+_NUMBER = re2.compile(r"-?\d+")
+
+
+def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool]) -> bool:
+    """Whether the subject ended before it had met a server that was there.
+
+    On the wire a client that gave up and one that never meant to ask both only end. What tells them apart is that the
+    first says of a server that is there what it says of one that is not. In which of the runs it ends too early depends
+    on the machine: who looks once may find the server in some of them, in all or in none.
+
+    Args:
+        served: The runs with a server; in the first one the server comes late.
+        absent: The run without one.
+        asked: Whether the subject asked the server for something in a run.
+    """
+    ended = [part for part in served if part.ending and not asked(part)]
+    if served[0] in ended and any(asked(part) for part in served):
+        return True
+    told = _parting_words(absent)
+    return bool(absent.ending and told) and any(_parting_words(part) == told for part in ended)
+
+
+def _parting_words(part: Part) -> set[str]:
+    """What it said, with a place for each of the run's own numbers; once each, for a log line may come on two ways."""
+    said = filter(str.strip, [*part.said(), *part.traceback.splitlines()[-1:]])
+    own = {number.lstrip("-") for number in _NUMBER.findall(str(list(part.inputs.values())))}
+
+    def place(number: re2._Match) -> str:
+        return "…" if number[0].lstrip("-") in own else number[0]
+
+    return {_NUMBER.sub(place, line) for line in said}

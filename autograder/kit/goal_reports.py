@@ -1,0 +1,220 @@
+"""What an action client has made of the judge's goals, and what is missing from it.
+
+Any human language is right. So that a goal was refused or aborted counts as said where the client says something that
+it does not say of a goal that succeeds, whatever the words are.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit.giving_up import objection
+from autograder.kit.numbers_said import mentions
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.kit.evidence import Event, Evidence, Part
+
+LATE = "the server comes late"
+REFUSED = "the goal is refused"
+ABORTED = "the goal is aborted"
+ABSENT = "there is no server"
+SERVED = (LATE, REFUSED, ABORTED)
+"""The parts in which a goal is expected."""
+
+NO_GOAL = "no goal"
+NOT_AWAITED = "it ended before its goal was answered"
+MANY_REQUESTS = 3
+"""Requests for one result that may have a reason; what asks more often goes on asking."""
+
+AT_ONCE = 1.0
+"""Seconds after an answer in which a client ends that never meant to take it in; a process takes time to end."""
+_TRACEBACK = "Traceback (most recent call last)"
+_SLIPS = ("AttributeError", "TypeError", "NameError", "UnboundLocalError", "KeyError", "IndexError")
+"""Exceptions that nobody raises in order to say something."""
+
+
+def asked_for(part: Part) -> list[int]:
+    """The orders of the goals, in order."""
+    return [int(event.data["fields"]["order"]) for event in part.of("goal")]
+
+
+def left_at_once(part: Part, answer: str = "goal_answered") -> bool:
+    """Whether the subject was about to end before the judge gave an answer that it holds back.
+
+    A process that ends takes its last requests along, or it does not: nothing may depend on which of them arrived. Its
+    traceback tells that it ends, before it has ended; and one that ends without a word may need a while for it.
+    """
+    if part.ending is None:
+        return False
+    for event in part.events:
+        if event.kind == answer:
+            # Who has failed only now has taken something in: the answer, or the feedback behind it.
+            went_on = any(part.of(kind) for kind in ("result_request", "cancel")) or part.traceback
+            return not went_on and not part.said(after=event) and part.ending.t - event.t < AT_ONCE
+        if event is part.ending or (event.kind == "output" and event.data["text"].startswith(_TRACEBACK)):
+            return True
+    return False
+
+
+def goals_as_seen(evidence: Evidence) -> str:
+    """What is wrong about the goals, in words."""
+    if asked_for(evidence.part(LATE)) and left_at_once(evidence.part(LATE)):
+        return NOT_AWAITED
+    wanted = len(asked_for(evidence.reference.part(LATE)))
+    parts = [evidence.part(name) for name in SERVED]
+    for part in parts:
+        orders = asked_for(part)
+        if len(orders) > wanted:
+            return f"{len(orders)} goals"
+        if orders and orders[0] != part.inputs["order"]:
+            return f"order {orders[0]} where {part.inputs['order']} was given"
+    return "" if all(map(asked_for, parts)) else NO_GOAL
+
+
+def unshown_feedback(part: Part) -> list[Event]:
+    """The feedback messages whose newest number was not said after they were sent."""
+    return [
+        event for event in part.of("feedback") if not mentions(part.said(after=event), _sequence(event)[-1])
+    ]
+
+
+def _sequence(event: Event) -> list[int]:
+    (numbers,) = event.data["fields"].values()
+    return list(numbers)
+
+
+def said_of_result(part: Part) -> list[str]:
+    """What was said after the result was sent, without what is only a late echo of something said before.
+
+    A log line comes twice, as output and on /rosout, and the second of the two may be slow.
+    """
+    result = part.first("result")
+    if result is None:
+        return []
+    later = part.said(after=result)
+    everything = part.said()
+    before = everything[: len(everything) - len(later)]
+    return [line for line in later if line not in before]
+
+
+def reports_result(part: Part) -> bool:
+    """Every number of the result was said after it was sent."""
+    result = part.first("result")
+    if result is None or part.first("result_request") is None:
+        return False
+    said = part.said(after=result)
+    return all(mentions(said, number) for number in _sequence(result))
+
+
+def miscalled(part: Part) -> str:
+    """A line that calls a goal canceled or aborted that has succeeded; empty where there is none."""
+    for line in said_of_result(part):
+        plain = _without_lists(line)
+        if re2.search(r"(?i)\b(?:cancell?ed|aborted)\b", plain) and not re2.search(
+            r"(?i)\b(?:not?|false|if|unless|or)\b|\bun|succe|erfolg|\?|[=:] *0\b|\b4\b", plain
+        ):
+            return line
+    return ""
+
+
+def shape(line: str) -> str:
+    """A line without its numbers, so that two lines for two goals can be compared."""
+    return re2.sub(r"\d+", "#", line).strip()
+
+
+def _new_words(lines: Sequence[str], *others: Part) -> list[str]:
+    """Those of the lines that were not said, with other numbers, in other runs."""
+    usual = {shape(line) for part in others for line in part.said()}
+    return [line for line in lines if shape(line) not in usual]
+
+
+def raised_on_purpose(part: Part) -> bool:
+    """Whether it ended with an exception that says something."""
+    lines = [line for line in part.traceback.splitlines() if line.strip()]
+    return bool(lines) and not lines[-1].startswith(_SLIPS)
+
+
+def _waits(late: Part) -> bool:
+    """Whether it waits for a late server and for a late answer; in which other runs it gets these is chance if not."""
+    return bool(asked_for(late)) and not left_at_once(late)
+
+
+def refused_as_seen(evidence: Evidence) -> str:
+    """What is wrong about how a refused goal is told, in words.
+
+    rclpy's blocking ``send_goal()`` asks for the result of a refused goal by itself. Who makes of its status 0 that the
+    goal was refused has seen what there is to see; who says of it what it says of any status has not.
+    """
+    part = evidence.part(REFUSED)
+    goal = part.first("goal")
+    if goal is None or not _waits(evidence.part(LATE)):
+        return NO_GOAL
+    # An empty list, as a function may return one, is no word.
+    words = [line for line in part.said(after=goal) if re2.search(r"\pL", line)]
+    said = _new_words(words, evidence.part(LATE))
+    if part.first("result_request") is not None:
+        told = [line for line in _new_words(said, evidence.part(ABORTED)) if not _names_unknown(line)]
+        if not (told or raised_on_purpose(part)):
+            return "asked for the result of a goal that was refused"
+    if not (said or raised_on_purpose(part)):
+        return "nothing was said of it"
+    # A client that goes on after a success, too, may go on here.
+    if part.ending is None and evidence.part(LATE).ending is not None:
+        return "said so, and did not end"
+    return ""
+
+
+def aborted_as_seen(evidence: Evidence) -> str:
+    """What is wrong about how an aborted goal is told, in words. The goal's status is on a topic, too."""
+    part = evidence.part(ABORTED)
+    result = part.first("result")
+    if result is None or not _waits(evidence.part(LATE)):
+        return NO_GOAL if part.events else "not reached"
+    said = said_of_result(part)
+    if raised_on_purpose(part) or any(_names_aborted(line) for line in said):
+        return ""
+    new = [line for line in _new_words(said, evidence.part(LATE)) if not _names_canceled(line)]
+    if new:
+        return ""
+    if part.first("result_request") is None:
+        return "never asked for the result"
+    return f"“{said[-1]}”" if said else "nothing was said after the result"
+
+
+def _names_unknown(line: str) -> bool:
+    return "unknown" in line.lower()
+
+
+def _names_aborted(line: str) -> bool:
+    plain = _without_lists(line)
+    return re2.search(r"(?i)abort|(?:^|[^\d.])6(?:[^\d.]|$)", plain) is not None
+
+
+def _without_lists(line: str) -> str:
+    # The numbers of a sequence are no status.
+    return re2.sub(r"\[[^\]]*\]|\([\d, ]*\)", "", line)
+
+
+def _names_canceled(line: str) -> bool:
+    return re2.search(r"(?i)cancel|succe|erfolg", line) is not None and "not" not in line.lower()
+
+
+def given_up(evidence: Evidence) -> str:
+    """What is wrong about how it gave up without a server, in words."""
+    part = evidence.part(ABSENT)
+    # Who ends at once whether there is a server or not has not given up. But one that looks under another name has.
+    named = {name for p in evidence for name in p.endpoints("action_client")}
+    # In which other runs one asks that hardly waits is a matter of chance; where the server is late, in none.
+    late = evidence.part(LATE)
+    asked = (
+        asked_for(late)
+        or (late.traceback and not raised_on_purpose(late) and any(map(asked_for, evidence)))
+        or named - {evidence.reference.only("action_client")[0]}
+    )
+    if part.ending is not None and not asked:
+        return "never sent a goal to anybody"
+    return objection(part)

@@ -1,0 +1,107 @@
+"""What the judge's action client has seen of one goal of an action such as Fibonacci: an order, then numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Part
+
+ERROR_GOAL_TERMINATED = 3
+"""From action_msgs/srv/CancelGoal."""
+SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
+"""From action_msgs/msg/GoalStatus."""
+STATUS = {
+    0: "UNKNOWN",
+    1: "ACCEPTED",
+    2: "EXECUTING",
+    3: "CANCELING",
+    4: "SUCCEEDED",
+    5: "CANCELED",
+    6: "ABORTED",
+}
+
+
+@dataclass(frozen=True)
+class Goal:
+    """What is known of one goal.
+
+    Attributes:
+        order: What was asked for; None where the goal was not sent.
+        accepted: The server's answer; None where there is none.
+        feedback: The partial sequences, in order.
+        cancel_accepted: The answer to the cancel request; None where there is none.
+        cancelled_too_late: The answer to the cancel request was that the goal had ended.
+        before_cancel: How many numbers the last feedback before the cancel request had.
+        unread: How many feedback messages came between the cancel request and its answer.
+        seconds: Wall time from the acceptance to the result; None where one of them is missing.
+        pauses: Seconds between one feedback message and the next, by their publisher's clock.
+        status: The status that came with the result; None where none came.
+        sequence: The result.
+    """
+
+    order: int | None
+    accepted: bool | None
+    feedback: list[list[int]]
+    cancel_accepted: bool | None
+    cancelled_too_late: bool
+    before_cancel: int
+    unread: int
+    seconds: float | None
+    pauses: tuple[float, ...]
+    status: int | None
+    sequence: list[int]
+
+    @property
+    def over(self) -> bool:
+        """It has a result, or it was refused and gets none."""
+        return self.status is not None or self.accepted is False
+
+    @property
+    def was_computed(self) -> bool:
+        """The server came to the end of its work; one that hangs or raises on its way did not."""
+        return self.status == SUCCEEDED or (self.status is not None and bool(self.sequence))
+
+
+def goal(part: Part, number: int) -> Goal:
+    """The goal of that number."""
+    events = [event for event in part.events if event.data.get("goal") == number]
+    by_kind = {event.kind: event for event in reversed(events)}
+    data = {kind: event.data for kind, event in by_kind.items()}
+    result = data.get("result_heard", {})
+    heard = [event for event in events if event.kind == "feedback_heard"]
+    cancel = by_kind.get("cancel_sent")
+    split = events.index(cancel) if cancel else len(events)
+    answered = events.index(by_kind["cancel_answer"]) if "cancel_answer" in by_kind else len(events)
+    before = [event for event in heard if events.index(event) < split]
+    sent = [float(event.data["sent"]) for event in heard if "sent" in event.data]
+    return Goal(
+        order=data.get("goal_sent", {}).get("fields", {}).get("order"),
+        accepted=data.get("goal_answer", {}).get("accepted"),
+        feedback=[list(event.data["fields"]["partial_sequence"]) for event in heard],
+        cancel_accepted=data.get("cancel_answer", {}).get("accepted"),
+        cancelled_too_late=data.get("cancel_answer", {}).get("return_code") == ERROR_GOAL_TERMINATED,
+        before_cancel=len(before[-1].data["fields"]["partial_sequence"]) if before else 0,
+        unread=sum(split < events.index(event) < answered for event in heard),
+        seconds=by_kind["result_heard"].t - by_kind["goal_answer"].t if "result_heard" in by_kind else None,
+        pauses=tuple(after - before for before, after in pairwise(sent)),
+        status=result.get("status"),
+        sequence=list(result.get("fields", {}).get("sequence", [])),
+    )
+
+
+def all_goals(part: Part) -> list[Goal]:
+    """All goals that were sent."""
+    return [goal(part, int(event.data["goal"])) for event in part.of("goal_sent")]
+
+
+def status_text(number: int | None) -> str:
+    """A goal's status by name and number."""
+    return "none" if number is None else f"{STATUS.get(number, '?')} ({number})"
+
+
+def servers(part: Part) -> int:
+    """The largest number of servers that were there at once."""
+    return max((int(event.data["count"]) for event in part.of("servers")), default=0)

@@ -1,0 +1,188 @@
+"""Mistakes that a hung program's stack gives away: who waits for what, and in which thread.
+
+The stack is what Python's faulthandler prints (innermost call first); the judge asks for it once a subject
+that should
+go on has fallen silent. From rclpy 7.1: ``Client.call`` waits in ``client.py``, the action client's blocking
+calls in
+``action/client.py``, ``Rate.sleep`` in ``timer.py``, callbacks run below ``executors.py``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit.model import Advice, Mistake
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Evidence, Part
+
+_FRAME = re2.compile(r'^\s*File "(?P<file>[^"]*)", line \d+,? in (?P<function>\S+)')
+_BLOCKING = {
+    "client.py": {"call"},
+    "action/client.py": {"send_goal", "cancel_goal", "get_result", "_cancel_goal"},
+}
+_CALLS_BACK = {("executors.py", "await_or_execute"), ("task.py", "__call__")}
+"""What calls a callback: of an entity, of a future."""
+_SPINS = {
+    "spin",
+    "spin_once",
+    "spin_until_future_complete",
+    "_spin_once_impl",
+    "spin_once_until_future_complete",
+}
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One call: rclpy's file, or an empty text for anybody else's, and the function."""
+
+    rclpy: str
+    function: str
+
+
+Stack = Sequence[Frame]
+
+
+def stacks(part: Part) -> list[Stack]:
+    """The stacks of the subject's threads when it hung, innermost call first."""
+    found: list[list[Frame]] = []
+    for event in part.of("stack"):
+        for line in str(event.data["text"]).splitlines():
+            if "most recent call first" in line:
+                found.append([])
+            elif (match := _FRAME.match(line)) and found:
+                found[-1].append(Frame(_rclpy_file(match["file"]), match["function"]))
+    return [stack for stack in found if stack]
+
+
+def _rclpy_file(path: str) -> str:
+    _, inside, rest = path.rpartition("/rclpy/")
+    return rest if inside else ""
+
+
+def _blocks(stack: Stack) -> bool:
+    return any(frame.function in _BLOCKING.get(frame.rclpy, ()) for frame in stack)
+
+
+def _in_callback(stack: Stack) -> bool:
+    """Whether the innermost code of the student's was called by an executor."""
+    own = next(
+        (i for i, frame in enumerate(stack) if not frame.rclpy and frame.function != "wait"), len(stack)
+    )
+    return any(frame.rclpy == "executors.py" for frame in stack[own:])
+
+
+def _spins(stack: Stack) -> bool:
+    return any(frame.rclpy in ("executors.py", "__init__.py") and frame.function in _SPINS for frame in stack)
+
+
+def something_spins(part: Part) -> bool:
+    """Whether one of the subject's threads was spinning when it hung."""
+    return any(map(_spins, stacks(part)))
+
+
+def _spins_in_callback(stack: Stack) -> bool:
+    """Whether there is a spin, code of the student's below it, and an executor below that."""
+    spins = [i for i, frame in enumerate(stack) if frame.rclpy and frame.function in _SPINS]
+    if not spins:
+        return False
+    own = next((i for i in range(spins[0], len(stack)) if not stack[i].rclpy), len(stack))
+    return any(frame.rclpy == "executors.py" for frame in stack[own:])
+
+
+def _sleeps_on_rate(stack: Stack) -> bool:
+    return any(frame.rclpy == "timer.py" and frame.function == "sleep" for frame in stack)
+
+
+def _stuck_callback(found: list[Stack]) -> str:
+    """The student's function that rclpy has called and that has not come back; empty where there is none."""
+    for stack in found:
+        for frame, caller in reversed(list(pairwise(stack))):
+            if not frame.rclpy and (caller.rclpy, caller.function) in _CALLS_BACK:
+                return frame.function
+    return ""
+
+
+Recognise = Callable[[list[Stack]], bool]
+
+_HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
+    (
+        "nested_spin",
+        lambda found: any(map(_spins_in_callback, found)),
+        "A callback of yours spins, and waits inside that spin for ever: the executor that called it cannot "
+        "go on.",
+        "Never spin inside a callback. Go on in future.add_done_callback(...), or make the callback async "
+        "and await.",
+    ),
+    (
+        "call_in_same_group",
+        lambda found: any(_blocks(stack) and _in_callback(stack) for stack in found),
+        "A callback of yours makes a blocking call and waits for ever: the answer would have to come "
+        "through the same "
+        "callback group, which is busy with this very callback.",
+        "Use the asynchronous call and go on in future.add_done_callback(...); or give the client a "
+        "callback group of "
+        "its own and spin with several threads.",
+    ),
+    (
+        "rate_never_spun",
+        lambda found: any(map(_sleeps_on_rate, found)),
+        "rate.sleep() waits for ever: a rate is a timer, and a timer only fires while something spins the "
+        "node.",
+        "Spin the node in a second thread, or use create_timer and rclpy.spin in place of the loop.",
+    ),
+    (
+        "callback_never_returns",
+        lambda found: bool(_stuck_callback(found)),
+        "Your callback {callback}() is called and does not come back: it loops, sleeps or waits, and meanwhile the "
+        "node does nothing else.",
+        "Let a callback do one short step and return. For what is to happen again and again, make a timer "
+        "(create_timer); leave `while True` and time.sleep out of callbacks.",
+    ),
+    (
+        "node_taken_from_executor",
+        lambda found: (
+            any(map(_blocks, found)) and any(_spins(stack) and not _blocks(stack) for stack in found)
+        ),
+        "A blocking call waits for ever although a thread of yours spins: that executor no longer has the "
+        "node.",
+        "Spin a node in one place only. rclpy.spin_once or spin_until_future_complete, called beside "
+        "another executor, "
+        "takes the node away from it.",
+    ),
+    (
+        "call_never_spun",
+        lambda found: any(map(_blocks, found)),
+        "A blocking call waits for ever: the answer has come, but nothing spins the node, so nobody takes "
+        "it.",
+        "Use call_async and rclpy.spin_until_future_complete(node, future), or spin the node in a "
+        "background executor "
+        "while you use call().",
+    ),
+    (
+        "never_spun",
+        lambda found: bool(found) and not any(frame.rclpy for stack in found for frame in stack),
+        "Your program is busy with code of its own and nothing spins the node, so none of its callbacks is "
+        "ever called.",
+        "Call rclpy.spin(node) at the end of main(), or spin in a second thread beside your loop.",
+    ),
+)
+
+
+def _mistake(key: str, fits: Recognise, text: str, next_step: str) -> Mistake:
+    def recognise(evidence: Evidence) -> Advice | None:
+        found = [stack for part in evidence for stack in stacks(part)]
+        if not found or not fits(found):
+            return None
+        return Advice(text.format(callback=_stuck_callback(found)), next_step)
+
+    return Mistake(key, recognise)
+
+
+HANGS: tuple[Mistake, ...] = tuple(_mistake(*row) for row in _HANGS)
+"""Known hangs, most telling first."""

@@ -1,0 +1,64 @@
+"""What a client has to wait for: a server that comes late, and answers that take a moment.
+
+On a quiet machine everything is there in milliseconds, and who hardly waits is as right as who does. So the judge
+takes its time, as a server on a robot may: long enough to tell the two apart, and well below the few seconds that a
+client has to allow for. Where a person waits beside a check cell, an answer takes less.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from autograder.kit.giving_up import spared
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.kit.evidence import Event, Part
+    from autograder.kit.model import Bench
+
+SOON = 0.3
+"""Seconds that a server comes late after a client that has missed it by a moment."""
+ANSWERS_LATE, ANSWERS_SOON = 0.5, 0.12
+"""Seconds that an answer is held back; fewer where a person waits, and for a client that has just missed one."""
+PATIENT_WITH_AN_ANSWER = 0.9
+"""Seconds after which a client that has given up on an answer was patient: on a busy machine it may have missed it."""
+PATIENT = 1.2
+"""Seconds after which a client that has given up was patient: it may have missed the server by a moment."""
+
+
+def answers_late(bench: Bench) -> float:
+    """Seconds that an answer is held back."""
+    return ANSWERS_SOON if bench.in_a_cell else ANSWERS_LATE
+
+
+def was_patient(part: Part) -> bool:
+    """Whether a client that ended had waited as long as anybody may ask, from its first sign of life to its last."""
+    return _waited_since(part, part.first("interface"), PATIENT)
+
+
+def was_patient_with_an_answer(part: Part, requests: Sequence[str]) -> bool:
+    """Whether a client that ended had waited for the answer to its last request as long as anybody may ask.
+
+    Args:
+        part: What was seen of the client.
+        requests: The kinds of the requests whose answers are held back.
+    """
+    request = next((event for event in reversed(part.events) if event.kind in requests), None)
+    return _waited_since(part, request, PATIENT_WITH_AN_ANSWER)
+
+
+def _waited_since(part: Part, beginning: Event | None, seconds: float) -> bool:
+    if beginning is None or part.ending is None:
+        return False
+    # A process may take its time to end; what it says of its end comes before that.
+    last = next((event for event in reversed(part.events) if event.kind in ("output", "log")), part.ending)
+    return last.t - beginning.t + spared(part) >= seconds
+
+
+def hold_back(bench: Bench, kind: str) -> None:
+    """Let time pass until the first event of a kind, a request, is as old as an answer that is held back."""
+    seen = bench.seen()
+    request = seen.first(kind)
+    if request is not None:
+        bench.run_time(max(0.0, answers_late(bench) - (seen.events[-1].t - request.t)))

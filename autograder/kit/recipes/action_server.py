@@ -1,0 +1,177 @@
+"""An action server: it is sent goals, one of which is canceled while it works."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit import common_mistakes as common
+from autograder.kit.crashes import traceback_of
+from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.goals_seen import ABORTED, CANCELED, all_goals, goal, servers, status_text
+from autograder.kit.hangs import HANGS
+from autograder.kit.model import Advice, Mistake
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.kit.evidence import Evidence
+    from autograder.kit.goals_seen import Goal
+    from autograder.kit.model import Bench
+
+AT_ONCE = 0.3
+"""Seconds in which many numbers are found only by a server that takes no time for any of them."""
+MANY = 2
+"""Feedback messages in a row that show that a server does not read a request while it works."""
+
+
+class SendsGoals:
+    """The recipe for an action server. Its views are the evidence itself: there are several goals in several runs.
+
+    Args:
+        scenario: Drives the bench. It takes the action's name and type from ``bench.reference.only("action_server")``.
+        good: The goals that are to succeed.
+        canceled: The goal that is canceled while the server works on it.
+    """
+
+    roles = ("action_server",)
+
+    def __init__(
+        self,
+        scenario: Callable[[Bench], None],
+        *,
+        good: Callable[[Evidence], list[Goal]],
+        canceled: tuple[str, int],
+    ) -> None:
+        self.scenario, self._good = scenario, good
+        self._part, self._number = canceled
+
+    def seen(self, evidence: Evidence) -> Evidence:
+        """What was seen of the subject."""
+        return evidence
+
+    def expected(self, evidence: Evidence) -> Evidence:
+        """The same: it holds what was recorded, too."""
+        return evidence
+
+    def canceled(self, evidence: Evidence) -> Goal:
+        """The goal that is canceled."""
+        return goal(evidence.part(self._part), self._number)
+
+    @property
+    def ladder(self) -> tuple[Mistake, ...]:
+        """The common mistakes, most telling first."""
+        return (
+            Mistake("two_servers", _two_servers, certain=True),
+            Mistake("result_missing", _result_missing, certain=True),
+            # Before any crash: a goal that should have been refused may end in one.
+            OWN,
+            *common.CRASHES,
+            common.endpoint_name("action_server"),
+            common.message_type("action_server"),
+            Mistake("exception_in_callback", _exception_in_execute, certain=True),
+            *common.OTHER_CRASHES,
+            Mistake("goal_not_succeeded", self._goal_not_succeeded, certain=True),
+            Mistake("cancel_not_accepted", self._cancel_refused_on_its_way, certain=True),
+            Mistake("cancel_not_accepted", self._cancel_refused),
+            Mistake("cancel_not_accepted", self._cancel_not_read),
+            Mistake("cancel_ignored", self._cancel_ignored),
+            OWN_LATE,
+            *HANGS,
+            common.never_spun("action_server"),
+            common.went_deaf("action_server"),
+            *common.NOTHING_THERE,
+        )
+
+    def _goal_not_succeeded(self, evidence: Evidence) -> Advice | None:
+        """The goal is aborted because nobody said that it succeeded."""
+        aborted = [seen for seen in self._good(evidence) if seen.status == ABORTED]
+        if not aborted or traceback_of(evidence):
+            return None
+        return Advice(
+            "The goal ended as ABORTED (6) although the work was done: rclpy assumes so when the execute callback "
+            "returns without a word.",
+            "Call goal_handle.succeed() before you return the result.",
+        )
+
+    def _cancel_refused(self, evidence: Evidence) -> Advice | None:
+        """The cancel request was answered with no."""
+        long = self.canceled(evidence)
+        if long.cancel_accepted is not False or long.unread >= MANY or is_quick(long):
+            return None
+        return Advice(
+            "Your server refuses to cancel: without a cancel_callback, rclpy rejects every cancel request.",
+            "Give the ActionServer a cancel_callback that returns CancelResponse.ACCEPT, and look at "
+            "goal_handle.is_cancel_requested in the loop.",
+        )
+
+    def _cancel_refused_on_its_way(self, evidence: Evidence) -> Advice | None:
+        """The same, of a goal that had not ended: whether the request came in time has no part in it."""
+        return None if self.canceled(evidence).cancelled_too_late else self._cancel_refused(evidence)
+
+    def _cancel_not_read(self, evidence: Evidence) -> Advice | None:
+        """The goal goes on and the cancel request is not answered."""
+        long = self.canceled(evidence)
+        if long.cancel_accepted or long.unread < MANY or is_quick(long):
+            return None
+        return Advice(
+            "Your server works on and does not even read the cancel request: the one thread that spins the node is "
+            "busy with the execute callback.",
+            "Spin the node with a MultiThreadedExecutor (executor.add_node(node), executor.spin()), so that another "
+            "thread can take the request.",
+        )
+
+    def _cancel_ignored(self, evidence: Evidence) -> Advice | None:
+        """The cancel was accepted and the goal went on."""
+        long = self.canceled(evidence)
+        if not long.cancel_accepted or long.status == CANCELED:
+            return None
+        return Advice(
+            "Your server accepted the cancel request, but the goal was not canceled "
+            f"(status {status_text(long.status)}).",
+            "In each turn of the loop look at goal_handle.is_cancel_requested; where it is True call "
+            "goal_handle.canceled() and return the result so far.",
+        )
+
+
+def is_quick(seen: Goal) -> bool:
+    """Whether a goal took no time."""
+    return seen.seconds is not None and seen.seconds < AT_ONCE
+
+
+def _two_servers(evidence: Evidence) -> Advice | None:
+    """Two servers share the name."""
+    name, _ = evidence.reference.only("action_server")
+    count = servers(evidence.main)
+    if count < 2:
+        return None
+    return Advice(
+        f"{count} servers of {name} are on the graph. Each goal reaches both, and both execute it.",
+        "Make one ActionServer only, and one node.",
+    )
+
+
+def _result_missing(evidence: Evidence) -> Advice | None:
+    """The execute callback returned no result."""
+    # What rclpy says when it sends the result, and what autograder/notebook says in its place.
+    said = r"'NoneType' object has no attribute '_?sequence'|must return a result of the action"
+    if not re2.search(said, traceback_of(evidence)):
+        return None
+    return Advice(
+        "The execute callback returned nothing, so there is no result to send.",
+        "End it with `return result`, where result is a Fibonacci.Result() whose sequence you have filled. Do so on "
+        "every way out, after a cancel too.",
+    )
+
+
+def _exception_in_execute(evidence: Evidence) -> Advice | None:
+    """The execute callback raised, so rclpy aborted the goal."""
+    traceback = traceback_of(evidence)
+    if not traceback or not any(seen.status == ABORTED for part in evidence for seen in all_goals(part)):
+        return None
+    last = next((line for line in reversed(traceback.splitlines()) if line.strip()), "")
+    return Advice(
+        f"The execute callback raised an exception, so rclpy aborted the goal: {last.strip()}",
+        "Read the traceback from the bottom: the last line says what, the line above it where. Mend that line.",
+    )

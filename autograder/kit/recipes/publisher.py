@@ -1,0 +1,352 @@
+"""A publisher: it is listened to, in simulated time where it follows that, and longer where it stumbles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit import common_mistakes as common
+from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.hangs import HANGS
+from autograder.kit.model import Advice, Bench, Finding, Look, Mistake
+from autograder.kit.rate import ROW, Rate, confirmed, rate_of, simulated
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.kit.draft import Judge
+    from autograder.kit.evidence import Event, Evidence, Part, Reference
+
+USUAL_PERIOD = 0.5
+"""Seconds; stands in for the reference's period while that is being recorded."""
+SILENCE = 6
+"""Periods of silence after which nothing more is waited for."""
+PERSISTS = 1.0
+"""Seconds in which a program must not end by itself once it was heard: simulated time may have gone by in a moment."""
+SURE = 2
+"""Messages that a publisher has sent that surely was there: a single one may come before anybody can hear it."""
+BURST = 0.3
+"""Seconds within which a program that has ended may have published all at once, on a busy machine."""
+_NUMBER, _WHOLE = r"-?\d+(?:[.,]\d+|e[+-]?\d+)*", r"-?\d{1,18}"
+
+
+@dataclass(frozen=True)
+class Publisher:
+    """What was heard of a publisher.
+
+    Attributes:
+        topic: That it is to publish on.
+        part: The run in which it was listened to.
+        enough: Messages that were listened to; 0 for the reference.
+    """
+
+    topic: str
+    part: Part
+    enough: int = 0
+
+    @cached_property
+    def messages(self) -> list[Event]:
+        """The messages on the topic, in order."""
+        return self.part.of("message", self.topic)
+
+    @cached_property
+    def texts(self) -> list[str]:
+        """What their field ``data`` held, as text."""
+        return [str(event.data["fields"].get("data")) for event in self.messages]
+
+    @cached_property
+    def counters(self) -> list[int]:
+        """The last number of each text, where that is a whole one."""
+        return counters(self.texts)
+
+    @cached_property
+    def templates(self) -> list[str]:
+        """The texts with a ``#`` for each whole number."""
+        return [template(text) for text in self.texts]
+
+    @property
+    def first_number(self) -> int | None:
+        """The number of its first message, also where that was sent before anybody could hear it; None for none.
+
+        A loop may publish in the moment in which it makes its publisher, which no listener can be quick enough for.
+        DDS numbers each publisher's messages from 1, so that what was lost is known.
+        """
+        if not self.messages or not (first := counters(self.texts[:1])):
+            return None
+        return first[0] - (int(self.messages[0].data.get("number", 1)) - 1)
+
+    @property
+    def went_on(self) -> bool:
+        """Whether it published for more than a moment, so that no chance decides whether anything of it is heard."""
+        if not self.messages:
+            return False
+        first, last = self.messages[0], self.messages[-1]
+        # By the publisher's clock: what was sent at once may arrive one after the other.
+        seconds = float(last.data.get("sent", last.t)) - float(first.data.get("sent", first.t))
+        if self.part.ending is not None and last.sim is None and seconds < BURST:
+            return False
+        return max(len(self.messages), int(last.data.get("number", 1))) >= SURE
+
+    @property
+    def endpoints(self) -> dict[str, str]:
+        """Its publishers, topic -> type; none of a program that has ended at once.
+
+        Whether the graph showed those before they were gone is a matter of chance. A notebook's class is held until
+        they are known.
+        """
+        met = (
+            self.part.ending is None or self.part.first("subject", "constructed") is not None or self.went_on
+        )
+        return self.part.endpoints("publisher") if met else {}
+
+    def at_once(self, expected: Publisher) -> bool:
+        """Whether all that it published and said to have published is of one moment.
+
+        The first messages may come before anybody can hear them, and the last ones go under with the program: what it
+        said, and the moment in which it was met, tell of those.
+        """
+        said = [e.t for e in self.part.of("output") if expected.templates[0] in template(str(e.data["text"]))]
+        met = [event.t for event in self.part.of("matched", self.topic)[:1]]
+        for times in (said, [*met, *(event.t for event in self.messages)] if self.messages else []):
+            if times and max(times) - min(times) >= BURST:
+                return False
+        return True
+
+    def claims(self, expected: Publisher) -> list[str]:
+        """The lines in which it says that it published the first of the texts that are expected."""
+        return [line for line in self.part.said() if expected.templates[0] in template(line)]
+
+
+def template(text: str) -> str:
+    """A text with a ``#`` for each whole number."""
+    return re2.sub(_NUMBER, lambda number: "#" if re2.fullmatch(_WHOLE, number[0]) else number[0], text)
+
+
+def counters(texts: Sequence[str]) -> list[int]:
+    """The last number of each text, where that is a whole one."""
+    found = [numbers[-1] for text in texts if (numbers := re2.findall(_NUMBER, text))]
+    return [int(number) for number in found if re2.fullmatch(_WHOLE, number)]
+
+
+class Hears:
+    """The recipe for a publisher of texts.
+
+    Args:
+        messages: That are listened to, in simulated time and where nothing else is known.
+        long_run: That are listened to where they cost little, or where it stumbled: it may go wrong late.
+    """
+
+    roles = ("publisher",)
+
+    def __init__(self, messages: int = 8, long_run: int = 20) -> None:
+        self._messages = {Look.FAST: messages, Look.REAL_TIME: ROW}
+        self._long_run = long_run
+        self._text: Judge[Publisher] | None = None
+        self._course: Judge[Publisher] | None = None
+
+    def each_text(self, judge: Judge[Publisher]) -> Judge[Publisher]:
+        """Mark the criterion on each single message: a wrong rate is told only where that one holds."""
+        self._text = judge
+        return judge
+
+    def whole_course(self, judge: Judge[Publisher]) -> Judge[Publisher]:
+        """Mark the criterion on all messages together: where it does not hold, more of them are listened to."""
+        self._course = judge
+        return judge
+
+    # --- the bench -------------------------------------------------------------------------------------------
+
+    def scenario(self, bench: Bench) -> None:
+        """Listen to what it publishes until enough was heard or it has had twice the time it needs."""
+        topic, type_name = bench.reference.only("publisher")
+        bench.part("talking")
+        bench.listen(topic, type_name)
+        bench.start()
+        if bench.await_endpoint("publisher", topic):
+            bench.release()
+            self._hear(bench, topic, reference_period(bench.reference))
+        bench.stop()
+
+    def _hear(self, bench: Bench, topic: str, period: float) -> None:
+        enough = self._enough(bench.before) if bench.look is Look.REAL_TIME else self._messages[bench.look]
+        _listen(bench, topic, enough, period)
+        if bench.look is Look.FAST and bench.wait_until(self._is_simulated, 0.0):
+            enough = self._long_run
+            _listen(bench, topic, enough, period)
+            if not bench.in_a_cell:
+                bench.await_end(PERSISTS)
+        elif bench.look is Look.REAL_TIME and bench.heard(topic) >= enough:
+            # A row of messages in which none was late has twice the time to come.
+            bench.wait_until(
+                lambda evidence: self.keeps_rate(evidence).passed, enough * period, quiet=SILENCE * period
+            )
+        if bench.heard(topic) < enough:
+            bench.note_whether_it_spins()
+
+    def _is_simulated(self, evidence: Evidence) -> bool:
+        """Whether its messages follow the simulated clock: the first ones may have come before it."""
+        topic, _ = evidence.reference.only("publisher")
+        return len(simulated(evidence.main.of("message", topic))) >= self._messages[Look.FAST] // 2
+
+    def _enough(self, before: Evidence | None) -> int:
+        """Messages to listen to in real time: as many as in simulated time where it stopped or stumbled in that."""
+        if before is None or not self._is_simulated(before):
+            return self._messages[Look.REAL_TIME]
+        topic, _ = before.reference.only("publisher")
+        rate = rate_of(before.main.of("message", topic), reference_period(before.reference))
+        stumbled = (rate is not None and not rate.even) or not self._holds(self._course, before)
+        return self._long_run if stumbled else self._messages[Look.REAL_TIME]
+
+    def _holds(self, judge: Judge[Publisher] | None, evidence: Evidence) -> bool:
+        return judge is None or judge(self.seen(evidence), self.expected(evidence)).passed
+
+    # --- views -----------------------------------------------------------------------------------------------
+
+    def seen(self, evidence: Evidence) -> Publisher:
+        """What was heard of the subject."""
+        topic, _ = evidence.reference.only("publisher")
+        if evidence.real_time:
+            enough = self._enough(evidence.before)
+        else:
+            enough = self._long_run if self._is_simulated(evidence) else self._messages[Look.FAST]
+        heard = evidence.main.of("message", topic)
+        # Who has ended by itself will never have published enough: the task has no end.
+        return Publisher(
+            topic, evidence.main, max(enough, len(heard) + 1) if evidence.main.ending else enough
+        )
+
+    def expected(self, evidence: Evidence) -> Publisher:
+        """What was recorded of the reference solution."""
+        topic, _ = evidence.reference.only("publisher")
+        return Publisher(topic, evidence.reference.part("talking"))
+
+    # --- criteria --------------------------------------------------------------------------------------------
+
+    def on_topic(self, evidence: Evidence) -> Finding:
+        """A publisher of the subject's is on the topic."""
+        topic, _ = evidence.reference.only("publisher")
+        published = self.seen(evidence).endpoints
+        seen = f"publishes on {', '.join(sorted(published))}" if published else "no publisher"
+        return Finding(topic in published, f"a publisher on {topic}", seen)
+
+    def has_type(self, evidence: Evidence) -> Finding:
+        """The publisher has the reference's message type."""
+        topic, type_name = evidence.reference.only("publisher")
+        seen = self.seen(evidence).endpoints.get(topic)
+        return Finding(seen == type_name, type_name, seen or f"nothing on {topic}")
+
+    def keeps_rate(self, evidence: Evidence) -> Finding:
+        """The intervals are the reference's."""
+        topic, _ = evidence.reference.only("publisher")
+        wanted = reference_period(evidence.reference)
+        messages = evidence.main.of("message", topic)
+        rate = rate_of(messages, wanted, self._enough(evidence.before))
+        expected = f"one every {wanted:g} s"
+        if rate is None:
+            return Finding(False, expected, f"{len(messages)} messages in all")
+        seen = f"one every {rate.period:.2g} s"
+        if not rate.even:
+            seen += f", but unevenly: {_gaps(rate)} s apart"
+        if evidence.before and self._is_simulated(evidence.before):
+            before = rate_of(evidence.before.main.of("message", topic), wanted)
+            if before is not None and confirmed(rate, before, wanted):
+                return Finding(False, expected, seen)
+        return Finding(rate.kept, expected, seen)
+
+    # --- mistakes --------------------------------------------------------------------------------------------
+
+    @property
+    def ladder(self) -> tuple[Mistake, ...]:
+        """The common mistakes, most telling first."""
+        return (
+            *common.CRASHES,
+            common.NEVER_CONSTRUCTED,
+            common.endpoint_name("publisher"),
+            common.message_type("publisher"),
+            common.qos_mismatch("publisher"),
+            *common.OTHER_CRASHES,
+            common.everything_twice("publisher"),
+            Mistake("published_before_discovery", self._published_before_discovery),
+            OWN,
+            Mistake("never_published", self._never_published),
+            *HANGS,
+            common.never_spun("publisher"),
+            common.went_deaf("publisher"),
+            OWN_LATE,
+            Mistake("ended_too_early", common.ended_too_early),
+            Mistake("wrong_rate", self._wrong_rate),
+            Mistake("stopped_publishing", self._stopped_publishing),
+            *common.NOTHING_THERE,
+        )
+
+    def _published_before_discovery(self, evidence: Evidence) -> Advice | None:
+        """It says that it published, and ended before anybody could hear it."""
+        seen = self.seen(evidence)
+        ended = seen.part.ending is not None and not seen.part.traceback
+        if not ended or not seen.claims(self.expected(evidence)):
+            return None
+        if not seen.at_once(self.expected(evidence)):
+            return None
+        return Advice(
+            "Your program published everything in its first moment and ended before anybody could be connected to it.",
+            "Publish from a timer and keep the program spinning: it takes a moment until publisher and subscription "
+            "have found each other.",
+        )
+
+    def _never_published(self, evidence: Evidence) -> Advice | None:
+        """The node works, or goes on talking about its texts in a loop, and nothing is published."""
+        seen = self.seen(evidence)
+        part = seen.part
+        if seen.topic not in part.endpoints("publisher") or seen.messages or part.ending is not None:
+            return None
+        if len(seen.claims(self.expected(evidence))) < 4 and part.of("unanswered"):
+            return None
+        return Advice(
+            "Your node is at work and has its publisher, but nothing is ever published on it.",
+            "Does your timer's callback, or your loop, really call publish(msg)? A log line is no message.",
+        )
+
+    def _wrong_rate(self, evidence: Evidence) -> Advice | None:
+        """Each message is right, and the rate is not."""
+        finding = self.keeps_rate(evidence)
+        if finding.passed or not self._holds(self._text, evidence) or "every" not in finding.seen:
+            return None
+        period = reference_period(evidence.reference)
+        return Advice(
+            f"Your node publishes {finding.seen}; the task asks for {finding.expected}.",
+            "Publish one message each time the timer calls you, and let the timer alone set the pace."
+            if "unevenly" in finding.seen
+            else f"Look at the first argument of create_timer: the period in seconds ({period:g}), not a frequency.",
+        )
+
+    def _stopped_publishing(self, evidence: Evidence) -> Advice | None:
+        """It goes on and is spun, but publishes no more."""
+        seen = self.seen(evidence)
+        came, part = len(seen.messages), seen.part
+        if not 0 < came < seen.enough or part.ending is not None or part.of("unanswered"):
+            return None
+        return Advice(
+            f"Your node published {came} messages and then no more, although it is still there.",
+            "The task has no end: leave out what stops the timer, or what keeps the callback from publishing.",
+        )
+
+
+def reference_period(reference: Reference) -> float:
+    """Seconds between two messages of the reference solution."""
+    if not reference.parts:
+        return USUAL_PERIOD
+    topic, _ = reference.only("publisher")
+    times = simulated(reference.part("talking").of("message", topic))
+    return (times[-1] - times[0]) / (len(times) - 1)
+
+
+def _listen(bench: Bench, topic: str, enough: int, period: float) -> None:
+    missing = enough - bench.heard(topic)
+    bench.run_time(2 * missing * period, until=lambda: bench.heard(topic) >= enough, quiet=SILENCE * period)
+
+
+def _gaps(rate: Rate) -> str:
+    return ", ".join(f"{gap:.2g}" if gap >= 0.01 else "0" for gap in rate.intervals[:4])

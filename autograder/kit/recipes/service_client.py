@@ -1,0 +1,282 @@
+"""A service client: the judge serves, in each run in another way.
+
+In one run the service comes late, in one it answers with a hidden bias, so that what the client reports shows whether
+it used the answer, in one the numbers fill 64 bits, and in one there is no service. Among the answers are always a 0,
+which is easily taken for none, and negative ones. In two runs one of the answers is held back for a while.
+
+Which run is the one without a service nobody can tell from outside: after the run with the late service the others come
+in an order that is drawn, and their numbers and their patience are of the same kinds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from autograder.kit import common_mistakes as common
+from autograder.kit import giving_up
+from autograder.kit import service_calls as calls_seen
+from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.giving_up import GIVE_UP_LIMIT, LATENESS
+from autograder.kit.hangs import HANGS
+from autograder.kit.lateness import SOON, was_patient, was_patient_with_an_answer
+from autograder.kit.meant_errors import OTHER_SLIPS
+from autograder.kit.model import Advice, Bench, Finding, Look, Mistake
+from autograder.kit.service_calls import (
+    ABSENT,
+    HANGS_AFTER,
+    LATE,
+    Client,
+    has_reported,
+    how_it_went,
+    new_words,
+    reports,
+    requests,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from random import Random
+
+    from autograder.kit.evidence import Evidence
+
+CALL_LIMIT = 15.0
+"""Seconds of wall time in which a client that has its service must be done."""
+AFTERMATH = 1.0
+"""Seconds in which a client that has reported its sum may end, or go on and show what else it does."""
+SAYS_MORE = {Look.FAST: 2.0, Look.REAL_TIME: 5.0}
+"""Seconds in which a client that has said something of its last answer, and not the sum, may still say it."""
+HELD = 0.5
+"""Seconds for which an answer is held back: longer than anybody takes who does not really wait for it."""
+PATIENCE_IN_LATE = (4.0, 5.0)
+"""Between which the patience is drawn that a function is told to have where the service comes late."""
+PATIENCE_ELSEWHERE = {Look.FAST: (1.2, 2.0), Look.REAL_TIME: (2.0, 2.6)}
+"""The same for all other runs, with a service and without."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run with a service.
+
+    Attributes:
+        name: The part's name.
+        numbers: What the subject is to add.
+        answers: What the service answers to one call after the other; to any further one, the sum.
+        held: Which of the answers is held back, from 1 on; 0 for none.
+    """
+
+    name: str
+    numbers: Sequence[int]
+    answers: Sequence[int] = ()
+    held: int = 0
+
+
+def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls: int) -> None:
+    """All runs with a service, and one without.
+
+    Args:
+        bench: Where it happens.
+        runs: The one with the late service first.
+        nobody: What the subject is to add where there is no service.
+        calls: How many calls a subject that has done its work has made.
+    """
+    late, *others = runs
+    if not called(bench, late, calls):
+        return
+    order: list[Run | None] = [*others, None]
+    bench.random.shuffle(order)
+    hangs = False
+    for run in order:
+        if run is None:
+            unserved(bench, nobody)
+        elif not hangs:
+            hangs = not called(bench, run, calls)
+
+
+def _patience(bench: Bench, bounds: tuple[float, float]) -> float:
+    return round(bench.random.uniform(*bounds), 2)
+
+
+def called(bench: Bench, run: Run, calls: int) -> bool:
+    """One run with a service; whether the subject came to an end of its work."""
+    patience = _patience(bench, PATIENCE_IN_LATE if run.name == LATE else PATIENCE_ELSEWHERE[bench.look])
+    bench.part(run.name, numbers=list(run.numbers), patience_sec=patience)
+    if run.name != LATE:
+        done = meets_service(bench, run, calls, patience)
+    else:
+        done = meets_service(bench, run, calls, patience, lateness=LATENESS)
+        if done and not requests(bench.seen()) and was_patient(bench.seen()):
+            bench.again()
+            done = meets_service(bench, run, calls, patience, lateness=SOON)
+    if (
+        run.held
+        and done
+        and not reports(bench.seen())
+        and was_patient_with_an_answer(bench.seen(), ["request"])
+    ):
+        bench.again()
+        done = meets_service(bench, replace(run, held=0), calls, patience)
+    bench.stop()
+    return done
+
+
+def meets_service(bench: Bench, run: Run, calls: int, patience: float, *, lateness: float = 0.0) -> bool:
+    """Start the subject and serve it; whether it came to an end of its work.
+
+    Args:
+        bench: Where it happens.
+        run: What is asked and answered.
+        calls: How many calls a subject that has done its work has made.
+        patience: Seconds that a function is told to wait.
+        lateness: Seconds after its client at which the service comes; 0 where it is there from the start.
+    """
+    service, type_name = bench.reference.only("client")
+    answer = answering(run.answers)
+    if not lateness:
+        server = bench.serve(service, type_name, answer, hold=run.held)
+    bench.start(*run.numbers, patience_sec=patience, spare=lateness if bench.look is Look.FAST else 0.0)
+    if lateness:
+        # Where it has another client it waits for something else. One that has none may be slow to show it.
+        if not bench.await_endpoint("client", service) and (
+            bench.await_end(0.0) or bench.seen().endpoints("client")
+        ):
+            return bench.await_end(0.0)
+        bench.let_wait(lateness)
+        server = bench.serve(service, type_name, answer, hold=run.held)
+    if run.held and bench.wait_until(
+        lambda seen: len(requests(seen.main)) >= run.held, CALL_LIMIT, quiet=HANGS_AFTER
+    ):
+        bench.let_wait(HELD, call=run.held)
+        server.release()
+    done = bench.wait_until(lambda seen: has_spoken(seen, calls), CALL_LIMIT, quiet=HANGS_AFTER)
+    if done and bench.wait_until(lambda seen: is_done(seen, calls), SAYS_MORE[bench.look]):
+        bench.await_end(AFTERMATH)
+    else:
+        bench.note_where_it_hangs()
+    return done
+
+
+def is_done(evidence: Evidence, calls: int) -> bool:
+    """Whether the subject has ended or, as a program may, has reported the sum and goes on spinning.
+
+    Who is done stays so, also where one more call is on its way in that moment.
+    """
+    return evidence.main.ending is not None or has_reported(evidence.main, calls)
+
+
+def has_spoken(evidence: Evidence, calls: int) -> bool:
+    """Whether the subject is done, or has at least said something of its last answer."""
+    enough = evidence.main.of("response")[calls - 1 :]
+    return is_done(evidence, calls) or (bool(enough) and bool(new_words(evidence.main, enough[0])))
+
+
+def unserved(bench: Bench, numbers: Sequence[int]) -> None:
+    """One run without the service."""
+    if bench.keep(ABSENT):
+        return
+    patience = _patience(bench, PATIENCE_ELSEWHERE[bench.look])
+    bench.part(ABSENT, numbers=list(numbers), patience_sec=patience)
+    bench.start(*numbers, patience_sec=patience, spare=GIVE_UP_LIMIT if bench.look is Look.FAST else 0.0)
+    service, _ = bench.reference.only("client")
+    bench.await_endpoint("client", service)
+    giving_up.await_it(bench)
+    bench.stop()
+
+
+def hidden(random: Random) -> int:
+    """A number of so many that nobody can say them all."""
+    return random.randint(10**9, 10**12)
+
+
+def answering(scripted: Sequence[int]) -> Callable[[Mapping[str, Any]], Mapping[str, Any]]:
+    """A service that gives these answers, one after the other, and after them the sum of the two numbers."""
+    left = list(scripted)
+    return lambda request: {"sum": left.pop(0) if left else _as_int64(request["a"] + request["b"])}
+
+
+def _as_int64(number: int) -> int:
+    # A client that adds in another order may leave the range; C++ servers wrap around, rclpy's would die of
+    # it.
+    return (number + 2**63) % 2**64 - 2**63
+
+
+class Calls:
+    """The recipe for a client that has a service add numbers.
+
+    Args:
+        calls: How many calls a client that has done its work has made.
+        runs: Draws the runs with a service: the late one, the surprising one, the one with large numbers.
+        kinds: Each draws numbers of a kind that the runs have; those of the run without a service are of one of them.
+        too_many: What one is told who calls ``{count}`` times, and what to do then.
+    """
+
+    roles = ("client",)
+
+    def __init__(
+        self,
+        calls: int,
+        runs: Callable[[Random], Sequence[Run]],
+        kinds: Sequence[Callable[[Random], Sequence[int]]],
+        *,
+        too_many: tuple[str, str],
+    ) -> None:
+        self._calls, self._runs, self._kinds, self._many = calls, runs, kinds, too_many
+
+    def scenario(self, bench: Bench) -> None:
+        """Four runs: a late service, a surprising one, large numbers, and none at all."""
+        runs = self._runs(bench.random)
+        nobody = bench.random.choice(self._kinds)(bench.random)
+        scenario(bench, runs, nobody, calls=self._calls)
+
+    def seen(self, evidence: Evidence) -> Client:
+        """What was seen of the subject."""
+        return Client(evidence)
+
+    def expected(self, evidence: Evidence) -> Client:
+        """What was recorded of the reference solution."""
+        return Client(evidence.reference)
+
+    def waits(self, seen: Client, *, called: bool) -> Finding:
+        """With a service that comes late it does its work all the same.
+
+        Args:
+            seen: The client.
+            called: Whether it made its calls in that run.
+        """
+        done = called and (seen.late.ending is not None or reports(seen.late))
+        return Finding(done, "waits, then calls", "it did" if done else how_it_went(seen.late))
+
+    def _too_many_calls(self, evidence: Evidence) -> Advice | None:
+        """More calls than the reference solution makes."""
+        wanted = self.expected(evidence).calls
+        counts = (len(requests(part)) for part in self.seen(evidence).served)
+        many = next((count for count in counts if count > wanted), None)
+        says, next_step = self._many
+        return None if many is None else Advice(says.format(count=many), next_step)
+
+    @property
+    def ladder(self) -> tuple[Mistake, ...]:
+        """The common mistakes, most telling first."""
+        return (
+            *common.CRASHES,
+            common.endpoint_name("client"),
+            common.message_type("client"),
+            *OTHER_SLIPS,
+            common.usage_message(),
+            Mistake("waits_forever", calls_seen.waits_for_nobody, certain=True),
+            Mistake("waits_forever", calls_seen.waits_forever),
+            *(replace(hang, certain=True) for hang in HANGS),
+            Mistake("await_in_same_group", calls_seen.awaits_in_vain, certain=True),
+            Mistake("call_never_spun", calls_seen.call_never_spun, certain=True),
+            Mistake("field_typo", calls_seen.fields_never_filled, certain=True),
+            Mistake("too_many_calls", self._too_many_calls, certain=True),
+            OWN,
+            Mistake("zero_taken_for_failure", calls_seen.zero_taken_for_failure, certain=True),
+            Mistake("gave_up_too_early", calls_seen.gave_up_too_early),
+            Mistake("result_read_too_early", calls_seen.answer_not_awaited),
+            OWN_LATE,
+            Mistake("silent_end", calls_seen.silent_end, certain=True),
+            Mistake("patience_not_kept", calls_seen.patience_not_kept),
+            *common.OTHER_CRASHES,
+            *common.NOTHING_THERE,
+        )

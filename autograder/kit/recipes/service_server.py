@@ -1,0 +1,217 @@
+"""A service's server: it is called one by one, then several times at once, then once more to see that it is alive."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from autograder.kit import common_mistakes as common
+from autograder.kit.crashes import traceback_of
+from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.hangs import HANGS, stacks
+from autograder.kit.model import Advice, Bench, Finding, Look, Mistake
+
+if TYPE_CHECKING:
+    from random import Random
+
+    from autograder.kit.callers import Caller
+    from autograder.kit.evidence import Event, Evidence, Part
+
+CALLS = "calls"
+AT_ONCE = 6
+"""Calls that are in flight together. A service's queue keeps 10, and 12 lose some even at a right server (measured)."""
+SERVER_LIMIT = {Look.FAST: 3.0, Look.REAL_TIME: 6.0}
+"""Seconds in which a server that is on the graph must be matched with the judge's client."""
+QUIET = {Look.FAST: 2.0, Look.REAL_TIME: 6.0}
+"""Seconds without any event after which an answer is taken not to come."""
+SURE = 2
+"""Answers after which a server that has ended by itself had surely served."""
+
+Fields = Mapping[str, Any]
+"""The fields of a request or of a response."""
+Objection = Callable[[Fields, Fields | None], str]
+"""What is wrong about the answer to a request, None for no answer; empty where it is right."""
+
+
+@dataclass(frozen=True)
+class Server:
+    """What was seen of a server.
+
+    Attributes:
+        part: The run in which it was called.
+        calls: How many calls there are where each of them is answered.
+    """
+
+    part: Part
+    calls: int
+
+    @property
+    def asked(self) -> list[Event]:
+        """All calls that were made, in order."""
+        return self.part.of("asked")
+
+    @property
+    def singly(self) -> list[Event]:
+        """The calls one by one."""
+        return self.asked[: self.calls - AT_ONCE - 1]
+
+    @property
+    def together(self) -> list[Event]:
+        """The calls at once."""
+        return self.asked[self.calls - AT_ONCE - 1 : self.calls - 1]
+
+    @property
+    def last(self) -> list[Event]:
+        """The call after all others, if it was made."""
+        return self.asked[self.calls - 1 :]
+
+    @cached_property
+    def answers(self) -> dict[int, Fields]:
+        """The answer to each call that was answered, by the call's number."""
+        return {int(event.data["call"]): event.data["fields"] for event in self.part.of("answered")}
+
+    @property
+    def count(self) -> int:
+        """The largest number of servers of the name that were there at once."""
+        return max((int(event.data["count"]) for event in self.part.of("servers")), default=0)
+
+    def objections(self, calls: Sequence[Event], objection: Objection) -> list[str]:
+        """What is wrong about the answers to these calls, in words."""
+        found = (objection(e.data["fields"], self.answers.get(int(e.data["call"]))) for e in calls)
+        return [words for words in found if words]
+
+    def all_right(self, calls: Sequence[Event], objection: Objection, expected: str) -> Finding:
+        """Whether these calls were made and each was answered as it should be.
+
+        Args:
+            calls: Some of :attr:`asked`.
+            objection: What is wrong about one answer.
+            expected: What is expected of all of them, in words.
+        """
+        wrong = self.objections(calls, objection)
+        right = f"{len(calls)} right" if calls else "not asked any more" if self.asked else "not asked"
+        return Finding(bool(calls) and not wrong, expected, wrong[0] if wrong else right)
+
+
+class Asks:
+    """The recipe for a server.
+
+    Args:
+        singly: Draws the requests that are made one by one.
+        ordinary: Draws one request, for the calls at once and the last one.
+    """
+
+    roles = ("service",)
+
+    def __init__(
+        self, singly: Callable[[Random], Sequence[Fields]], ordinary: Callable[[Random], Fields]
+    ) -> None:
+        self._singly, self._ordinary = singly, ordinary
+
+    def scenario(self, bench: Bench) -> None:
+        """One run: calls one by one, calls at once, one more."""
+        service, type_name = bench.reference.only("service")
+        bench.part(CALLS)
+        caller = bench.call(service, type_name)
+        bench.start()
+        there = bench.await_endpoint("service", service)
+        bench.release()
+        if there and caller.await_server(SERVER_LIMIT[bench.look]) and not self._all_answered(bench, caller):
+            bench.note_whether_it_spins()
+            bench.note_where_it_hangs()
+        bench.stop()
+
+    def _all_answered(self, bench: Bench, caller: Caller) -> bool:
+        """Make all calls; False at the first that is not answered."""
+        for request in self._singly(bench.random):
+            caller.ask(request)
+            if not caller.await_answers(QUIET[bench.look]):
+                return False
+        for number in (AT_ONCE, 1):
+            caller.ask(*(self._ordinary(bench.random) for _ in range(number)))
+            if not caller.await_answers(QUIET[bench.look]):
+                return False
+        return True
+
+    def seen(self, evidence: Evidence) -> Server:
+        """What was seen of the subject."""
+        return Server(evidence.main, len(evidence.reference.part(CALLS).of("asked")))
+
+    def expected(self, evidence: Evidence) -> Server:
+        """What was recorded of the reference solution."""
+        part = evidence.reference.part(CALLS)
+        return Server(part, len(part.of("asked")))
+
+    def serves(self, evidence: Evidence) -> Finding:
+        """One server of the right name and type, and it answers."""
+        name, type_name = evidence.reference.only("service")
+        seen, expected = self.seen(evidence), f"one server of {name} ({type_name}) that answers"
+        made = seen.part.endpoints("service")
+        if name not in made:
+            return Finding(False, expected, f"a service {', '.join(sorted(made))}" if made else "no service")
+        if made[name] != type_name:
+            return Finding(False, expected, f"{name} is a {made[name]}")
+        if seen.count > 1:
+            return Finding(False, expected, f"{seen.count} servers of {name}")
+        if seen.part.ending is not None and len(seen.answers) < SURE:
+            # The answer of a program that exits with it may or may not get out of it.
+            return Finding(False, expected, "it ended with the first call")
+        return Finding(bool(seen.answers), expected, "it answers" if seen.answers else "no call was answered")
+
+    @property
+    def ladder(self) -> tuple[Mistake, ...]:
+        """The common mistakes, most telling first."""
+        return (
+            Mistake("two_servers", self._two_servers, certain=True),
+            # Before any crash: a wrong answer may not fit into its field, and rclpy's server dies of that.
+            OWN,
+            *common.CRASHES,
+            Mistake("callback_returned_none", _returned_none, certain=True),
+            common.endpoint_name("service"),
+            common.message_type("service"),
+            *common.OTHER_CRASHES,
+            Mistake("stopped_answering", self._stopped_answering),
+            *HANGS,
+            common.never_spun("service"),
+            common.went_deaf("service"),
+            OWN_LATE,
+            *common.NOTHING_THERE,
+        )
+
+    def _two_servers(self, evidence: Evidence) -> Advice | None:
+        """Two servers share the name."""
+        name, _ = evidence.reference.only("service")
+        count = self.seen(evidence).count
+        if count < 2:
+            return None
+        return Advice(
+            f"{count} servers of {name} are on the graph. Each call reaches both, and whichever is quicker answers.",
+            "Call create_service once, and make one node only.",
+        )
+
+    def _stopped_answering(self, evidence: Evidence) -> Advice | None:
+        """A callback of the student's was called and never comes back."""
+        seen = self.seen(evidence)
+        if len(seen.answers) == len(seen.asked) or seen.part.ending is not None:
+            return None
+        stuck = [s for s in stacks(seen.part) if not s[0].rclpy and any(f.rclpy == "executors.py" for f in s)]
+        if not stuck:
+            return None
+        return Advice(
+            f"Your server answered {len(seen.answers)} calls and then no more: its callback {stuck[0][0].function} was "
+            "called and never came back.",
+            "A callback has to come to its end at each call. Look for a wait, a loop or a lock in it.",
+        )
+
+
+def _returned_none(evidence: Evidence) -> Advice | None:
+    """A bare TypeError out of nowhere: all that a notebook shows of it, where rclpy's own lines are left out."""
+    if traceback_of(evidence).strip() != "TypeError":
+        return None
+    return Advice(
+        "The service callback did not return the response: rclpy could not send what came back, and the server died of "
+        "it.",
+        "End the callback with `return response`, on every way out.",
+    )

@@ -1,0 +1,337 @@
+"""A subscriber that says each text it hears: it is sent texts that nobody can guess, at a pace and one by one."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from autograder.kit import common_mistakes as common
+from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.hangs import HANGS
+from autograder.kit.model import Advice, Bench, Finding, Look, Mistake
+from autograder.kit.texts_said import has_much_of, invented, is_said, repeated
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from random import Random
+
+    from autograder.kit.evidence import Event, Evidence, Part
+    from autograder.kit.model import Speaker
+
+SINGLY = 12
+"""Texts that are sent each once the one before was said."""
+AT_PACE = 8
+"""Texts that are sent one after the other at the pace, in real time."""
+TRIES = 3
+"""Times that this is tried: a busy machine may be slower than the pace for a moment."""
+SIMULATED = 20
+"""Texts in all that are sent where the listener follows simulated time, all at the pace."""
+PATIENCE = {Look.FAST: 1.0, Look.REAL_TIME: 3.0}
+"""Seconds of wall time in which a text that was sent must have been said."""
+BEFORE = 1.0
+"""Seconds (simulated where it follows the clock) before the first text, in which nothing can have been heard."""
+AFTERMATH = 2.5
+"""Seconds (likewise) after the last text, in which nothing may be made up or said again."""
+GREETING = "Hello, world!"
+"""The beginning of what many talkers say: some of the texts have it in them."""
+
+_WORDS = (
+    "amber", "birch", "cedar", "delta", "ember", "fjord", "grove", "harbour", "islet", "juniper", "kelp", "lagoon",
+    "meadow", "north", "orchard", "pebble", "quarry", "river", "summit", "tundra",
+)  # fmt: skip
+
+
+class Speaks:
+    """The recipe for a subscriber that says each text it hears, in whatever words of its own beside it.
+
+    Args:
+        pace: Seconds between two texts that follow each other at a pace, as from another node.
+        paced_by: Whose pace that is, in words for a student.
+    """
+
+    roles = ("subscription",)
+
+    def __init__(self, *, pace: float, paced_by: str) -> None:
+        self._pace, self._paced_by = pace, paced_by
+
+    def scenario(self, bench: Bench) -> None:
+        """Send texts that nobody can guess, at the pace and each once the one before was said."""
+        topic, type_name = bench.reference.only("subscription")
+        texts = random_texts(bench.random)
+        bench.part("listening", texts=texts)
+        speaker = bench.speak(topic, type_name)
+        bench.start()
+        if bench.await_endpoint("subscription", topic):
+            bench.release()
+            bench.await_attention()
+            bench.run_time(BEFORE)
+            if self._all_are_said(bench, speaker, texts):
+                bench.run_time(AFTERMATH)
+            else:
+                bench.note_whether_it_spins()
+        bench.stop()
+
+    def _all_are_said(self, bench: Bench, speaker: Speaker, texts: Sequence[str]) -> bool:
+        if not _is_answered(bench, speaker, texts[0]):
+            return False
+        if bench.wait_until(_is_simulated, 0.0):
+            return self._are_said_at_pace(bench, speaker, texts[1:SIMULATED])
+        kept = any(self._are_said_at_pace(bench, speaker, row) for row in _rows(texts))
+        # Where it missed some at that pace, two more tell whether it says what it is given time for.
+        return all(_is_answered(bench, speaker, text) for text in texts[-SINGLY:][: None if kept else 2])
+
+    def _are_said_at_pace(self, bench: Bench, speaker: Speaker, texts: Sequence[str]) -> bool:
+        for text in texts:
+            speaker.send(data=text)
+            if not bench.run_time(self._pace):
+                break
+        return _are_said(bench, texts)
+
+    def seen(self, evidence: Evidence) -> Part:
+        """What was seen of the subject."""
+        return evidence.main
+
+    def expected(self, evidence: Evidence) -> Part:
+        """The same: what is expected are the texts, which are drawn anew each time."""
+        return evidence.main
+
+    @property
+    def ladder(self) -> tuple[Mistake, ...]:
+        """The common mistakes, most telling first."""
+        return (
+            *common.CRASHES,
+            common.NEVER_CONSTRUCTED,
+            common.endpoint_name("subscription"),
+            common.message_type("subscription"),
+            common.qos_mismatch("subscription"),
+            *common.OTHER_CRASHES,
+            OWN,
+            Mistake("ended_too_early", common.ended_too_early),
+            *HANGS,
+            common.never_spun("subscription"),
+            common.went_deaf("subscription"),
+            OWN_LATE,
+            Mistake("wrong_text", _changed_text),
+            Mistake("invented_text", _invented_text, certain=True),
+            Mistake("callback_too_slow", self._too_slow),
+            Mistake("not_logged", _not_logged),
+            Mistake("everything_twice", _said_again, certain=True),
+            *common.NOTHING_THERE,
+        )
+
+    def _too_slow(self, evidence: Evidence) -> Advice | None:
+        """It says what it is given time for, and misses texts that come at the pace."""
+        texts, missing = list(evidence.main.inputs.get("texts", ())), _missing(evidence)
+        singly = [event for event in _sent(evidence) if _text(event) in texts[-SINGLY:]]
+        if _is_simulated(evidence) or not singly or not missing or any(event in singly for event in missing):
+            return None
+        return Advice(
+            f"At the pace of {self._paced_by}, a text every {self._pace:g} s, your listener misses some, such as "
+            f"“{_text(missing[0])}”; when it is given more time, it says all.",
+            "Let the callback only log and return, without time.sleep: while it runs, new messages wait, and no more "
+            "of them than the depth of the queue.",
+        )
+
+
+# --- the scenario ------------------------------------------------------------------------------------------
+
+
+def _rows(texts: Sequence[str]) -> list[Sequence[str]]:
+    """The texts of each time that the lab's pace is tried in real time."""
+    return [texts[1 + AT_PACE * i : 1 + AT_PACE * (i + 1)] for i in range(TRIES)]
+
+
+def _is_answered(bench: Bench, speaker: Speaker, text: str) -> bool:
+    speaker.send(data=text)
+    return _are_said(bench, [text])
+
+
+def _are_said(bench: Bench, texts: Sequence[str]) -> bool:
+    said = partial(_says, texts)
+    if bench.wait_until(_is_simulated, 0.0):
+        bench.run_time(PATIENCE[bench.look], until=lambda: bench.wait_until(said, 0.0))
+    return bench.wait_until(said, PATIENCE[bench.look])
+
+
+def _is_simulated(evidence: Evidence) -> bool:
+    """Whether the clock was the judge's when it sent its last text."""
+    sent = evidence.main.of("sent")
+    return bool(sent) and sent[-1].sim is not None
+
+
+def random_texts(random: Random) -> list[str]:
+    """Texts of words and a number; none is part of another. Some have the greeting of many talkers in them."""
+    count = 1 + TRIES * AT_PACE + SINGLY
+    words = [f"{random.choice(_WORDS)} {random.choice(_WORDS)}" for _ in range(count)]
+    texts = [
+        f"{two} {number}" for two, number in zip(words, random.sample(range(1000, 10000), count), strict=True)
+    ]
+    for row in (range(1, 1 + AT_PACE), range(1 + AT_PACE, SIMULATED), range(count - SINGLY, count)):
+        first, second, third = random.sample(row, 3)
+        texts[first] = f"{GREETING} {texts[first].rpartition(' ')[2]}"
+        texts[second] = f"{texts[second]} {GREETING}"
+        texts[third] = f"{random.choice(_WORDS).upper()} {' '.join(random.sample(_WORDS, 4))} {texts[third]}"
+    return texts
+
+
+def _says(texts: Sequence[str], evidence: Evidence) -> bool:
+    return all(is_said(text, evidence.main) for text in texts)
+
+
+def _sent(evidence: Evidence) -> list[Event]:
+    topic, _ = evidence.reference.only("subscription")
+    return evidence.main.of("sent", topic)
+
+
+def _sent_texts(evidence: Evidence) -> list[str]:
+    return [_text(event) for event in _sent(evidence)]
+
+
+def _text(event: Event) -> str:
+    return str(event.data["fields"]["data"])
+
+
+def subscribes(evidence: Evidence) -> Finding:
+    """A subscription of the subject's is on the topic with the right type."""
+    topic, type_name = evidence.reference.only("subscription")
+    made = _subscriptions(evidence.main, topic)
+    seen = ", ".join(f"{name} ({kind})" for name, kind in sorted(made.items())) or "no subscription"
+    return Finding(made.get(topic) == type_name, f"{topic} ({type_name})", seen)
+
+
+def _subscriptions(part: Part, topic: str) -> dict[str, str]:
+    """Topic -> type; none of a program that ended before it was sent anything.
+
+    Whether the graph showed those before they were gone is a matter of chance. A notebook's class is held until they
+    are known.
+    """
+    ending, sent = part.ending, part.first("sent", topic)
+    met = ending is None or part.first("subject", "constructed") or (sent and _is_before(part, sent, ending))
+    return part.endpoints("subscription") if met else {}
+
+
+def _is_before(part: Part, event: Event, other: Event) -> bool:
+    return part.events.index(event) < part.events.index(other)
+
+
+def _missing(evidence: Evidence) -> list[Event]:
+    """Texts that were sent and not said, those aside that were missed at a pace which it kept at another time."""
+    part, sent = evidence.main, _sent(evidence)
+    silent = [event for event in sent if not is_said(_text(event), part, after=event)]
+    if _is_simulated(evidence):
+        return silent
+    rows = [
+        [event for event in sent if _text(event) in row] for row in _rows(list(part.inputs.get("texts", ())))
+    ]
+    tried = [row for row in rows if row]
+    kept = any(len(row) == AT_PACE and not any(event in silent for event in row) for row in tried)
+    at_pace = [event for row in tried for event in row] if kept else []
+    return [event for event in silent if event not in at_pace]
+
+
+def _expected_texts(evidence: Evidence) -> int:
+    """Texts that are sent to a listener that says all of them."""
+    return SIMULATED if _is_simulated(evidence) else 1 + AT_PACE + SINGLY
+
+
+def says_every_text(evidence: Evidence) -> Finding:
+    """Each text that was sent is said afterwards."""
+    sent, missing = _sent(evidence), _missing(evidence)
+    seen = f"{len(sent) - len(missing)} of {len(sent)} said" if sent else "none was sent"
+    if missing:
+        seen += f"; not “{_text(missing[0])}”"
+    complete = len(sent) >= _expected_texts(evidence) and not missing
+    return Finding(complete, "every text in its log", seen)
+
+
+def says_nothing_else(evidence: Evidence) -> Finding:
+    """It claims no text that was never sent, and none again."""
+    sent = _sent_texts(evidence)
+    heard_any = any(is_said(text, evidence.main) for text in sent)
+    made_up, again = invented(evidence.main, sent), repeated(evidence.main, sent)
+    if made_up:
+        seen = f"“{made_up[0]}”"
+    elif again:
+        seen = f"“{next(iter(again))}” {max(again.values())} times"
+    else:
+        seen = "only what was sent" if heard_any else "it said none of the texts"
+    return Finding(heard_any and not made_up and not again, "only what was sent, and once", seen)
+
+
+def _said_again(evidence: Evidence) -> Advice | None:
+    """It says texts more often than they were sent."""
+    again = repeated(evidence.main, _sent_texts(evidence))
+    if not again:
+        return None
+    text, times = max(again.items(), key=lambda item: item[1])
+    if len(again) > 1 and min(again.values()) == times:
+        return Advice(
+            f"Each text was sent once, and your program says it {times} times, such as “{text}”.",
+            "One subscription is enough: is create_subscription called twice, or is there a second node, or a second "
+            "log line? In a notebook, an earlier run of the cell may have left a node of its own.",
+        )
+    return Advice(
+        f"“{text}” was sent once, and your program says it {times} times: it repeats it without a new message.",
+        "Log in the subscription's callback, once for each message; a timer cannot know whether a message came.",
+    )
+
+
+def _changed_text(evidence: Evidence) -> Advice | None:
+    """It says some texts in other words than they came in."""
+    part, sent = evidence.main, _sent(evidence)
+    for event in _missing(evidence):
+        later = sent[sent.index(event) + 1 :][:1]
+        then = part.said(after=event)
+        lines = then[: len(then) - len(part.said(after=later[0]))] if later else then
+        made_up = [line for line in invented(part, _sent_texts(evidence)) if line in lines]
+        if not any(is_said(_text(other), part) for other in sent):
+            # Which texts a change touches depends on the texts: with the first one changed, none is said.
+            made_up = [line for line in lines if has_much_of(line, _text(event))]
+        if made_up:
+            return Advice(
+                f"When “{_text(event)}” was sent, your node said “{made_up[0]}”: that is not the text as it came.",
+                "Log msg.data as it is, without strip, replace, slices or other changes.",
+            )
+    return None
+
+
+def _not_logged(evidence: Evidence) -> Advice | None:
+    """It is subscribed, was sent texts and says none of them."""
+    topic, _ = evidence.reference.only("subscription")
+    part, sent = evidence.main, _sent(evidence)
+    silent = next(iter(_missing(evidence)), None)
+    if silent is None or not subscribes(evidence).passed:
+        return None
+    words = part.said(after=silent)
+    bytes_said = next((line for line in words if _text(silent) in line), None)
+    if bytes_said is not None:
+        return Advice(
+            f"Your node said “{bytes_said}”: these are the bytes of the message as they travel, not its text.",
+            "Leave raw=True out of create_subscription: the callback then gets a message with its text in msg.data.",
+        )
+    if silent is not sent[0]:
+        return Advice(
+            f"Your node said the first texts, but not “{_text(silent)}”.",
+            "Log every message that the callback is given, without `once`, throttling or a condition.",
+        )
+    if len(part.said(after=sent[0])) == 0:
+        return Advice(
+            f"Your node is subscribed to {topic}, but when a text arrives it says nothing.",
+            "In the callback, log the text: self.get_logger().info(f'I heard: \"{msg.data}\"'). Is the node spun?",
+        )
+    return Advice(
+        f"When “{_text(sent[0])}” was sent, your node said “{part.said(after=sent[0])[0]}”: the text that arrived is "
+        "not in it.",
+        "Put msg.data into the line that you log.",
+    )
+
+
+def _invented_text(evidence: Evidence) -> Advice | None:
+    """It says what nobody sent."""
+    made_up = invented(evidence.main, _sent_texts(evidence))
+    if not made_up:
+        return None
+    return Advice(
+        f"Your node said “{made_up[0]}”, but nobody sent that.",
+        "Log only in the subscription's callback, and only the text of the message that it was given.",
+    )

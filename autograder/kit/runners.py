@@ -1,0 +1,39 @@
+"""What is done with a path that is given in place of a command."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class RunsProgram:
+    """The workspace is built, and a program of one of its packages run.
+
+    Attributes:
+        package: The package.
+        program: The program, as ``ros2 run`` knows it.
+    """
+
+    package: str
+    program: str
+
+
+@dataclass(frozen=True)
+class ServesInterface:
+    """The workspace is built, and a service type that it makes is served by a node of ours.
+
+    Attributes:
+        file: The file of the service type, such as ``"AddTwoInts.srv"``, in whatever package.
+        service: The name under which it is served.
+    """
+
+    file: str
+    service: str
+
+
+@dataclass(frozen=True)
+class Launches:
+    """The launch file is launched, with what it needs of the workspace around it."""
+
+
+Runner = RunsProgram | ServesInterface | Launches

@@ -1,0 +1,94 @@
+"""Mistakes in a workspace, told from the report of its build and from what ``ros2`` says."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit.model import Advice, Mistake
+from autograder.kit.workspace_report import WorkspaceReport, report_of
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Evidence, Part
+
+
+def build_report(part: Part) -> WorkspaceReport | None:
+    """The report of the build; where it never came so far, that of what was found before it."""
+    return report_of(part) or report_of(part, "found")
+
+
+def seen_of_build(report: WorkspaceReport) -> str:
+    """How a build went, in a few words for a card."""
+    if report.trouble == "build":
+        return f"colcon could not build {report.package or 'it'}: {report.line}"
+    return report.line or report.trouble.replace("_", " ")
+
+
+def _no_workspace(evidence: Evidence) -> Advice | None:
+    report = build_report(evidence.main)
+    if report is None or report.trouble not in ("no_workspace", "no_package"):
+        return None
+    return Advice(
+        f"There is nothing to build: {report.line}.",
+        "A workspace is a folder with src in it, and each package is a folder in src, made there with "
+        "`ros2 pkg create`.",
+    )
+
+
+def _bad_package(evidence: Evidence) -> Advice | None:
+    report = build_report(evidence.main)
+    if report is None or report.trouble != "bad_package":
+        return None
+    return Advice(
+        f"A package cannot be used: {report.line}.",
+        "Mend package.xml. colcon takes a package whose package.xml is not valid for something else, without a word.",
+    )
+
+
+def _build_failed(evidence: Evidence) -> Advice | None:
+    report = build_report(evidence.main)
+    if report is None or report.trouble != "build":
+        return None
+    return Advice(
+        f"colcon build fails in {report.package or 'the workspace'}: {report.line}",
+        "Go to the place that the line names. `colcon build` in the workspace shows the whole log.",
+    )
+
+
+def _syntax_error(evidence: Evidence) -> Advice | None:
+    report = build_report(evidence.main)
+    if (
+        report is None
+        or report.trouble != "build"
+        or not re2.search(r"(?:Syntax|Indentation|Tab)Error", report.line)
+    ):
+        return None
+    return Advice(
+        f"Python could not read {report.line.partition(': ')[0]} when {report.package} was built: {report.line}",
+        "A bracket, a quote, a colon or the indentation is off there or just before it.",
+    )
+
+
+def _not_sourced(evidence: Evidence) -> Advice | None:
+    for event in evidence.main.of("output"):
+        text = str(event.data["text"])
+        if found := re2.search(r"Package '([^']+)' not found|package '([^']+)' not found", text):
+            name = found[1] or found[2]
+            return Advice(
+                f"ros2 does not find the package {name}: it is not built, or this terminal has not sourced it.",
+                "In the workspace: `colcon build`, then `source install/setup.bash`, in this very terminal. Every new "
+                "terminal must source it again.",
+            )
+    return None
+
+
+BUILD = (
+    Mistake("no_workspace", _no_workspace, certain=True),
+    Mistake("bad_package", _bad_package, certain=True),
+    Mistake("syntax_error", _syntax_error, certain=True),
+    Mistake("build_failed", _build_failed, certain=True),
+)
+"""A workspace that cannot be built."""
+NOT_SOURCED = Mistake("module_not_found", _not_sourced, certain=True)
+"""A package that the environment of a command does not hold."""

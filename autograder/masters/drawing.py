@@ -1,0 +1,122 @@
+"""Draws the PNG beside each SVG of the masters' figures: ``python -m autograder.masters.drawing``.
+
+For authors: a build only reads the PNGs, because they would come out differently with the fonts of another machine.
+"""
+
+from __future__ import annotations
+
+import base64
+import sys
+import zlib
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy
+
+from autograder.course import SOLUTIONS
+from autograder.masters.errors import MasterError
+from autograder.masters.figures import SIGNATURE, chunk, digest, signed
+from autograder.masters.layout import find_root
+from environment.system_packages import CHROMIUM_NAMES, find_program
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from playwright.sync_api import Page
+
+SCALE = 1.5
+"""Pixels for each unit of a drawing: sharp on most screens, and no wider than a wide notebook."""
+COLOURS = 256
+_PIXELS = """async png => {
+    const picture = await createImageBitmap(await (await fetch("data:image/png;base64," + png)).blob());
+    const canvas = new OffscreenCanvas(picture.width, picture.height);
+    const drawn = canvas.getContext("2d");
+    drawn.drawImage(picture, 0, 0);
+    const pixels = drawn.getImageData(0, 0, picture.width, picture.height).data;
+    let text = "";
+    for (let at = 0; at < pixels.length; at += 32768) {
+        text += String.fromCharCode(...pixels.subarray(at, at + 32768));
+    }
+    return [picture.width, picture.height, btoa(text)];
+}"""
+
+
+def stale_figures(root: Path) -> list[Path]:
+    """The figures of the course in ``root`` that have no PNG drawn from them as they are now."""
+    found = sorted((root / SOLUTIONS).rglob("figures/*.svg"))
+    return [svg for svg in found if not _is_drawn(svg)]
+
+
+def draw(figures: Sequence[Path], chromium: str) -> None:
+    """Draw the PNG beside each SVG.
+
+    Args:
+        figures: The SVGs.
+        chromium: The path of Chromium.
+    """
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        page = browser.new_page(device_scale_factor=SCALE)
+        for svg in figures:
+            page.goto(svg.resolve().as_uri())
+            png = page.locator("svg").first.screenshot(omit_background=True)
+            svg.with_suffix(".png").write_bytes(signed(_with_few_colours(page, png), svg.read_bytes()))
+        browser.close()
+
+
+def _is_drawn(svg: Path) -> bool:
+    png = svg.with_suffix(".png")
+    return png.exists() and digest(svg.read_bytes()) in png.read_bytes()
+
+
+def _with_few_colours(page: Page, png: bytes) -> bytes:
+    """The same picture as a PNG with a palette, a third as large: each notebook of each student carries it.
+
+    Args:
+        page: Any page of a browser, which decodes the picture.
+        png: The picture.
+    """
+    page.goto("about:blank")
+    width, height, text = page.evaluate(_PIXELS, base64.b64encode(png).decode("ascii"))
+    pixels = numpy.frombuffer(base64.b64decode(text), numpy.uint8).reshape(height * width, 4)
+    coarse = (pixels.astype(numpy.uint16) + 8) // 17 * 17
+    colours, places, counts = numpy.unique(coarse, axis=0, return_inverse=True, return_counts=True)
+    kept = numpy.argsort(-counts)[:COLOURS]
+    distances = ((colours[:, None, :].astype(int) - colours[None, kept, :]) ** 2).sum(axis=2)
+    rows = distances.argmin(axis=1).astype(numpy.uint8)[places].reshape(height, width)
+    palette = colours[kept].astype(numpy.uint8)
+    lines = numpy.insert(rows, 0, 0, axis=1).tobytes()  # each line begins with its filter: none
+    header = width.to_bytes(4) + height.to_bytes(4) + bytes((8, 3, 0, 0, 0))
+    return SIGNATURE + b"".join(
+        (
+            chunk(b"IHDR", header),
+            chunk(b"PLTE", palette[:, :3].tobytes()),
+            chunk(b"tRNS", palette[:, 3].tobytes()),
+            chunk(b"IDAT", zlib.compress(lines, 9)),
+            chunk(b"IEND", b""),
+        )
+    )
+
+
+def main() -> int:
+    """Draw what is not drawn yet; the exit code is 2 where that cannot be done."""
+    try:
+        figures = stale_figures(find_root(Path.cwd()))
+    except MasterError as error:
+        print(error, file=sys.stderr)
+        return 2
+    chromium = find_program(*CHROMIUM_NAMES)
+    if figures and chromium is None:
+        print("Figures are drawn by Chromium, and none is installed.", file=sys.stderr)
+        return 2
+    if figures and chromium:
+        draw(figures, chromium)
+    for svg in figures:
+        print(f"drawn  {svg.with_suffix('.png')}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

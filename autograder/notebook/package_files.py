@@ -1,0 +1,142 @@
+"""Lines for the files of a package, added so that a cell may run any number of times and in any order.
+
+A cell that writes ``setup.py`` as a whole would take away what a later lab has added. These functions change one place
+of a file and leave the rest as it is: an entry point replaces its predecessor, and a line that is there stays once.
+"""
+
+from __future__ import annotations
+
+import ast
+import re  # noqa: TID251  (in the student's own kernel)
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+PACKAGE = "my_robot_pkg"
+_ENTRY_POINT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*(\w+)\s*")
+_DEFINITIONS = re.compile(r"rosidl_generate_interfaces\s*\(\s*\$\{PROJECT_NAME\}[^)]*")
+
+
+def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str = PACKAGE) -> str:
+    """Put entry points into ``setup.py`` of a package; one with the same executable or the same function is replaced.
+
+    Args:
+        workspace: The folder that holds ``src``.
+        entries: Each ``executable = module:function``.
+        package: The name of the package.
+
+    Returns:
+        The executables that the package has now, a line each, or what the student has to do.
+    """
+    setup = Path(workspace) / "src" / package / "setup.py"
+    wanted = list(entries)
+    for entry in wanted:
+        if not isinstance(entry, str) or not _ENTRY_POINT.fullmatch(entry):
+            return f"{entry!r} is no entry point. Write: executable = module : function"
+    try:
+        text = setup.read_text(encoding="utf-8")
+        programs = _programs(ast.parse(text))
+    except FileNotFoundError:
+        return f"There is no {setup}. First make the package, as in Lab 1.1."
+    except SyntaxError as error:
+        return f"{setup} cannot be read: line {error.lineno}: {error.msg}."
+    if programs is None:
+        listed = ", ".join(f'"{entry}"' for entry in wanted)
+        return f'{setup} has no list of console_scripts. Add: entry_points={{"console_scripts": [{listed}]}},'
+    merged = _texts(programs)
+    for entry in wanted:
+        same = {n for n, old in enumerate(merged) if set(_parts(old)) & set(_parts(entry))}
+        place = min(same, default=len(merged))
+        merged = [old for n, old in enumerate(merged) if n not in same]
+        merged.insert(place, " ".join(entry.split()))
+    if not merged:
+        return f"{package} has no executable yet."
+    if merged != _texts(programs):
+        setup.write_text(_with_list(text, programs, merged), encoding="utf-8")
+    return "\n".join([f"Executables of {package}:", *(f"  {entry}" for entry in merged)])
+
+
+def add_dependencies(workspace: str | Path, names: Iterable[str], package: str = PACKAGE) -> str:
+    """Put ``<depend>`` lines into ``package.xml`` of a package where they are missing.
+
+    Args:
+        workspace: The folder that holds ``src``.
+        names: The packages that it needs.
+        package: The name of the package.
+
+    Returns:
+        The dependencies that it has now, or what the student has to do.
+    """
+    manifest = Path(workspace) / "src" / package / "package.xml"
+    if not manifest.is_file():
+        return f"There is no {manifest}. First make the package {package}."
+    text = manifest.read_text(encoding="utf-8")
+    for name in names:
+        if not re.search(rf"<(?:exec_|build_)?depend>\s*{re.escape(name)}\s*<", text):
+            place = re.search(r"\n[ \t]*(?=<(?:test_depend|member_of_group|export)\b|</package>)", text)
+            at = place.start() if place else len(text)
+            text = f"{text[:at]}\n  <depend>{name}</depend>{text[at:]}"
+    manifest.write_text(text, encoding="utf-8")
+    found = re.findall(r"<(?:exec_|build_)?depend>\s*(\S+?)\s*<", text)
+    return f"Dependencies of {package}: {', '.join(dict.fromkeys(found))}"
+
+
+def add_definition(workspace: str | Path, package: str, definition: str, needs: Iterable[str] = ()) -> str:
+    """Have a package of interfaces generate code from one more definition, once the file is there.
+
+    Args:
+        workspace: The folder that holds ``src``.
+        package: The name of the package.
+        definition: The path of the file in the package, such as ``action/Fibonacci.action``.
+        needs: The packages that the generated code needs.
+
+    Returns:
+        What the package generates now, or what the student has to do.
+    """
+    folder = Path(workspace) / "src" / package
+    file, lists = folder / definition, folder / "CMakeLists.txt"
+    if not file.is_file() or "---" not in file.read_text(encoding="utf-8"):
+        return f"{definition} is not written yet."
+    text = lists.read_text(encoding="utf-8") if lists.is_file() else ""
+    command = _DEFINITIONS.search(text)
+    if command is None:
+        return f"{lists} generates nothing yet: it has no rosidl_generate_interfaces."
+    if f'"{definition}"' not in command[0]:
+        text = f'{text[: command.end()].rstrip()} "{definition}"{text[command.end() :]}'
+        lists.write_text(text, encoding="utf-8")
+    generated = ", ".join(re.findall(r'"([^"]+)"', "".join(_DEFINITIONS.findall(text))))
+    return f"{package} generates: {generated}\n{add_dependencies(workspace, needs, package)}"
+
+
+def _parts(entry: str) -> tuple[str, str]:
+    """The executable, and what it starts."""
+    name, _, target = "".join(entry.split()).partition("=")
+    return name, target
+
+
+def _texts(programs: ast.List) -> list[str]:
+    return [str(item.value) for item in programs.elts if isinstance(item, ast.Constant)]
+
+
+def _programs(tree: ast.Module) -> ast.List | None:
+    """The list of ``console_scripts`` in a setup.py."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Dict):
+            for key, value in zip(node.keys, node.values, strict=True):
+                named = isinstance(key, ast.Constant) and key.value == "console_scripts"
+                if named and isinstance(value, ast.List):
+                    return value
+    return None
+
+
+def _with_list(text: str, programs: ast.List, entries: list[str]) -> str:
+    """The file with these entries in the place of its list."""
+    lines = text.encode().split(b"\n")
+    first, last = programs.lineno - 1, (programs.end_lineno or programs.lineno) - 1
+    before = b"\n".join([*lines[:first], lines[first][: programs.col_offset]]).decode()
+    after = b"\n".join([lines[last][programs.end_col_offset :], *lines[last + 1 :]]).decode()
+    indent = " " * (len(lines[first]) - len(lines[first].lstrip()))
+    inside = "".join(f'{indent}    "{entry}",\n' for entry in entries)
+    return f"{before}[\n{inside}{indent}]{after}"

@@ -1,0 +1,140 @@
+"""The robot as a node: it obeys ``/cmd_vel`` and tells on ``/odom`` and ``/scan`` where it is and what it sees."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+from sensor_msgs.msg import LaserScan
+from std_srvs.srv import SetBool, Trigger
+
+from autograder.notebook.robot.motion import START, STILL, Pose, Velocity, move
+from autograder.notebook.robot.room import ROOM
+from autograder.notebook.robot.walking import Walking
+
+if TYPE_CHECKING:
+    from rclpy.time import Time
+
+TICK = 0.1
+"""Seconds between two steps, and between two messages on ``/odom``."""
+SCAN_EVERY = 5
+"""Steps between two messages on ``/scan``."""
+OBEYS_FOR = 1.0
+"""Seconds for which a command holds: who does not repeat it has let go, and the robot stops."""
+RAYS = 36
+"""Distances in a scan, all around the robot."""
+FARTHEST = 10.0
+"""Metres that the laser sees."""
+
+
+@dataclass(frozen=True)
+class RobotState:
+    """What there is to see of the robot at one moment.
+
+    Attributes:
+        pose: Where it is.
+        velocity: How it moves.
+        bumped: Whether a wall is in its way.
+        lamp: Whether its lamp is on.
+        ranges: Metres to the walls all around, from straight ahead to the left.
+    """
+
+    pose: Pose = START
+    velocity: Velocity = STILL
+    bumped: bool = False
+    lamp: bool = False
+    ranges: tuple[float, ...] = ()
+
+
+class RobotNode(Node):
+    """Simulates the robot. Anybody may drive it: a node, a terminal, another notebook of the same ROS domain.
+
+    Its callbacks run one at a time, so none of them needs a lock.
+    """
+
+    def __init__(self) -> None:
+        super().__init__("robot")
+        self._state = RobotState(ranges=_look_around(START))
+        self._told, self._told_at = STILL, -math.inf
+        self._ticks = 0
+        self._odometry = self.create_publisher(Odometry, "/odom", 10)
+        self._scan = self.create_publisher(LaserScan, "/scan", 10)
+        self.create_subscription(Twist, "/cmd_vel", self._obey, 10)
+        self.create_service(Trigger, "/reset", self._reset)
+        self.create_service(SetBool, "/lamp", self._switch_lamp)
+        self._walking = Walking(self)
+        self.create_timer(TICK, self._tick)
+
+    @property
+    def state(self) -> RobotState:
+        """What there is to see now; to be asked from any thread."""
+        return self._state
+
+    def _obey(self, command: Twist) -> None:
+        self._told, self._told_at = Velocity(command.linear.x, command.angular.z), self._seconds()
+        self._walking.give_up()
+
+    def _tick(self) -> None:
+        before = self._state
+        fresh = self._seconds() - self._told_at < OBEYS_FOR
+        velocity = self._walking.next(before.pose, before.bumped) or (self._told if fresh else STILL)
+        moved = move(before.pose, velocity, TICK, ROOM)
+        ranges = before.ranges if moved.pose == before.pose else _look_around(moved.pose)
+        self._state = RobotState(moved.pose, moved.velocity, moved.bumped, before.lamp, ranges)
+        self._tell(self._state)
+
+    def _tell(self, state: RobotState) -> None:
+        now = self.get_clock().now()
+        self._odometry.publish(odometry(state, now))
+        if self._ticks % SCAN_EVERY == 0:
+            self._scan.publish(laser_scan(state, now))
+        self._ticks += 1
+
+    def _reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._walking.give_up()
+        self._told_at = -math.inf
+        self._state = RobotState(lamp=self._state.lamp, ranges=_look_around(START))
+        response.success, response.message = True, "back at the start"
+        return response
+
+    def _switch_lamp(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        self._state = replace(self._state, lamp=request.data)
+        response.success, response.message = True, f"the lamp is {'on' if request.data else 'off'}"
+        return response
+
+    def _seconds(self) -> float:
+        return float(self.get_clock().now().nanoseconds) / 1e9
+
+
+def odometry(state: RobotState, now: Time) -> Odometry:
+    """Where the robot is, as a message."""
+    message = Odometry()
+    message.header.stamp, message.header.frame_id = now.to_msg(), "odom"
+    message.child_frame_id = "base_link"
+    message.pose.pose.position.x, message.pose.pose.position.y = state.pose.point
+    message.pose.pose.orientation.z = math.sin(state.pose.heading / 2)
+    message.pose.pose.orientation.w = math.cos(state.pose.heading / 2)
+    message.twist.twist.linear.x = state.velocity.forward
+    message.twist.twist.angular.z = state.velocity.turn
+    return message
+
+
+def laser_scan(state: RobotState, now: Time) -> LaserScan:
+    """What the robot sees, as a message."""
+    message = LaserScan()
+    message.header.stamp, message.header.frame_id = now.to_msg(), "base_link"
+    message.angle_min, message.angle_increment = 0.0, math.tau / RAYS
+    message.angle_max = math.tau * (RAYS - 1) / RAYS
+    message.scan_time = TICK * SCAN_EVERY
+    message.range_min, message.range_max = 0.05, FARTHEST
+    message.ranges = list(state.ranges)
+    return message
+
+
+def _look_around(pose: Pose) -> tuple[float, ...]:
+    angles = tuple(pose.heading + math.tau * ray / RAYS for ray in range(RAYS))
+    return tuple(ROOM.ranges(pose.point, angles))

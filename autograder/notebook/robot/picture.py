@@ -1,0 +1,170 @@
+"""The robot in its two rooms as a picture: SVG in an ``img`` as all live pictures are, with the same in words."""
+
+from __future__ import annotations
+
+import base64
+import math
+from dataclasses import dataclass, replace
+from html import escape
+from typing import TYPE_CHECKING
+
+from autograder.notebook.robot.motion import RADIUS
+from autograder.notebook.robot.room import ROOM
+
+if TYPE_CHECKING:
+    from autograder.notebook.robot.motion import Pose
+    from autograder.notebook.robot.node import RobotState
+    from autograder.notebook.robot.room import Point
+
+_SCALE = 75
+"""Pixels per metre."""
+_MARGIN = 14
+_FOOT = 26
+
+_STYLE = """
+.ground { fill: #fff; }
+.floor { fill: #f2f5f9; }
+.wall { stroke: #212121; stroke-width: 6; stroke-linecap: round; }
+.door { stroke: #2e7d32; stroke-width: 3; stroke-dasharray: 4 6; }
+.ray { stroke: #0b5cad; stroke-opacity: 0.13; }
+.hit { fill: #f57c00; }
+.trail { fill: none; stroke: #0b5cad; stroke-width: 2.5; stroke-dasharray: 1 6; stroke-linecap: round; }
+.glow { fill: #ffd54f; fill-opacity: 0.45; }
+.body { fill: #0b5cad; stroke: #fff; stroke-width: 2; }
+.body.bumped { fill: #b3261e; }
+.nose { fill: #fff; }
+text { font: 13px/1 monospace; fill: #212121; }
+text.name { fill: #2e7d32; font-size: 12px; }
+"""
+
+
+@dataclass(frozen=True, repr=False)
+class RobotPicture:
+    """The robot at one moment.
+
+    Attributes:
+        state: What there is to see.
+        trail: Where it has been, oldest first.
+        before: Where it was in the picture before: it glides from there. None where it stands.
+        glide: Seconds for that.
+    """
+
+    state: RobotState
+    trail: tuple[Point, ...] = ()
+    before: Pose | None = None
+    glide: float = 0.2
+
+    def __repr__(self) -> str:
+        """The picture in words."""
+        pose, velocity = self.state.pose, self.state.velocity
+        room = "the left room" if pose.x < ROOM.door[0] else "the right room"
+        doing = "It stands still."
+        if velocity.forward or velocity.turn:
+            doing = f"It moves at {velocity.forward:.2f} m/s and turns at {velocity.turn:.2f} rad/s."
+        wall = " A wall is in its way." if self.state.bumped else ""
+        lamp = " Its lamp is on." if self.state.lamp else ""
+        return (
+            f"The robot is in {room}, at x = {pose.x:.2f} m, y = {pose.y:.2f} m, "
+            f"heading {math.degrees(pose.heading):.0f}°. {doing}{wall}{lamp}"
+        )
+
+    def _repr_html_(self) -> str:
+        data = base64.b64encode(self.svg().encode()).decode()
+        width, height = _page()
+        # Decoded before it is shown: the picture before it stays until then, so nothing flickers.
+        return (
+            f'<img alt="{escape(repr(self))}" width="{width}" height="{height}" decoding="sync" '
+            f'style="max-width: 100%; height: auto" '
+            f'src="data:image/svg+xml;base64,{data}">'
+        )
+
+    def svg(self) -> str:
+        """The picture alone."""
+        width, height = _page()
+        return (
+            f'<svg xmlns="http://www.w3.org/2000/svg" role="img" width="{width}" height="{height}" '
+            f'viewBox="0 0 {width} {height}"><title>{escape(repr(self))}</title>'
+            f"<style>{_STYLE}{self._gliding()}</style>"
+            f'<rect class="ground" width="100%" height="100%" rx="6"/>'
+            f"{self._rooms()}{self._sight()}{self._way()}{self._robot()}"
+            f'<text x="{_MARGIN}" y="{height - 10}">{escape(self._dials())}</text></svg>'
+        )
+
+    def _rooms(self) -> str:
+        left, top = _at((0, ROOM.height))
+        width, height = ROOM.width * _SCALE, ROOM.height * _SCALE
+        floor = f'<rect class="floor" x="{left}" y="{top}" width="{width}" height="{height}"/>'
+        x, y = ROOM.door
+        door = _line("door", (x, y - 0.6), (x, y + 0.6))
+        beside = _at((x + 0.1, y + 0.4))
+        name = f'<text class="name" x="{beside[0]}" y="{beside[1]}">door</text>'
+        return floor + door + "".join(_line("wall", wall.start, wall.end) for wall in ROOM.walls) + name
+
+    def _sight(self) -> str:
+        pose = self.state.pose
+        drawn = []
+        for ray, distance in enumerate(self.state.ranges):
+            angle = pose.heading + math.tau * ray / len(self.state.ranges)
+            end = (pose.x + distance * math.cos(angle), pose.y + distance * math.sin(angle))
+            x, y = _at(end)
+            drawn.append(_line("ray", pose.point, end) + f'<circle class="hit" cx="{x}" cy="{y}" r="2.5"/>')
+        return "".join(drawn)
+
+    def _way(self) -> str:
+        points = " ".join(f"{x},{y}" for x, y in map(_at, self.trail))
+        return f'<polyline class="trail" points="{points}"/>' if points else ""
+
+    def _robot(self) -> str:
+        radius = RADIUS * _SCALE
+        glow = f'<circle class="glow" r="{2 * radius}"/>' if self.state.lamp else ""
+        body = "body bumped" if self.state.bumped else "body"
+        tip, back, side = 0.75 * radius, -0.3 * radius, 0.55 * radius
+        nose = f"M{tip:.1f},0 L{back:.1f},{-side:.1f} L{back:.1f},{side:.1f} z"
+        return (
+            f'<g class="robot" transform="{_placed(self.state.pose, "")}">{glow}'
+            f'<circle class="{body}" r="{radius}"/><path class="nose" d="{nose}"/></g>'
+        )
+
+    def _gliding(self) -> str:
+        if self.before is None:
+            return ""
+        start, end = (_placed(pose, "px", "deg") for pose in (self.before, _unwound(self.before, self.state)))
+        return (
+            "@media (prefers-reduced-motion: no-preference) { "
+            f".robot {{ animation: glide {self.glide}s linear; }} }} "
+            f"@keyframes glide {{ from {{ transform: {start}; }} to {{ transform: {end}; }} }}"
+        )
+
+    def _dials(self) -> str:
+        pose, velocity = self.state.pose, self.state.velocity
+        wall = " · wall!" if self.state.bumped else ""
+        return (
+            f"x {pose.x:.2f} m · y {pose.y:.2f} m · heading {math.degrees(pose.heading):.0f}° · "
+            f"speed {velocity.forward:.2f} m/s{wall}"
+        )
+
+
+def _page() -> tuple[int, int]:
+    return round(ROOM.width * _SCALE + 2 * _MARGIN), round(ROOM.height * _SCALE + 2 * _MARGIN + _FOOT)
+
+
+def _at(point: Point) -> tuple[float, float]:
+    """From metres, y up, to pixels, y down."""
+    return round(_MARGIN + point[0] * _SCALE, 1), round(_MARGIN + (ROOM.height - point[1]) * _SCALE, 1)
+
+
+def _line(kind: str, start: Point, end: Point) -> str:
+    (x1, y1), (x2, y2) = _at(start), _at(end)
+    return f'<line class="{kind}" x1="{x1}" y1="{y1}" x2="{x2}" y2="{y2}"/>'
+
+
+def _placed(pose: Pose, length: str, angle: str = "") -> str:
+    """A transform; SVG's attribute has no units, CSS has."""
+    x, y = _at(pose.point)
+    return f"translate({x}{length}, {y}{length}) rotate({-math.degrees(pose.heading):.1f}{angle})"
+
+
+def _unwound(before: Pose, state: RobotState) -> Pose:
+    """The pose with the heading that is nearest to the one before: it turns the short way round."""
+    turned = math.remainder(state.pose.heading - before.heading, math.tau)
+    return replace(state.pose, heading=before.heading + turned)

@@ -1,0 +1,107 @@
+"""The robot that runs, its picture, and how both end."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import TYPE_CHECKING
+
+from autograder.notebook.background import replace_named
+from autograder.notebook.executors import spin_in_background, start_ros
+from autograder.notebook.live_picture import LivePicture
+from autograder.notebook.robot.node import RobotNode
+from autograder.notebook.robot.picture import RobotPicture
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+    from autograder.notebook.robot.node import RobotState
+
+NAME = "robot"
+"""Of the background: a second run of the cell takes the place of the first."""
+MINUTES = 30.0
+"""How long a picture is kept up to date."""
+PERIOD = 0.2
+"""Seconds between two pictures, where something has changed."""
+_TRAIL = 150
+"""Places that the trail keeps."""
+_TRAIL_STEP = 0.08
+"""Metres between them."""
+_TELEPORT = 0.5
+"""Metres that it cannot roll from one picture to the next: it was put back to the start."""
+
+
+class LiveRobot:
+    """A robot that runs in the background. Made by ``start_robot``."""
+
+    def __init__(self) -> None:
+        start_ros()
+        replace_named(NAME, keep=())
+        self._node = RobotNode()
+        self._background = spin_in_background(self._node, name=NAME)
+        self._picture: LivePicture | None = None
+
+    @property
+    def running(self) -> bool:
+        """Whether the robot obeys and tells where it is."""
+        return self._background.running
+
+    @property
+    def state(self) -> RobotState:
+        """Where it is, how it moves and what it sees."""
+        return self._node.state
+
+    def show(self) -> None:
+        """Show the robot below this cell; a picture above stops, and keeps what was seen last."""
+        if self._picture is not None:
+            self._picture.stop()
+        self._picture = LivePicture(_RobotPictures(self._node), MINUTES)
+        self._picture.start()
+
+    def stop(self) -> None:
+        """End the robot and its picture. Calling it again does no harm."""
+        self._background.stop()
+        if self._picture is not None:
+            self._picture.stop()
+
+    def __repr__(self) -> str:
+        """One line for the end of a cell."""
+        if self.running:
+            return "The robot runs in the background: it listens to /cmd_vel. .stop() ends it."
+        return "The robot has stopped: run the cell again that started it."
+
+
+class _RobotPictures:
+    def __init__(self, robot: RobotNode) -> None:
+        self.name = "_robot_picture"
+        self.period = PERIOD
+        self._robot = robot
+        self._trail: deque[tuple[float, float]] = deque(maxlen=_TRAIL)
+        self._shown = robot.state
+
+    def first(self) -> RobotPicture:
+        return RobotPicture(self._shown)
+
+    def next(self, _: Node) -> RobotPicture | None:
+        before = self._shown
+        if self._robot.state == before:
+            return None
+        far = self._follow()
+        glides = not far and self._shown.pose != before.pose
+        return RobotPicture(self._shown, tuple(self._trail), before.pose if glides else None, PERIOD)
+
+    def last(self) -> RobotPicture:
+        """It glides nowhere when nobody looks any more."""
+        self._follow()
+        return RobotPicture(self._shown, tuple(self._trail))
+
+    def _follow(self) -> bool:
+        """Take in where it is now; whether that is too far to have rolled there."""
+        state, before = self._robot.state, self._shown
+        far = math.dist(state.pose.point, before.pose.point) > _TELEPORT
+        if far:
+            self._trail.clear()
+        if not self._trail or math.dist(state.pose.point, self._trail[-1]) >= _TRAIL_STEP:
+            self._trail.append(state.pose.point)
+        self._shown = state
+        return far

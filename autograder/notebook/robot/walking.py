@@ -1,0 +1,105 @@
+"""The action ``/walk_to``: the robot walks to a point, tells how far it is still, and can be asked to stop."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING, Any
+
+from rclpy.action import ActionServer, CancelResponse
+from rclpy.task import Future
+from small_robot_interfaces.action import WalkTo
+
+from autograder.notebook.robot.motion import towards
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+    from autograder.notebook.robot.motion import Pose, Velocity
+
+NEAR_ENOUGH = 0.1
+"""Metres from the goal at which it has arrived."""
+TRIES = 5
+"""Steps with a wall in the way after which it gives up."""
+FEEDBACK_EVERY = 5
+"""Steps between two feedback messages."""
+
+
+class _Ending(Enum):
+    ARRIVED = "succeed"
+    CANCELED = "canceled"
+    GAVE_UP = "abort"
+
+
+@dataclass
+class _Walk:
+    goal: Any
+    point: tuple[float, float]
+    ended: Future
+    steps: int = 0
+    blocked: int = 0
+
+
+class Walking:
+    """Serves the action. There is one walk at a time: a newer goal takes the place of an older one.
+
+    Args:
+        node: The robot.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._walk: _Walk | None = None
+        self._pose: Pose | None = None
+        self._server = ActionServer(
+            node,
+            WalkTo,
+            "/walk_to",
+            execute_callback=self._execute,
+            cancel_callback=lambda _: CancelResponse.ACCEPT,
+        )
+
+    def next(self, pose: Pose, bumped: bool) -> Velocity | None:
+        """What to do in the next step; None where there is no way to walk.
+
+        Args:
+            pose: Where the robot is.
+            bumped: Whether a wall was in its way in the last step.
+        """
+        self._pose, walk = pose, self._walk
+        if walk is None:
+            return None
+        distance = math.dist(pose.point, walk.point)
+        walk.blocked = walk.blocked + 1 if bumped else 0
+        if walk.goal.is_cancel_requested:
+            self._end(_Ending.CANCELED)
+        elif distance < NEAR_ENOUGH:
+            self._end(_Ending.ARRIVED)
+        elif walk.blocked >= TRIES:
+            self._end(_Ending.GAVE_UP)
+        else:
+            if walk.steps % FEEDBACK_EVERY == 0:
+                walk.goal.publish_feedback(WalkTo.Feedback(distance=distance))
+            walk.steps += 1
+            return towards(pose, walk.point)
+        return None
+
+    def give_up(self) -> None:
+        """End the walk, where there is one: somebody else drives."""
+        self._end(_Ending.GAVE_UP)
+
+    def _end(self, ending: _Ending) -> None:
+        if self._walk is not None:
+            self._walk.ended.set_result(ending)
+            self._walk = None
+
+    async def _execute(self, goal: Any) -> WalkTo.Result:
+        self.give_up()
+        ended = Future(executor=self._node.executor)
+        self._walk = _Walk(goal, (goal.request.x, goal.request.y), ended)
+        # Awaited and not slept through: the robot goes on, and a request to cancel is heard.
+        ending = await ended
+        getattr(goal, ending.value)()
+        x, y = self._pose.point if self._pose is not None else (math.nan, math.nan)
+        return WalkTo.Result(arrived=ending is _Ending.ARRIVED, x=x, y=y)

@@ -1,0 +1,152 @@
+"""Waits of a subject that need not be as long while it is checked.
+
+A student reads the verdict in the cell, so no time is spent where nothing can happen. What rclpy itself waits is cut to
+the moment at which it ends: ``wait_for_service`` and ``wait_for_server`` sleep a quarter of a second at a time
+(rclpy/client.py and rclpy/action/client.py, "the sleep time is arbitrary"). Where the judge knows that no server will
+come for some seconds, so much of these waits is left out, and told. For an answer that the judge holds back it is told
+how long the subject would wait. What the subject sleeps is shortened only where the scenario asks for it, in a look
+that is confirmed in real time where it fails.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+import weakref
+from typing import TYPE_CHECKING, Any, Self
+
+import rclpy
+import rclpy.action.client
+import rclpy.client
+from rclpy.action import ActionClient
+from rclpy.client import Client
+
+from autograder.messages.checks import Called, Spared, Willing
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import ModuleType, TracebackType
+
+READY_POLL = 0.004
+"""Seconds between two looks whether a server is there."""
+SHORT = 0.02
+"""Seconds of sleep that are never made shorter: short sleeps do not cost much and keep a loop from running hot."""
+FOREVER = 3600.0
+"""Seconds that are told of a wait without a limit."""
+
+_PLACES = (
+    (time, "sleep"),
+    (Client, "wait_for_service"),
+    (ActionClient, "wait_for_server"),
+    (Client, "call_async"),
+    (Client, "call"),
+    (rclpy, "spin_until_future_complete"),
+)
+"""What is replaced, and put back."""
+
+
+class ShorterWaits:
+    """Shortens waits within a ``with`` block; puts everything back at its end.
+
+    Attributes:
+        factor: What a sleep of the subject's is multiplied with; 1.0 leaves it alone.
+        spare: Seconds of waits for a server that are still left out in this run.
+    """
+
+    def __init__(
+        self, is_subject: Callable[[], bool], tell: Callable[..., None] = lambda *_, **__: None
+    ) -> None:
+        """Prepare.
+
+        Args:
+            is_subject: Whether the thread that asks is one of the subject's.
+            tell: Tells the judge a kind of message of this run, with its data.
+        """
+        self._is_subject = is_subject
+        self._tell = tell
+        self.begin_run()
+
+    def begin_run(self, *, factor: float = 1.0, spare: float = 0.0) -> None:
+        """What holds from now on."""
+        self.factor, self.spare = factor, spare
+        self._calls = 0
+        self._futures: weakref.WeakSet[Any] = weakref.WeakSet()
+
+    def __enter__(self) -> Self:
+        self._usual = [(owner, name, getattr(owner, name)) for owner, name in _PLACES]
+        usual = {name: value for _, name, value in self._usual}
+        usual_sleep = usual["sleep"]
+
+        def sleep(seconds: float, /) -> None:
+            if self.factor < 1.0 and seconds > SHORT and self._is_subject():
+                seconds = max(SHORT, seconds * self.factor)
+            usual_sleep(seconds)
+
+        def wait_for_service(client: Any, timeout_sec: float | None = None) -> bool:
+            deadline = self._deadline(timeout_sec, client.service_is_ready, usual_sleep)
+            while client.context.ok() and not client.service_is_ready() and time.monotonic() < deadline:
+                usual_sleep(READY_POLL)
+            return bool(client.service_is_ready())
+
+        def wait_for_server(client: Any, timeout_sec: float | None = None) -> bool:
+            deadline = self._deadline(timeout_sec, client.server_is_ready, usual_sleep)
+            while client._node.context.ok() and not client.server_is_ready() and time.monotonic() < deadline:
+                usual_sleep(READY_POLL)
+            return bool(client.server_is_ready())
+
+        def call_async(client: Any, request: Any) -> Any:
+            future = usual["call_async"](client, request)
+            if self._is_subject():
+                self._calls += 1
+                self._futures.add(future)
+                self._tell(Called)
+            return future
+
+        def call(client: Any, request: Any, timeout_sec: float | None = None) -> Any:
+            if self._is_subject():
+                self._tell_patience(timeout_sec, self._calls + 1)
+            return usual["call"](client, request, timeout_sec)
+
+        def spin_until_future_complete(
+            node: Any, future: Any, executor: Any = None, timeout_sec: float | None = None
+        ) -> None:
+            if future in self._futures:
+                self._tell_patience(timeout_sec, self._calls)
+            usual["spin_until_future_complete"](node, future, executor, timeout_sec)
+
+        _seem_to_be_in(rclpy.client, wait_for_service, call_async, call)
+        _seem_to_be_in(rclpy.action.client, wait_for_server)
+        _seem_to_be_in(rclpy, spin_until_future_complete)
+        new = (sleep, wait_for_service, wait_for_server, call_async, call, spin_until_future_complete)
+        for (owner, name), function in zip(_PLACES, new, strict=True):
+            setattr(owner, name, function)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for owner, name, value in self._usual:
+            setattr(owner, name, value)
+
+    def _deadline(
+        self, timeout_sec: float | None, ready: Callable[[], bool], usual_sleep: Callable[[float], None]
+    ) -> float:
+        """When a wait that begins now is over; what can be left out of it is left out, and told."""
+        left = math.inf if timeout_sec is None else timeout_sec
+        if self.spare > 0.0 and left > 0.0 and self._is_subject() and not ready():
+            spared = min(left, self.spare)
+            self.spare -= spared
+            left -= spared
+            self._tell(Spared, seconds=float(spared))
+            usual_sleep(min(SHORT, spared))
+        return time.monotonic() + left
+
+    def _tell_patience(self, timeout_sec: float | None, call: int) -> None:
+        seconds = FOREVER if timeout_sec is None else timeout_sec
+        self._tell(Willing, seconds=float(seconds), call=call)
+
+
+def _seem_to_be_in(module: ModuleType, *functions: Any) -> None:
+    """Let the stack of a hung subject name the functions as if they were rclpy's, which the judge knows."""
+    for function in functions:
+        function.__code__ = function.__code__.replace(co_filename=str(module.__file__))

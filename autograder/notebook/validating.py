@@ -1,0 +1,64 @@
+"""What nbgrader's Validate says of a check.
+
+Validate runs the notebook and shows, for each check without full marks, the error of its cell. A cell that has none
+is called "Partial credit; passed some but not all", also one with no points at all. So, while it validates, such a
+check ends with an error that says what the card says.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from autograder.cards import wording
+from autograder.cards.readable import one_line, paragraph, wrap
+
+if TYPE_CHECKING:
+    from autograder.verdict import Verdict
+
+WIDTH = 76
+"""Columns of a line: nbgrader cuts what is longer."""
+
+
+class NotFullMarksError(Exception):
+    """A check without full marks, in words for Validate."""
+
+    def __init__(self, verdicts: list[Verdict]) -> None:
+        super().__init__("\n".join(_lines(verdicts)))
+
+    def _render_traceback_(self) -> list[str]:
+        """Called by IPython in place of a traceback, which says nothing here."""
+        return str(self).splitlines()
+
+
+_checked: dict[str, Verdict] = {}
+
+
+def raise_unless_full(verdict: Verdict) -> None:
+    """End a check cell with words that Validate shows; nothing happens where the check has full marks.
+
+    Raises:
+        NotFullMarksError: It has not.
+    """
+    _checked.pop(verdict.exercise, None)
+    _checked[verdict.exercise] = verdict
+    if not verdict.passed:
+        raise NotFullMarksError(list(_checked.values()))
+
+
+def _lines(verdicts: list[Verdict]) -> list[str]:
+    """The last check in detail, and the total of all so far where there are several."""
+    last = verdicts[-1]
+    state = wording.STATE_WORDS[last.state]
+    lines = wrap(f"{one_line(last.title or last.exercise, 120)}: {state}, {wording.score_line(last)}", WIDTH)
+    for criterion in last.criteria:
+        earned = criterion.points if criterion.passed else 0.0
+        mark = "[x]" if criterion.passed else "[ ]"
+        text = f"{one_line(criterion.title, 120)} ({wording.points_of(earned, criterion.points)})"
+        lines += wrap(text, WIDTH, f"  {mark} ", "      ")
+    advice = wording.advice(last)
+    lines += wrap(paragraph(f"{advice.text} {advice.next_step}", 600), WIDTH)
+    if len(verdicts) > 1:
+        score, possible = sum(one.score for one in verdicts), sum(one.max_score for one in verdicts)
+        lines.append(f"The checks of this notebook so far: {wording.points_of(score, possible)}.")
+    lines.append(f'Its card stands below the cell that says check("{last.exercise}", …).')
+    return lines

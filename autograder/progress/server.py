@@ -1,0 +1,151 @@
+"""The course page, served by the Jupyter server that ``./course lab`` starts (``lab_config/`` switches it on).
+
+It needs nothing of JupyterLab: the page is there also where the side panel is not.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jupyter_server.auth.decorator import authorized
+from jupyter_server.base.handlers import JupyterHandler
+from jupyter_server.utils import url_path_join
+from tornado import web
+
+from autograder import course, exercises, journal
+from autograder.cards import certificate
+from autograder.lab import COURSE_PAGE
+from autograder.progress import page, resetting
+from autograder.progress.standing import Standing, standing
+
+if TYPE_CHECKING:
+    from jupyter_server.serverapp import ServerApp
+
+
+class _CourseHandler(JupyterHandler):
+    auth_resource = "contents"
+    _track_activity = False
+    """A page that looks after its points now and then keeps no idle server alive."""
+
+    @property
+    def notebooks(self) -> Path:
+        """The folder that JupyterLab shows."""
+        return Path(self.settings["server_root_dir"]).expanduser()
+
+    @property
+    def journal(self) -> Path:
+        """Its journal."""
+        named = os.environ.get(journal.VARIABLE)
+        return Path(named) if named else journal.place(self.notebooks)
+
+    def standing(self) -> Standing:
+        """How far the student is."""
+        return standing(course.root(), self.notebooks, journal.entries(self.journal))
+
+    def name_in_body(self) -> str:
+        """The notebook that a request is about.
+
+        Raises:
+            HTTPError: It names none.
+        """
+        try:
+            name = json.loads(self.request.body)["notebook"]
+        except (ValueError, TypeError, KeyError):
+            name = None
+        if not isinstance(name, str):
+            raise web.HTTPError(400, reason="a request names its notebook")
+        return name
+
+
+class CoursePage(_CourseHandler):
+    """The map of the course."""
+
+    @web.authenticated
+    @authorized
+    async def get(self) -> None:
+        """Show it."""
+        try:
+            found = await asyncio.to_thread(self.standing)
+            text = page.page_html(found, self.base_url, self.xsrf_token.decode())
+        except (course.NoCourse, course.BrokenChapter, exercises.BrokenExercise, OSError) as error:
+            self.set_status(500)
+            text = page.trouble_html(str(error), self.base_url)
+        self.set_header("Cache-Control", "no-cache")
+        self.finish(text)
+
+
+class ReadNotebook(_CourseHandler):
+    """A notebook marked as read, or no longer so."""
+
+    @web.authenticated
+    @authorized
+    async def put(self) -> None:
+        """Mark it."""
+        self._note("read")
+
+    @web.authenticated
+    @authorized
+    async def delete(self) -> None:
+        """Take the mark away."""
+        self._note("unread")
+
+    def _note(self, kind: Any) -> None:
+        if not journal.note(journal.Entry(kind, self.name_in_body(), time.time()), self.journal):
+            raise web.HTTPError(500, reason="the journal cannot be written")
+        self.set_status(204)
+
+
+class ResetNotebook(_CourseHandler):
+    """A notebook begun anew."""
+
+    @web.authenticated
+    @authorized
+    async def post(self) -> None:
+        """Put the released notebook back, and say what the copy of the student's is called."""
+        name = self.name_in_body()
+        try:
+            done = await asyncio.to_thread(resetting.reset, course.root(), self.notebooks, name, self.journal)
+        except (resetting.CannotReset, course.NoCourse, course.BrokenChapter) as error:
+            self.set_status(409)
+            self.finish({"message": str(error)})
+            return
+        self.finish({"copy": done.copy.name if done.copy else ""})
+
+
+class Certificate(_CourseHandler):
+    """The certificate of a chapter, as a file of its own."""
+
+    @web.authenticated
+    @authorized
+    async def get(self, name: str) -> None:
+        """Hand it out."""
+        found = await asyncio.to_thread(self.standing)
+        for chapter in found.chapters:
+            if chapter.name == name and chapter.finished is not None:
+                self.set_header("Content-Type", "image/svg+xml")
+                self.set_header("Content-Disposition", f'attachment; filename="certificate-{name}.svg"')
+                self.finish(certificate.certificate_svg(chapter.title, chapter.possible, chapter.finished))
+                return
+        raise web.HTTPError(404, reason="there is no such certificate yet")
+
+
+def _jupyter_server_extension_points() -> list[dict[str, str]]:
+    return [{"module": __name__}]
+
+
+def _load_jupyter_server_extension(server: ServerApp) -> None:
+    base = url_path_join(server.web_app.settings["base_url"], COURSE_PAGE)
+    server.web_app.add_handlers(  # type: ignore[no-untyped-call]
+        ".*$",
+        [
+            (f"{base}/?", CoursePage),
+            (f"{base}/read", ReadNotebook),
+            (f"{base}/reset", ResetNotebook),
+            (f"{base}/certificate/([A-Za-z0-9_.-]+)\\.svg", Certificate),
+        ],
+    )

@@ -1,0 +1,209 @@
+"""The map of the course with what a student has reached: chapters, notebooks and exercises in their order."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Literal
+
+from autograder import course, exercises, journal
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from autograder.journal import Entry
+
+State = Literal["new", "begun", "done"]
+
+
+@dataclass(frozen=True)
+class ExerciseStanding:
+    """An exercise, and the best that its checks have found.
+
+    Attributes:
+        id: Such as ``"lab_1_2.talker"``.
+        title: Its name for a person.
+        points: The best check's.
+        possible: Points that it can have.
+    """
+
+    id: str
+    title: str
+    points: float
+    possible: float
+
+
+@dataclass(frozen=True)
+class NotebookStanding:
+    """A notebook of a chapter.
+
+    Attributes:
+        name: Such as ``"lab_1_2"``.
+        title: Its heading.
+        minutes: How long it takes, as its head says; 0 where it says nothing.
+        path: Where it is, from the folder of the notebooks; empty where it is not there.
+        exercises: In the order in which they are done.
+        read: Whether its reader has marked it as read.
+    """
+
+    name: str
+    title: str
+    minutes: int
+    path: str
+    exercises: tuple[ExerciseStanding, ...]
+    read: bool
+
+    @property
+    def points(self) -> float:
+        """Points reached."""
+        return sum(one.points for one in self.exercises)
+
+    @property
+    def possible(self) -> float:
+        """Points that can be reached; 0 for a notebook to read."""
+        return sum(one.possible for one in self.exercises)
+
+    @property
+    def state(self) -> State:
+        """Done with all points, or where there are none, when it is marked as read."""
+        if self.possible == 0:
+            return "done" if self.read else "new"
+        return "done" if self.points >= self.possible else "begun" if self.points > 0 else "new"
+
+
+@dataclass(frozen=True)
+class ChapterStanding:
+    """A chapter.
+
+    Attributes:
+        name: Its folder's.
+        title: For a person.
+        notebooks: In the order in which they are read.
+        finished: When the last of all points was reached, in seconds since the epoch; None before that.
+    """
+
+    name: str
+    title: str
+    notebooks: tuple[NotebookStanding, ...]
+    finished: float | None
+
+    @property
+    def points(self) -> float:
+        """Points reached."""
+        return sum(one.points for one in self.notebooks)
+
+    @property
+    def possible(self) -> float:
+        """Points that can be reached."""
+        return sum(one.possible for one in self.notebooks)
+
+    @property
+    def done(self) -> int:
+        """How many notebooks are done."""
+        return sum(one.state == "done" for one in self.notebooks)
+
+    @property
+    def minutes_left(self) -> int:
+        """Minutes of the notebooks that are not done, as their heads say."""
+        return sum(one.minutes for one in self.notebooks if one.state != "done")
+
+
+@dataclass(frozen=True)
+class Standing:
+    """How far somebody is.
+
+    Attributes:
+        chapters: In their order.
+        following: The notebook to go on with; None where all are done.
+        begun: Whether anything was done yet.
+    """
+
+    chapters: tuple[ChapterStanding, ...]
+    following: NotebookStanding | None
+    begun: bool
+
+
+def standing(root: Path, folder: Path, entries: Sequence[Entry]) -> Standing:
+    """How far somebody is.
+
+    Args:
+        root: The course.
+        folder: That of the notebooks.
+        entries: The journal.
+
+    Raises:
+        BrokenChapter: A chapter's description cannot be used.
+        BrokenExercise: An exercise cannot be used.
+    """
+    reached = journal.best(entries)
+    read = {entry.name: entry.kind == "read" for entry in entries if entry.kind != "check"}
+    chapters = tuple(_chapter(one, folder, reached, read) for one in course.chapters(root))
+    notebooks = [notebook for chapter in chapters for notebook in chapter.notebooks]
+    last = next((entry.notebook for entry in reversed(entries) if entry.kind != "unread"), "")
+    return Standing(chapters, _following(notebooks, last), bool(entries))
+
+
+def _following(notebooks: list[NotebookStanding], last: str) -> NotebookStanding | None:
+    """The first that is not done from the one that was last worked in; else the first of all."""
+    at = next((index for index, one in enumerate(notebooks) if one.name == last), 0)
+    return next((one for one in notebooks[at:] + notebooks[:at] if one.state != "done"), None)
+
+
+def _chapter(
+    chapter: course.Chapter, folder: Path, reached: dict[str, Entry], read: dict[str, bool]
+) -> ChapterStanding:
+    notebooks = []
+    for lab in chapter.labs:
+        title, minutes = _head(lab)
+        known = tuple(_exercise(exercise_id, reached) for exercise_id in chapter.exercises_of(lab))
+        path = notebook_path(chapter, lab, folder)
+        shown = path.relative_to(folder).as_posix() if path.is_file() else ""
+        notebooks.append(NotebookStanding(lab.name, title, minutes, shown, known, read.get(lab.name, False)))
+    finished = journal.finished(chapter, reached)
+    return ChapterStanding(chapter.folder.name, chapter.title, tuple(notebooks), finished)
+
+
+def notebook_path(chapter: course.Chapter, lab: Path, folder: Path) -> Path:
+    """Where a notebook is, or would be, in a folder of notebooks, which may be that of one chapter."""
+    alone = folder / f"{lab.name}.ipynb"
+    return alone if alone.is_file() else folder / chapter.folder.name / f"{lab.name}.ipynb"
+
+
+def _exercise(exercise_id: str, reached: dict[str, Entry]) -> ExerciseStanding:
+    exercise = exercises.get(exercise_id)
+    points = reached[exercise_id].points if exercise_id in reached else 0.0
+    return ExerciseStanding(exercise_id, exercise.title, min(points, exercise.points), exercise.points)
+
+
+def _head(lab: Path) -> tuple[str, int]:
+    """The title of a notebook and its minutes, from its master or from what was released."""
+    for file in (lab / course.LAB, course.released(lab)):
+        if file.is_file():
+            return _read_head(file, file.stat().st_mtime_ns)
+    return lab.name, 0
+
+
+@lru_cache(maxsize=200)
+def _read_head(file: Path, changed: int) -> tuple[str, int]:
+    del changed
+    title, minutes = file.parent.name, 0
+    for line in _lines(file):
+        if line.startswith("# ") and title == file.parent.name:
+            title = line[2:].replace("`", "").strip()
+        if line.startswith("*"):
+            number, _, rest = line[1:].partition(" ")
+            if number.isdecimal() and rest.startswith("minutes"):
+                return title, int(number)
+    return title, minutes
+
+
+def _lines(file: Path) -> Iterator[str]:
+    text = file.read_text(encoding="utf-8")
+    if file.suffix != ".ipynb":
+        yield from text.splitlines()
+        return
+    for cell in json.loads(text)["cells"]:
+        if cell["cell_type"] == "markdown":
+            yield from "".join(cell["source"]).splitlines()

@@ -1,0 +1,73 @@
+"""Builds that a graded notebook asks its grader for, instead of making them in its own box.
+
+What `colcon build` makes depends on the sources alone, so it need not be made a second time for the check, nor for
+another student with the same sources. The box gets it as an archive and sees nothing of the cache that it comes from.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from autograder.messages.lines import Hangup, Lines, NotUnderstood
+from autograder.messages.workspaces import Build as BuildOrder
+from autograder.messages.workspaces import BuildAnswer, BuildDone, BuildFailed, Piece
+from autograder.workspaces.building import artefacts
+from autograder.workspaces.sources import collecting
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from autograder.workspaces.building.result import Build
+    from autograder.workspaces.sources.packages import Package
+
+VARIABLE = "AUTOGRADER_BUILDS"
+"""Names the socket of the grader's side in a graded notebook's environment."""
+LIMIT = 300.0
+"""Seconds of wall time that the grader may take for a build."""
+
+
+def ask(found: Build, chosen: Iterable[Package], install: Path) -> Build | None:
+    """Let the grader build packages of a workspace.
+
+    Args:
+        found: The workspace, looked at.
+        chosen: The packages.
+        install: Where the build is put; not there yet.
+
+    Returns:
+        The build, with its install folder's own path in it wherever it names itself; None where nobody can be asked,
+        or does not want to.
+    """
+    path = os.environ.get(VARIABLE)
+    if not path:
+        return None
+    try:
+        collected = collecting.collect_workspace(found.workspace)
+        lines = Lines.to(path, LIMIT)
+    except (collecting.BadSources, Hangup):
+        return None
+    with contextlib.closing(lines), contextlib.suppress(Hangup, NotUnderstood, artefacts.BadArtefacts):
+        top = found.workspace.resolve().name
+        lines.say(BuildOrder(len(collected), top, [package.name for package in chosen]))
+        for source in collected:
+            lines.say(source)
+        answer: BuildAnswer = lines.hear(BuildAnswer)
+        if isinstance(answer, BuildFailed):
+            return replace(
+                found,
+                seconds=answer.seconds,
+                trouble=answer.trouble,
+                package=answer.package,
+                line=answer.line,
+                log=answer.log,
+            )
+        if isinstance(answer, BuildDone):
+            archive = b"".join(lines.hear(Piece).data for _ in range(answer.pieces))
+            artefacts.unpack(archive, install)
+            artefacts.rename_paths(install, answer.install, str(install))
+            return replace(found, ok=True, install=install, seconds=answer.seconds, reused=answer.reused)
+    return None

@@ -1,0 +1,74 @@
+"""The one line of a build's log that tells why it failed."""
+
+from __future__ import annotations
+
+import re2
+
+_COMPILER = re2.compile(
+    r"(?m)^(?P<file>[^\s:][^:\n]*):(?P<line>\d+):(?:\d+:)? (?:fatal )?error: (?P<what>.*)$"
+)
+_CMAKE = re2.compile(
+    r"(?m)^CMake Error at (?P<file>[^:\n]+):(?P<line>\d+)[^\n]*:\n+(?P<what>[ \t]+\S.*(?:\n[ \t]+\S.*|\n\n  \S.*)*)"
+)
+_CMAKE_PLAIN = re2.compile(r"(?m)^CMake Error: (?P<what>.*)$")
+_PYTHON = re2.compile(r"(?m)^(?P<what>(?:[\w.]*(?:Error|Exception|Invalid\w+)|[\w.]+\.[A-Z]\w+)(?::.*)?)$")
+_PLACE = re2.compile(r'(?m)^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)')
+_SETUPTOOLS = re2.compile(r"(?m)^error: (?P<what>.*)$")
+_NINJA_MAKE = re2.compile(r"^(?:make|gmake|ninja|---|<<<|>>>)")
+
+
+def telling_line(log: str) -> str:
+    """The line that matters of a failed build, with its place where one is named.
+
+    Args:
+        log: What colcon's commands printed, in order.
+
+    Returns:
+        One line; empty only for an empty log.
+    """
+    if found := _COMPILER.search(log):
+        return f"{_short(found['file'])}:{found['line']}: {found['what']}"
+    python = _python(log)
+    if found := _CMAKE.search(log):
+        # What a generator raised is the cause; that CMake's call of it failed is only the consequence.
+        if python and "execute_process" in found["what"]:
+            return python
+        what = " ".join(found["what"].split())
+        return f"{_short(found['file'])}:{found['line']}: {_first_sentences(what)}"
+    if found := _CMAKE_PLAIN.search(log):
+        return found["what"].strip()
+    if python:
+        return python
+    if found := _SETUPTOOLS.search(log):
+        return found["what"].strip()
+    lines = [line.strip() for line in log.splitlines() if line.strip() and not _NINJA_MAKE.match(line)]
+    return lines[-1] if lines else ""
+
+
+def _python(log: str) -> str:
+    # That colcon's or CMake's call of a program failed is only the consequence of what that program says.
+    found = list(_PYTHON.finditer(log))
+    errors = [error for error in found if "CalledProcessError" not in error["what"]] or found
+    if not errors:
+        return ""
+    error = errors[-1]
+    places = [place for place in _PLACE.finditer(log, 0, error.start()) if not _is_a_library(place["file"])]
+    if not places:
+        return error["what"].strip()
+    file, line = places[-1]["file"], places[-1]["line"]
+    # setuptools executes the text of setup.py, without its name.
+    file = "setup.py" if file == "<string>" and "run_setup" in log else file
+    return f"{_short(file)}:{line}: {error['what'].strip()}"
+
+
+def _is_a_library(file: str) -> bool:
+    return "site-packages" in file or "/lib/python3" in file or file.startswith("<frozen")
+
+
+def _short(file: str) -> str:
+    """The last two parts of a path: the package and the file."""
+    return "/".join(file.split("/")[-2:])
+
+
+def _first_sentences(text: str, limit: int = 240) -> str:
+    return text if len(text) <= limit else text[: text.rfind(" ", 0, limit)] + " …"

@@ -1,0 +1,127 @@
+"""What a grader's trusted side lets others do for it: build sources of a student's, run what was built.
+
+Whatever a job does, it only ever yields bytes: output, and the files that it left in its install folder. Nothing of
+it is executed or unpickled by who has asked for it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from pathlib import Path
+
+BUILD_SECONDS = 170.0
+"""Wall time in which a build must have ended; an interface package takes five on two idle cores. Less than an exercise
+waits for it, so that a machine that is too busy is never taken for a build that failed."""
+MAX_LOG_BYTES = 1_000_000
+"""Output that is kept of a build."""
+MAX_ARCHIVE_BYTES = 64_000_000
+"""All that a build may have made, as an archive; an interface package has 1.3 million."""
+
+
+@dataclass(frozen=True)
+class Built:
+    """How a build ended.
+
+    Attributes:
+        returncode: Of colcon; None where it was ended, at a limit or because nobody waits for it any more.
+        output: What it said.
+        archive: Its install folder as a tar file, made once nothing of the build was alive any more; None where
+            it failed.
+    """
+
+    returncode: int | None
+    output: bytes
+    archive: bytes | None = field(default=None, repr=False)
+    late: bool = False
+    """Whether it was ended because it took too long, which may be the machine's fault."""
+
+
+class Program(Protocol):
+    """A program that runs."""
+
+    pid: int
+    """The process that all its processes are below of, as the host counts."""
+
+    def read(self, within: float) -> bytes | None:
+        """What it has said meanwhile; None for nothing yet, no bytes at its end.
+
+        Args:
+            within: Seconds to wait for something.
+        """
+        ...
+
+    def exit_code(self) -> int | None:
+        """How it ended, once it has; negative for a signal."""
+        ...
+
+    def end(self) -> None:
+        """Kill it and all that it has started; may be called twice."""
+        ...
+
+
+class Jobs(Protocol):
+    """Somebody who builds and runs. For one submission."""
+
+    @property
+    def environment(self) -> Mapping[str, str]:
+        """The whole environment of a job, before anything is added to it."""
+        ...
+
+    def place(self, name: str, entry: Path) -> Path:
+        """Where jobs see a folder of the cache of builds.
+
+        Args:
+            name: What stands for the kind of workspace, such as ``"ros2_ws"``: each has a place of its own.
+            entry: The folder.
+        """
+        ...
+
+    def tree(self, sources: Path) -> Path:
+        """Where programs see the folder with what was submitted."""
+        ...
+
+    def build(
+        self,
+        name: str,
+        entry: Path,
+        command: Sequence[str],
+        variables: Mapping[str, str],
+        cancelled: Callable[[], bool],
+        hidden: Sequence[Path],
+    ) -> Built:
+        """Run colcon.
+
+        Args:
+            name: See :meth:`place`.
+            entry: Holds ``src``, which the build may read. All that it writes is gone afterwards, but for what is
+                in the archive: ``install`` of the place.
+            command: Names everything as it is seen from the job.
+            variables: More variables of its environment.
+            cancelled: Asked now and then; the build is ended when it says so.
+            hidden: Files and folders of the environment that the build must not find.
+        """
+        ...
+
+    def start(
+        self,
+        command: Sequence[str],
+        environment: Mapping[str, str],
+        *,
+        sources: Path,
+        entries: Mapping[str, Path],
+        hidden: Sequence[Path],
+    ) -> Program:
+        """Run a program where the judge can see it on the wire, and the notebook cannot.
+
+        Args:
+            command: Names everything as it is seen from the job.
+            environment: Its whole environment.
+            sources: What was submitted; seen at :meth:`tree`, which is where it starts.
+            entries: Builds that it may read, by the names of their places.
+            hidden: See :meth:`build`.
+        """
+        ...

@@ -1,0 +1,100 @@
+"""Jobs without boxes, for a grader that was told to go on without a sandbox.
+
+Reports are made as with boxes, but nothing keeps a build or a program away from who makes them.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import subprocess
+import tarfile
+import tempfile
+from typing import TYPE_CHECKING
+
+from autograder.workspaces.grading.jobs import BUILD_SECONDS, MAX_LOG_BYTES, Built
+from autograder.workspaces.running.own_session import OwnSession
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from pathlib import Path
+
+
+class PlainJobs:
+    """Implements :class:`autograder.workspaces.grading.jobs.Jobs`.
+
+    Args:
+        environment: The whole environment of what is run.
+    """
+
+    def __init__(self, environment: Mapping[str, str]) -> None:
+        self._environment = dict(environment)
+
+    @property
+    def environment(self) -> Mapping[str, str]:
+        """What was given."""
+        return self._environment
+
+    def place(self, name: str, entry: Path) -> Path:
+        """The entry itself."""
+        del name
+        return entry
+
+    def tree(self, sources: Path) -> Path:
+        """The sources themselves."""
+        return sources
+
+    def build(
+        self,
+        name: str,
+        entry: Path,
+        command: Sequence[str],
+        variables: Mapping[str, str],
+        cancelled: Callable[[], bool],
+        hidden: Sequence[Path],
+    ) -> Built:
+        """Build in the entry, pack what came of it and remove that again."""
+        del name, hidden
+        environment = {**self._environment, "COLCON_DEFAULTS_FILE": os.devnull, **variables}
+        program = PlainProgram(command, environment, entry)
+        try:
+            output, late = program.collect(BUILD_SECONDS, MAX_LOG_BYTES, cancelled)
+            code = program.exit_code()
+        finally:
+            program.end()
+        if code != 0:
+            return Built(code, output, late=late)
+        archive = io.BytesIO()
+        with tarfile.open(fileobj=archive, mode="w") as tar:
+            tar.add(entry / "install", arcname=".")
+        for made in ("install", "build", "log"):
+            subprocess.run(["rm", "-rf", str(entry / made)], check=True)
+        return Built(0, output, archive.getvalue())
+
+    def start(
+        self,
+        command: Sequence[str],
+        environment: Mapping[str, str],
+        *,
+        sources: Path,
+        entries: Mapping[str, Path],
+        hidden: Sequence[Path],
+    ) -> PlainProgram:
+        """Start it as a process."""
+        del entries, hidden
+        return PlainProgram(command, environment, sources)
+
+
+class PlainProgram(OwnSession):
+    """Implements :class:`autograder.workspaces.grading.jobs.Program`: its home and temporary files are its own."""
+
+    def __init__(self, command: Sequence[str], environment: Mapping[str, str], cwd: Path) -> None:
+        self._home = tempfile.TemporaryDirectory(prefix="job-", ignore_cleanup_errors=True)
+        folders = dict.fromkeys(("HOME", "TMPDIR", "ROS_LOG_DIR"), self._home.name)
+        super().__init__(command, {**environment, **folders}, cwd)
+
+    def end(self, polite: float = 0.0) -> None:
+        """Kill it, and take its files away."""
+        super().end(polite)
+        self.output.close()
+        self._home.cleanup()

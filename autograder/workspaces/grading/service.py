@@ -1,0 +1,143 @@
+"""The grader's side of checks of workspaces and launch files: told what was submitted, it builds, runs and reports.
+
+It lives in the grader's worker, outside of all boxes, and has two sockets, each a Unix socket:
+
+* The **judge's** socket, which the student's box cannot see. One connection is one check. The judge sends what the
+  notebook has sent as its sources; this side writes them down, reads them, has them built and run, and tells the judge
+  what there is, what came of the build, how processes were started, and what the programs say.
+* The **notebook's** socket, for builds alone: what `colcon build` would make in the box, made outside of it once.
+
+What is said on both is in :mod:`autograder.messages.workspaces`.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+import socket
+import tempfile
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Self
+
+from autograder.messages.lines import Hangup, Lines
+from autograder.messages.workspaces import NotBuilt, Trouble
+from autograder.workspaces.building.server import serve_builds
+from autograder.workspaces.building.trusted import TrustedBuilds
+from autograder.workspaces.grading.session import Session
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from types import TracebackType
+
+    from autograder.workspaces.grading.jobs import Jobs
+
+MAX_BUILDS = 20
+"""Builds that one notebook may ask for; after that colcon does its work in the box."""
+
+
+@dataclass(frozen=True)
+class ServiceSockets:
+    """Where the service listens.
+
+    Attributes:
+        judge: For the judge's box alone.
+        notebook: For the student's box; None for no such socket.
+    """
+
+    judge: Path
+    notebook: Path | None
+
+
+class WorkspaceService:
+    """Serves one submission; leaving the context ends all that runs for it.
+
+    Args:
+        sockets: Sockets to be made; their folders are there.
+        jobs: Builds and runs.
+        builds: The cache of builds; see :func:`autograder.workspaces.building.cache.graders_root`.
+        variables: What programs have in their environment besides, such as how ROS is to behave.
+        folder: Ours alone, for sources.
+    """
+
+    def __init__(
+        self, sockets: ServiceSockets, jobs: Jobs, builds: Path, variables: Mapping[str, str], folder: Path
+    ) -> None:
+        self._jobs = jobs
+        self._builds = TrustedBuilds(builds, jobs)
+        self._variables = variables
+        self._folder = Path(tempfile.mkdtemp(prefix="sources-", dir=folder))
+        self._left = threading.Semaphore(MAX_BUILDS)
+        self._conversations: set[Lines] = set()
+        self._threads: list[threading.Thread] = []
+        self._closing = threading.Event()
+        self._listeners = [self._open(sockets.judge, self._serve_judge)]
+        if sockets.notebook is not None:
+            self._listeners.append(self._open(sockets.notebook, self._serve_notebook))
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Hang up on everybody, and end what runs for them."""
+        self._closing.set()
+        for listener in self._listeners:
+            with contextlib.suppress(OSError):
+                listener.shutdown(socket.SHUT_RDWR)
+            listener.close()
+        for conversation in list(self._conversations):
+            conversation.close()
+        for thread in self._threads:
+            thread.join()
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+    def _open(self, path: Path, serve: Callable[[Lines, Path], None]) -> socket.socket:
+        listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        listener.bind(str(path))
+        path.chmod(0o600)
+        listener.listen(16)
+        thread = threading.Thread(target=self._accept, args=(listener, serve), daemon=True)
+        self._threads.append(thread)
+        thread.start()
+        return listener
+
+    def _accept(self, listener: socket.socket, serve: Callable[[Lines, Path], None]) -> None:
+        """One conversation after the other: a check is alone, and so is a build."""
+        while not self._closing.is_set():
+            try:
+                connection, _ = listener.accept()
+            except OSError:
+                return
+            lines = Lines(connection)
+            self._conversations.add(lines)
+            if self._closing.is_set():
+                lines.close()
+                return
+            folder = Path(tempfile.mkdtemp(prefix="c-", dir=self._folder))
+            try:
+                serve(lines, folder)
+            except Hangup:
+                pass
+            except Exception as error:
+                with contextlib.suppress(Hangup):
+                    lines.say(Trouble(f"{type(error).__name__}: {error}"[:500]))
+            finally:
+                lines.close()
+                self._conversations.discard(lines)
+                shutil.rmtree(folder, ignore_errors=True)
+
+    def _serve_judge(self, lines: Lines, folder: Path) -> None:
+        with Session(lines, self._jobs, self._builds, self._variables, folder) as session:
+            session.serve()
+
+    def _serve_notebook(self, lines: Lines, folder: Path) -> None:
+        if not self._left.acquire(blocking=False):
+            lines.say(NotBuilt("this notebook has had enough builds"))
+            return
+        serve_builds(lines, self._builds, folder, self._closing.is_set)

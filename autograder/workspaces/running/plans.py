@@ -1,0 +1,154 @@
+"""What an exercise does with a workspace: which packages it needs, what must be there then, and what is run."""
+
+from __future__ import annotations
+
+import functools
+import os
+import shutil
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder import course
+from autograder.kit.runners import RunsProgram, ServesInterface
+from autograder.workspaces.sources.finding import WORKSPACE
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from autograder.workspaces.building.result import Build
+    from autograder.workspaces.sources.packages import Package
+
+COURSE_PACKAGE = "my_robot_pkg"
+"""The course's own programs, which are launched where a student has none."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """An exercise about a workspace.
+
+    Attributes:
+        targets: The packages that it needs, by name; none of them means all that there are.
+        missing: What it asks for and the build has not brought; empty where all is there.
+        command: What is run, in the environment of the build. Asked for only where nothing is missing.
+    """
+
+    targets: Callable[[Build], Iterable[str]]
+    missing: Callable[[Build], str]
+    command: Callable[[Build], Sequence[str]]
+
+
+def plan_for(runner: RunsProgram | ServesInterface) -> Plan:
+    """What is needed of a workspace for what an exercise runs in it."""
+    return _program_plan(runner) if isinstance(runner, RunsProgram) else _interface_plan(runner)
+
+
+def _program_plan(runner: RunsProgram) -> Plan:
+    package, program = runner.package, runner.program
+
+    def missing(made: Build) -> str:
+        programs = [prefix / "lib" / package / program for prefix in made.prefixes if prefix.name == package]
+        if not programs:
+            return package
+        return "" if programs[0].is_file() else program
+
+    return Plan(
+        targets=lambda found: [known.name for known in found.packages if known.name == package],
+        missing=missing,
+        command=lambda _: [ros2(), "run", package, program],
+    )
+
+
+def _interface_plan(runner: ServesInterface) -> Plan:
+    interface = Path(runner.file).stem
+
+    def holders(found: Build) -> list[Package]:
+        return [p for p in found.packages if any(file.stem == interface for file in p.interface_files)]
+
+    def generated(made: Build) -> list[Package]:
+        module = f"_{_snake(interface)}.py"
+        return [
+            package
+            for package in holders(made)
+            for prefix in made.prefixes
+            if prefix.name == package.name and any(prefix.rglob(f"{package.name}/srv/{module}"))
+        ]
+
+    def probe(made: Build) -> Sequence[str]:
+        service_type = f"{generated(made)[0].name}/srv/{interface}"
+        return [sys.executable, "-m", "autograder.workspaces.running.probe", service_type, runner.service]
+
+    return Plan(
+        targets=lambda found: [package.name for package in holders(found)],
+        missing=lambda made: "" if generated(made) else runner.file,
+        command=probe,
+    )
+
+
+def launch_targets(file: Path) -> Callable[[Build], Iterable[str]]:
+    """The packages of a workspace whose names stand in a launch file.
+
+    Args:
+        file: The launch file, in whatever language.
+    """
+    words = set(re2.findall(r"\w+", file.read_text(encoding="utf-8", errors="replace")))
+    return lambda found: [package.name for package in found.packages if package.name in words]
+
+
+def lacks_programs(file: Path, made: Build, course_build: Build) -> bool:
+    """Whether a launch file names programs of the course's package that the student's has not got.
+
+    Who has written talker and listener in the notebooks alone has no programs to launch.
+    """
+    words = set(re2.findall(r"\w+", file.read_text(encoding="utf-8", errors="replace")))
+    return bool(words & _programs(course_build) - _programs(made))
+
+
+def reference_workspace() -> Path:
+    """The workspace with the course's own talker and listener; not there in what students are handed."""
+    return course.root() / "solutions" / WORKSPACE
+
+
+def reference_package() -> Path:
+    """The package with the course's own talker and listener."""
+    return reference_workspace() / "src" / COURSE_PACKAGE
+
+
+@functools.cache
+def course_interfaces() -> tuple[Path, ...]:
+    """All files and folders of the interfaces that come with the course.
+
+    Whoever is to make interfaces must not find these: copied, they would look like generated ones.
+    """
+    patterns = [
+        pattern
+        for package in course.interfaces()
+        for pattern in (
+            f"share/{package}",
+            f"include/{package}",
+            f"share/ament_index/resource_index/*/{package}",
+            f"lib/lib{package}__*.so",
+            f"lib/python*/*-packages/{package}*",
+        )
+    ]
+    prefixes = {sys.prefix, *os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)} - {""}
+    return tuple(
+        sorted(found for prefix in prefixes for pattern in patterns for found in Path(prefix).glob(pattern))
+    )
+
+
+def ros2() -> str:
+    """The ``ros2`` command of this environment."""
+    beside = Path(sys.executable).with_name("ros2")
+    return str(beside) if beside.exists() else shutil.which("ros2") or "ros2"
+
+
+def _programs(made: Build) -> set[str]:
+    return {program.name for prefix in made.prefixes for program in (prefix / "lib" / prefix.name).glob("*")}
+
+
+def _snake(name: str) -> str:
+    return "".join(f"_{c.lower()}" if c.isupper() and i else c.lower() for i, c in enumerate(name))

@@ -1,0 +1,66 @@
+"""The processes below a process, as Linux lists them."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+from pathlib import Path
+
+_PR_SET_PDEATHSIG = 1
+
+
+def descendants(pid: int) -> list[int]:
+    """Every process that a process has started and these have started, as far as they live."""
+    try:
+        tasks = list(Path(f"/proc/{pid}/task").iterdir())
+        children = [int(word) for task in tasks for word in (task / "children").read_text().split()]
+    except OSError:
+        return []
+    return children + [below for child in children for below in descendants(child)]
+
+
+def arguments_of(pid: int) -> list[str]:
+    """The words that a process was started with; none where it is gone."""
+    try:
+        words = Path(f"/proc/{pid}/cmdline").read_bytes().rstrip(b"\0")
+    except OSError:
+        return []
+    return [word.decode("utf-8", "replace") for word in words.split(b"\0")] if words else []
+
+
+def own_id(pid: int) -> int:
+    """The id by which a process knows itself, which is another one in a PID namespace; 0 where it is gone."""
+    return int((_status(pid, "NSpid") or ["0"])[-1])
+
+
+def parent_of(pid: int) -> int:
+    """The process that started this one, or has adopted it; 0 where it is gone."""
+    return int((_status(pid, "PPid") or ["0"])[0])
+
+
+def started_at(pid: int) -> str:
+    """When a process began, in clock ticks since the system did: tells it from a later one of its number."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[19]
+    except OSError:
+        return ""
+
+
+def _status(pid: int, name: str) -> list[str]:
+    """The words of a line of proc(5)'s status; none where there is no such line."""
+    try:
+        lines = Path(f"/proc/{pid}/status").read_text().splitlines()
+    except OSError:
+        return []
+    return next((line.split()[1:] for line in lines if line.startswith(f"{name}:")), [])
+
+
+def tell(line: str) -> None:
+    """Print a line in one piece: what else writes to the same pipe cannot come between it and its end."""
+    os.write(1, f"{line}\n".encode("utf-8", "replace"))
+
+
+def end_with_the_parent() -> None:
+    """Get SIGTERM when the process that started this one is gone; what this one becomes by exec gets it, too."""
+    ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)

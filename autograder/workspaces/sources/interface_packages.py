@@ -1,0 +1,127 @@
+"""Packages that hold interface definitions and nothing else: what of their texts makes no difference to a build.
+
+Students write the same three lines with other comments and other spaces. A text is only simplified where it is certain
+that it means the same; where it is not, it stays as it is, and the package is built for itself.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree
+
+import re2
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from autograder.workspaces.sources.packages import Package
+
+DEFINITIONS = (".msg", ".srv", ".action")
+_PROSE = ("LICENSE", "README.md", "README.rst", "CHANGELOG.rst")
+"""Files that are for people."""
+_FOR_PEOPLE = {"description", "maintainer", "author", "license", "url"}
+"""Elements of package.xml that are for people; what is needed of them is put back."""
+
+
+def holds_only_interfaces(package: Package) -> bool:
+    """Whether nothing but interfaces can come of a package: its files are those of an interface package."""
+    files = [path for path in package.folder.rglob("*") if path.is_file()]
+    known = {"package.xml", "CMakeLists.txt", *_PROSE}
+    return (
+        package.build_type == "ament_cmake"
+        and any(path.suffix in DEFINITIONS for path in files)
+        and all(
+            path.suffix in DEFINITIONS or path.relative_to(package.folder).as_posix() in known
+            for path in files
+        )
+        and "_cpp" not in package.cmake_lists
+    )
+
+
+def simplify(folder: Path) -> None:
+    """Rewrite the texts of such a package, so that those that mean the same are the same.
+
+    Args:
+        folder: A copy of its folder.
+    """
+    for path in folder.rglob("*"):
+        if path.name in _PROSE and path.parent == folder:
+            path.write_text("")
+        elif path.suffix in DEFINITIONS:
+            _rewrite(path, simple_definition)
+        elif path.name == "CMakeLists.txt":
+            _rewrite(path, simple_cmake)
+        elif path.name == "package.xml":
+            _rewrite(path, simple_package_xml)
+
+
+def _rewrite(path: Path, simple: Callable[[str], str]) -> None:
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return
+    path.write_text(simple(text), encoding="utf-8")
+
+
+def simple_definition(text: str) -> str:
+    """A definition without comments and needless spaces; a line with a quoted text in it stays as it is."""
+    lines = []
+    for line in text.splitlines():
+        bare = line if re2.search("[\"']", line) else " ".join(line.partition("#")[0].split())
+        if bare.strip():
+            lines.append(bare)
+    return "\n".join(lines) + "\n"
+
+
+def simple_cmake(text: str) -> str:
+    """A CMakeLists.txt without comments and needless spaces; the text itself where it does more than plain commands.
+
+    See cmake-language(7): bracket arguments and comments, escapes, and quoted texts of several lines are left alone.
+    """
+    if re2.search(r"\\|\[=*\[", text) or any(line.count('"') % 2 for line in text.splitlines()):
+        return text
+    found = list(re2.finditer(r'"[^"\n]*"|#[^\n]*|[()]|\n|[^\s()"#]+', text))
+    for one, other in pairwise(found):
+        if one.end() == other.start() and not any(re2.match(r"[()#\n]", word[0]) for word in (one, other)):
+            return text  # a quoted text in the middle of a word
+    words = [word[0] for word in found if not word[0].startswith("#")]
+    out, depth = "", 0
+    for word in words:
+        if word == "\n" and depth > 0:
+            continue
+        if word == ")":
+            depth -= 1
+            out = out.rstrip(" ") + ")"
+        elif word == "(":
+            depth += 1
+            out = out.rstrip(" ") + "("
+        elif word == "\n":
+            out = out.rstrip(" \n") + "\n"
+        else:
+            out += ("" if out.endswith(("(", "\n", " ")) or not out else " ") + word
+    return out.strip() + "\n"
+
+
+def simple_package_xml(text: str) -> str:
+    """A package.xml with the elements that a build looks at, in an order of their own."""
+    try:
+        root = ElementTree.fromstring(text)
+    except ElementTree.ParseError:
+        return text
+    kept = [element for element in root if element.tag not in _FOR_PEOPLE]
+    if any(len(element) for element in kept if element.tag != "export"):
+        return text
+    lines = sorted(_element(element) for element in kept)
+    for_people = '<description>-</description><maintainer email="nobody@example.com">-</maintainer><license>-</license>'
+    attributes = "".join(f' {name}="{value}"' for name, value in sorted(root.attrib.items()))
+    return "\n".join([f"<package{attributes}>", for_people, *lines, "</package>"]) + "\n"
+
+
+def _element(element: ElementTree.Element) -> str:
+    element.tail = None
+    for part in element.iter():
+        part.text = part.text.strip() if part.text else None
+        part.tail = None
+    return ElementTree.tostring(element, encoding="unicode")

@@ -1,0 +1,234 @@
+"""The packages in a workspace's ``src`` folder, as their files describe them, and what makes two sources the same."""
+
+from __future__ import annotations
+
+import ast
+import functools
+import hashlib
+import os
+import shutil
+import stat
+import sys
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree
+
+import re2
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+MAX_FILES = 5_000
+MAX_BYTES = 100_000_000
+"""Files and bytes of sources beyond which something else than a workspace was named."""
+FORMAT = "1"
+"""Part of every key: change it when what is kept of a build changes."""
+
+NOT_SOURCES = {"__pycache__", ".git", ".ipynb_checkpoints", ".pytest_cache", ".mypy_cache", ".ruff_cache"}
+"""Folders that tools leave among sources."""
+_HIDING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
+_ENVIRONMENT = ("CC", "CXX", "CFLAGS", "CXXFLAGS", "LDFLAGS", "CMAKE_GENERATOR", "RMW_IMPLEMENTATION")
+
+
+class BadPackage(ValueError):
+    """A package.xml that cannot be used, or sources that are no workspace's. The message is for a student."""
+
+
+@dataclass(frozen=True)
+class Package:
+    """A package of the workspace.
+
+    Attributes:
+        name: The name in its package.xml.
+        folder: Where it is.
+        build_type: Such as ``"ament_python"``; empty where package.xml names none.
+        dependencies: Everything it depends on, and the groups it is a member of.
+    """
+
+    name: str
+    folder: Path
+    build_type: str
+    dependencies: tuple[str, ...] = ()
+
+    @property
+    def interface_files(self) -> tuple[Path, ...]:
+        """Its .msg, .srv and .action files, as paths inside the package."""
+        found = (file for kind in ("msg", "srv", "action") for file in self.folder.rglob(f"*.{kind}"))
+        return tuple(sorted(file.relative_to(self.folder) for file in found if file.is_file()))
+
+    @property
+    def cmake_lists(self) -> str:
+        """The text of its CMakeLists.txt without comments; empty where there is none."""
+        return re2.sub(r"#.*", "", _text(self.folder / "CMakeLists.txt"))
+
+    @property
+    def programs(self) -> tuple[str, ...]:
+        """The console scripts that its setup.py (or setup.cfg) names, as they stand there.
+
+        Read, not run: texts of the form ``name = module:function`` anywhere in setup.py.
+        """
+        return tuple(_entry_points(_text(self.folder / "setup.py")))
+
+
+def find_packages(src: Path) -> list[Package]:
+    """The packages below ``src`` that colcon would build, in the order of their names.
+
+    Raises:
+        BadPackage: A package.xml cannot be read.
+    """
+    packages, unusable = survey(src)
+    if unusable:
+        raise BadPackage(unusable[0])
+    return packages
+
+
+def survey(src: Path) -> tuple[list[Package], list[str]]:
+    """The packages below ``src`` in the order of their names, and what is wrong with those that cannot be used."""
+    packages, unusable = [], []
+    for file in sorted(_package_files(src)):
+        try:
+            packages.append(_package(file))
+        except BadPackage as error:
+            unusable.append(str(error))
+    return sorted(packages, key=lambda package: package.name), unusable
+
+
+def needed(packages: Iterable[Package], targets: Iterable[str]) -> list[Package]:
+    """The targets and all that they depend on, as far as it is among the packages; in the packages' order."""
+    there = list(packages)
+    wanted, waiting = set[str](), list(targets)
+    while waiting:
+        name = waiting.pop()
+        if name not in wanted:
+            wanted.add(name)
+            waiting += [other for package in there if package.name == name for other in package.dependencies]
+    return [package for package in there if package.name in wanted]
+
+
+def key(src: Path, packages: Iterable[Package] | None = None) -> str:
+    """What a build of these sources is known by: their bytes, and everything that builds them.
+
+    Args:
+        src: Where the sources are.
+        packages: Those that are built; None for all there is in ``src``.
+
+    Raises:
+        BadPackage: There is far too much in ``src``.
+    """
+    digest = hashlib.sha256("\0".join((FORMAT, *toolchain())).encode())
+    total = 0
+    folders = [src] if packages is None else sorted(package.folder for package in packages)
+    for number, file in enumerate(file for folder in folders for file in _files(folder)):
+        content = file.read_bytes()
+        total += len(content)
+        if number >= MAX_FILES or total > MAX_BYTES:
+            raise BadPackage(
+                f"{src} holds more than {MAX_FILES} files or {MAX_BYTES // 10**6} MB: is it a workspace?"
+            )
+        executable = bool(file.stat().st_mode & stat.S_IXUSR)
+        name = file.relative_to(src).as_posix().encode("utf-8", "surrogateescape")
+        digest.update(b"%d %d %d\0" % (len(name), executable, len(content)) + name + content)
+    return digest.hexdigest()
+
+
+def toolchain() -> tuple[str, ...]:
+    """What else decides what a build brings: the interpreter, the build tools, the compiler and the underlay."""
+    tools = ("colcon-core", "colcon-cmake", "colcon-ros", "setuptools", "cmake")
+    programs = [
+        shutil.which(os.environ.get(name) or usual) or "" for name, usual in (("CC", "cc"), ("CXX", "c++"))
+    ]
+    variables = [f"{name}={os.environ.get(name, '')}" for name in _ENVIRONMENT]
+    return (
+        sys.version,
+        sys.prefix,
+        *(f"{tool} {_version(tool)}" for tool in tools),
+        *(f"{program} {_state(program)}" for program in programs),
+        f"ros {_state(str(Path(sys.prefix, 'share', 'rosidl_default_generators', 'package.xml')))}",
+        os.environ.get("ROS_DISTRO", ""),
+        *variables,
+    )
+
+
+@functools.cache
+def _version(distribution: str) -> str:
+    try:
+        return metadata.version(distribution)
+    except metadata.PackageNotFoundError:
+        return ""
+
+
+def _state(file: str) -> str:
+    try:
+        found = Path(file).stat()
+    except OSError:
+        return ""
+    return f"{found.st_size} {found.st_mtime_ns}"
+
+
+def _files(src: Path) -> Iterator[Path]:
+    for root, folders, names in os.walk(src, followlinks=False):
+        folders[:] = sorted(name for name in folders if name not in NOT_SOURCES)
+        for name in sorted(names):
+            file = Path(root, name)
+            if not name.endswith(".pyc") and file.is_file():
+                yield file
+
+
+def _package_files(src: Path) -> Iterator[Path]:
+    for root, folders, names in os.walk(src):
+        if any(name in names for name in _HIDING):
+            folders[:] = []
+        elif "package.xml" in names:
+            folders[:] = []  # colcon does not look for packages inside packages
+            yield Path(root, "package.xml")
+
+
+def _package(file: Path) -> Package:
+    shown = f"{file.parent.name}/package.xml"
+    try:
+        root = ElementTree.fromstring(file.read_bytes())
+    except ElementTree.ParseError as error:
+        raise BadPackage(f"{shown} is not valid XML: {error}") from error
+    name = (root.findtext("name") or "").strip()
+    if not name:
+        raise BadPackage(f"{shown} has no <name>")
+    _validate(file, shown)
+    depends = [
+        child.text.strip() for child in root if child.text and re2.search("depend|member_of", child.tag)
+    ]
+    build_type = (root.findtext("export/build_type") or "").strip()
+    return Package(name, file.parent, build_type, tuple(depends))
+
+
+def _validate(file: Path, shown: str) -> None:
+    # colcon takes a package whose package.xml is not valid for a plain Python package, without a word.
+    try:
+        from catkin_pkg.package import InvalidPackage, parse_package
+    except ImportError:
+        return
+    try:
+        parse_package(file)
+    except InvalidPackage as error:
+        what = re2.sub(r"^Error\(s\) in package '[^']*':\s*", "", str(error)).strip()
+        raise BadPackage(f"{shown} is not valid: {what}") from error
+
+
+def _entry_points(setup: str) -> Iterator[str]:
+    try:
+        tree = ast.parse(setup)
+    except SyntaxError:
+        return
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            for line in node.value.splitlines():
+                if re2.fullmatch(r"\s*[\w.-]+\s*=\s*[\w.]+\s*:\s*[\w.]+\s*", line):
+                    yield line.strip()
+
+
+def _text(file: Path) -> str:
+    try:
+        return file.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return ""

@@ -1,0 +1,91 @@
+"""A latched topic: what was published before anybody listened is heard by those who come late."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from autograder.kit.draft import Draft
+from autograder.kit.model import Bench, Finding
+from autograder.kit.recipes.own_scenario import OwnScenario
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Part
+
+LATE = 1.0
+"""Seconds of the subject's time after which the judge begins to listen."""
+PATIENCE = 3.0
+"""Seconds in which the message of before must have come."""
+
+
+def scenario(bench: Bench) -> None:
+    """Let the subject publish, and begin to listen only then."""
+    topic, type_name = bench.reference.only("publisher")
+    bench.part("coming late")
+    bench.start()
+    if bench.await_endpoint("publisher", topic):
+        bench.release()
+        bench.run_time(LATE)
+        bench.listen(topic, type_name, latched=True)
+        bench.wait_until(
+            lambda evidence: bool(evidence.main.of("mismatch") or messages(evidence.main)), PATIENCE
+        )
+        bench.settle()
+        if not messages(bench.seen()):
+            bench.note_whether_it_spins()
+    bench.stop()
+
+
+map_server = Draft(
+    "latched.map_server",
+    "A latched topic · The map server",
+    "Publish the name of the map once, for late listeners too.",
+    subject := OwnScenario(scenario, "publisher"),
+)
+map_server.asks("topic", 2, "Publishes on the right topic and type", subject.is_there)
+
+
+def messages(seen: Part) -> list[str]:
+    """The texts that the late listener heard."""
+    return [str(event.data["fields"]["data"]) for event in seen.of("message")]
+
+
+@map_server.criterion("late", 5, "Is heard by who comes late")
+def late(seen: Part, _: Part) -> Finding:
+    """The late listener hears something."""
+    heard = messages(seen)
+    return Finding(bool(heard), "the message of before", f"“{heard[0]}”" if heard else "nothing")
+
+
+@map_server.criterion("text", 3, "Says the name of the map")
+def text(seen: Part, expected: Part) -> Finding:
+    """The late listener hears the reference's text, and nothing else."""
+    heard, wanted = messages(seen), messages(expected)
+    seen_text = ", ".join(f"“{said}”" for said in heard[:3]) or "nothing"
+    return Finding(
+        set(heard) == set(wanted) and bool(heard), f"“{wanted[0]}”" if wanted else "a text", seen_text
+    )
+
+
+@map_server.mistake(
+    "not_latched",
+    certain=True,
+    says="Your publisher keeps no message: who subscribes after it was published hears nothing.",
+    next_step="Give create_publisher QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) in place of 10.",
+)
+def not_latched(seen: Part, _: Part) -> bool:
+    """Its durability is less than the late listener asks for."""
+    return any(event.data["policy"] == "durability" for event in seen.of("mismatch"))
+
+
+@map_server.mistake(
+    "wrong_text",
+    certain=True,
+    says="Who comes late hears something else than the name of the map.",
+    next_step="Publish the text kitchen, once. A depth of 1 keeps the last message alone.",
+)
+def wrong_text(seen: Part, expected: Part) -> bool:
+    """Another text comes."""
+    return bool(messages(seen)) and not text(seen, expected).passed
+
+
+EXERCISE = map_server.exercise()

@@ -1,0 +1,89 @@
+"""A service client: has two distances added, and reports what was answered."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from autograder.kit import service_calls
+from autograder.kit.draft import Draft
+from autograder.kit.model import Finding
+from autograder.kit.recipes.service_client import Calls, Run, hidden
+from autograder.kit.service_calls import BIASED, EXTREME, LATE, Client, pair, reports, requests
+
+if TYPE_CHECKING:
+    from random import Random
+
+    from autograder.kit.evidence import Part
+
+
+def runs(random: Random) -> tuple[Run, ...]:
+    """A late service, a surprising answer that is held back for a moment, and large numbers."""
+    late = Run(LATE, distances(random), (-hidden(random),))
+    return late, Run(BIASED, distances(random), (0,), held=1), Run(EXTREME, far(random))
+
+
+def distances(random: Random) -> tuple[int, int]:
+    """Two numbers of everyday size."""
+    first, second = random.sample(range(1001, 99_999), 2)
+    return first, second
+
+
+def far(random: Random) -> tuple[int, int]:
+    """A large number and a small one, whose sum stays inside an int64."""
+    return 2**63 - 1 - random.randint(5000, 9999), random.randint(1, 4999)
+
+
+odometer = Draft(
+    "service_client.odometer",
+    "A service client · The odometer",
+    "Have the service add_distances add two distances, and report its answer.",
+    Calls(
+        1, runs, (distances, far), too_many=("Your client called {count} times for one sum.", "Call once.")
+    ),
+)
+
+
+@odometer.criterion("call", 4, "Calls once, with the two distances")
+def call(seen: Client, expected: Client) -> Finding:
+    """In each run it calls once, with the two numbers."""
+    wrong = next((part for part in seen.served if not is_right(part, expected)), None)
+    shown = (
+        "once with both, in each run" if wrong is None else f"{len(requests(wrong))} calls: {asked(wrong)}"
+    )
+    return Finding(wrong is None, "once with both, in each run", shown)
+
+
+def asked(part: Part) -> str:
+    """The numbers of the first calls."""
+    return ", ".join(" + ".join(map(str, pair(event))) for event in requests(part)[:3]) or "none"
+
+
+def is_right(part: Part, expected: Client) -> bool:
+    """Whether a run made as many calls as the reference solution, with its numbers."""
+    made = requests(part)
+    return len(made) == expected.calls and pair(made[0]) == sorted(part.inputs["numbers"])
+
+
+odometer.asks("sum", 4, "Reports the sum that the service answered", service_calls.reports_the_sum)
+odometer.asks("limit", 2, "Ends clearly when there is no service", service_calls.gives_up_in_time)
+
+
+@odometer.mistake(
+    "sum_not_reported",
+    late=True,
+    certain=Client.ended_each_time,
+    says="The call is right, but the sum is never said.",
+    next_step="Log or print the sum of the answer (in the notebook, return it too): future.result().sum.",
+)
+def sum_not_reported(seen: Client, expected: Client) -> bool:
+    """The call is right, and the answer is never said."""
+    answered = (part for part in seen.served if part.of("response"))
+    return any(is_right(part, expected) and not reports(part) for part in answered)
+
+
+EXERCISE = odometer.exercise(
+    limit=150.0,
+    arguments="two whole numbers",
+    remarks=(service_calls.no_limit,),
+    sample_arguments=(1, 2),
+)

@@ -1,0 +1,66 @@
+"""A service server: answers each call, with a number that goes up."""
+
+from __future__ import annotations
+
+from autograder.kit.draft import Draft
+from autograder.kit.model import Finding
+from autograder.kit.recipes.service_server import AT_ONCE, Asks, Server
+
+SINGLE = 3
+"""Calls one by one; after them come several at once, and one more."""
+
+door = Draft(
+    "service_server.door",
+    "A service server · The door",
+    "Serve visit: count who comes.",
+    # What is asked one by one, then each of the other requests: a Trigger has no fields.
+    asks := Asks(lambda _: [{}] * SINGLE, lambda _: {}),
+)
+door.asks("service", 2, "Serves visit, with the right type", asks.serves)
+
+
+def told(seen: Server) -> list[str]:
+    """The messages of all answers, in the order of the calls."""
+    return [str(answer["message"]) for _, answer in sorted(seen.answers.items())]
+
+
+def due(number: int) -> list[str]:
+    """What so many visitors are told."""
+    return [f"visitor {i}" for i in range(1, number + 1)]
+
+
+@door.criterion("counts", 4, "Counts who comes")
+def counts(seen: Server, _: Server) -> Finding:
+    """The calls one by one are answered with 1, 2, 3."""
+    first = told(seen)[:SINGLE]
+    return Finding(first == due(SINGLE), ", ".join(due(SINGLE)), ", ".join(first) or "no answer")
+
+
+@door.criterion("together", 2, "Answers several calls at once, each with a number of its own")
+def together(seen: Server, _: Server) -> Finding:
+    """All calls together have all numbers, the ones at once in whatever order."""
+    wanted, rest = due(SINGLE + AT_ONCE + 1), told(seen)[SINGLE:]
+    return Finding(
+        sorted(told(seen)) == sorted(wanted), f"{wanted[-1]} is the last", ", ".join(rest) or "none"
+    )
+
+
+@door.criterion("success", 2, "Says that all went well")
+def success(seen: Server, _: Server) -> Finding:
+    """The field success is true in each answer."""
+    said = [answer["success"] for answer in seen.answers.values()]
+    return Finding(bool(said) and all(said), "success is true", f"success was {said[:1] or 'never told'}")
+
+
+@door.mistake(
+    "counter_stuck",
+    certain=True,
+    says="Every visitor is told the same: the number never changes.",
+    next_step="Count in an attribute, at the beginning of the method: self.visitors += 1.",
+)
+def counter_stuck(seen: Server, _: Server) -> bool:
+    """All answers are the same, and not empty."""
+    return len(told(seen)) >= SINGLE and len(set(told(seen))) == 1 and bool(told(seen)[0])
+
+
+EXERCISE = door.exercise()

@@ -1,0 +1,98 @@
+"""A subscriber: warns of what it hears, and of nothing else."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit.draft import Draft
+from autograder.kit.model import Bench, Finding, Look
+from autograder.kit.recipes.own_scenario import OwnScenario
+
+if TYPE_CHECKING:
+    from random import Random
+
+    from autograder.kit.evidence import Part
+
+LIMIT = 20
+"""Percent; the first charge that nobody is to be warned of."""
+PATIENCE = {Look.FAST: 1.5, Look.REAL_TIME: 5.0}
+"""Seconds of wall time in which the last warning must have come."""
+
+
+def scenario(bench: Bench) -> None:
+    """Publish charges on both sides of the limit; the last one is low, so that its warning shows the end."""
+    topic, type_name = bench.reference.only("subscription")
+    bench.part("listening", charges=charges(bench.random))
+    speaker = bench.speak(topic, type_name)
+    bench.start()
+    if bench.await_endpoint("subscription", topic):
+        bench.release()
+        bench.await_attention()
+        for charge in bench.seen().inputs["charges"]:
+            speaker.send(data=charge)
+        if not bench.wait_until(lambda evidence: not missing(evidence.main), PATIENCE[bench.look]):
+            bench.note_whether_it_spins()
+    bench.stop()
+
+
+def charges(random: Random) -> list[int]:
+    """Seven charges, no more than a queue of 10 holds: three high ones, the limit, three low ones."""
+    some = [*random.sample(range(LIMIT + 1, 100), 3), LIMIT, *random.sample(range(1, LIMIT), 2)]
+    random.shuffle(some)
+    return [*some, random.choice([low for low in range(1, LIMIT) if low not in some])]
+
+
+guard = Draft(
+    "subscriber.guard",
+    "A subscriber · The battery's guard",
+    "Warn of each charge below 20 percent, and of no other.",
+    subject := OwnScenario(scenario, "subscription"),
+)
+guard.asks("topic", 2, "Subscribes to the right topic, with the right type", subject.is_there)
+
+
+def named(seen: Part) -> list[set[int]]:
+    """For each line that was said, which of the charges are in it."""
+    sent = set(seen.inputs.get("charges", ()))
+    return [sent & {int(number) for number in re2.findall(r"\d{1,3}", line)} for line in seen.said()]
+
+
+def missing(seen: Part) -> list[int]:
+    """The low charges of which nobody was warned."""
+    return [c for c in seen.inputs["charges"] if c < LIMIT and not any(c in line for line in named(seen))]
+
+
+def needless(seen: Part) -> list[int]:
+    """The other charges of which somebody was warned: a line may name the limit beside a low charge."""
+    return [c for line in named(seen) for c in sorted(line) if min(line) >= LIMIT]
+
+
+@guard.criterion("warns", 4, "Warns of each low charge")
+def warns(seen: Part, _: Part) -> Finding:
+    """Each low charge is in something that was said."""
+    silent = [f"no word of {charge}" for charge in missing(seen)]
+    return Finding(
+        bool(seen.of("sent")) and not silent, "a line for each", ", ".join(silent) or "a line for each"
+    )
+
+
+@guard.criterion("only", 4, "Says nothing of any other charge")
+def only(seen: Part, _: Part) -> Finding:
+    """No other charge is in what was said, where anything was said at all."""
+    told = ", ".join(map(str, needless(seen)))
+    return Finding(
+        any(named(seen)) and not told, "20 percent and more pass in silence", told or "none of them"
+    )
+
+
+@guard.mistake(
+    "limit_included", certain=True, says="Your node warns of 20 percent too.", next_step="Compare with <."
+)
+def limit_included(seen: Part, _: Part) -> bool:
+    """It takes the limit for a low charge, and is right otherwise."""
+    return set(needless(seen)) == {LIMIT}
+
+
+EXERCISE = guard.exercise()

@@ -1,0 +1,100 @@
+"""A switch: a publisher that a service std_srvs/srv/SetBool switches on and off."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from autograder.kit.draft import Draft
+from autograder.kit.model import Bench, Finding
+from autograder.kit.recipes.own_scenario import OwnScenario
+
+if TYPE_CHECKING:
+    from autograder.kit.callers import Caller
+    from autograder.kit.evidence import Part
+
+PHASES = ("before it was switched on", "on", "off again", "on again")
+LISTENS = 1.0
+"""Seconds of the subject's time for which nothing may come: five times the period."""
+PATIENCE, ENOUGH = 3.0, 3
+"""Seconds of the subject's time in which so many messages must have come while it is on."""
+
+
+def scenario(bench: Bench) -> None:
+    """Listen before it is switched on, while it is on, off, and on again."""
+    topic, type_name = bench.reference.only("publisher")
+    service, service_type = bench.reference.only("service")
+    bench.part("switching")
+    bench.listen(topic, type_name)
+    caller = bench.call(service, service_type)
+    bench.start()
+    there = bench.await_endpoint("publisher", topic) and bench.await_endpoint("service", service)
+    bench.release()
+    if there and caller.await_server(PATIENCE):
+        bench.run_time(LISTENS)
+        if not all(is_switched(bench, caller, topic, on) for on in (True, False, True)):
+            bench.note_whether_it_spins()
+    bench.stop()
+
+
+def is_switched(bench: Bench, caller: Caller, topic: str, on: bool) -> bool:
+    """Switch it and listen; whether it answered, and published where it is on."""
+    caller.ask({"data": on})
+    answered = caller.await_answers(PATIENCE)
+    enough = bench.heard(topic) + ENOUGH
+    bench.run_time(PATIENCE if on else LISTENS, until=lambda: on and bench.heard(topic) >= enough)
+    return answered and (not on or bench.heard(topic) >= enough)
+
+
+lamp = Draft(
+    "switch.lamp",
+    "A switch · The lamp",
+    "Publish only while the service lamp has switched it on.",
+    subject := OwnScenario(scenario, "publisher", "service"),
+)
+lamp.asks("topic", 1, "Publishes on the right topic and type", subject.is_there)
+
+
+def heard(seen: Part) -> list[int]:
+    """How many messages came in each phase. After the lamp was switched off, one may have been on its way."""
+    counts = [0]
+    for event in seen.events:
+        counts += [0] * (event.kind == "answered")
+        counts[-1] += event.kind == "message"
+    return [count - (phase == 2 and count > 0) for phase, count in enumerate(counts)]
+
+
+@lamp.criterion("answers", 2, "Answers each call with success")
+def answers(seen: Part, _: Part) -> Finding:
+    """Each of the three calls is answered, and successful."""
+    told = [event.data["fields"]["success"] for event in seen.of("answered")]
+    return Finding(told == [True] * 3, "three times success", ", ".join(map(str, told)) or "no answer")
+
+
+@lamp.criterion("on", 3, "Publishes while it is on")
+def on(seen: Part, _: Part) -> Finding:
+    """Messages come in both phases in which it is on."""
+    counts = heard(seen)
+    shown = ", ".join(f"{count} {phase}" for phase, count in zip(PHASES, counts, strict=False))
+    return Finding(len(counts) == 4 and min(counts[1::2]) >= ENOUGH - 1, "messages each time", shown)
+
+
+@lamp.criterion("off", 4, "Is silent while it is off")
+def off(seen: Part, _: Part) -> Finding:
+    """None comes in the two phases in which it is off."""
+    counts = heard(seen)
+    loud = [f"{n} messages {phase}" for phase, n in zip(PHASES[::2], counts[::2], strict=False) if n]
+    return Finding(len(counts) > 2 and not loud, "no message while it is off", loud[0] if loud else "silence")
+
+
+@lamp.mistake(
+    "always_on",
+    certain=True,
+    says="Your lamp publishes while it is off.",
+    next_step="Keep in self.on what the last request said (False at first), and publish only if it is true.",
+)
+def always_on(seen: Part, _: Part) -> bool:
+    """It publishes in a phase in which it is off."""
+    return any(heard(seen)[::2])
+
+
+EXERCISE = lamp.exercise()

@@ -1,0 +1,98 @@
+"""The first notebook: a command that drives the robot straight ahead, again and again."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from autograder.kit.draft import Draft
+from autograder.kit.model import Advice, Finding
+from autograder.kit.recipes.publisher import Hears, Publisher
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Event
+
+heard = Hears(messages=8, long_run=20)
+first_move = Draft(
+    "00_nervous_system.first_move",
+    "The robotic nervous system · The first move",
+    "Tell the robot every half second to drive straight ahead at 0.5 metres per second.",
+    heard,
+)
+
+AXES = tuple((part, axis) for part in ("linear", "angular") for axis in ("x", "y", "z"))
+"""The six numbers of a Twist."""
+
+
+def numbers(message: Event) -> dict[str, float]:
+    """The six numbers of a command, such as ``{"linear.x": 0.5, …}``; those that are missing count as 0."""
+    fields = message.data["fields"]
+    return {f"{part}.{axis}": float(fields.get(part, {}).get(axis, 0.0)) for part, axis in AXES}
+
+
+def commands(publisher: Publisher) -> list[dict[str, float]]:
+    """All commands, in order."""
+    return [numbers(message) for message in publisher.messages]
+
+
+def words(command: dict[str, float]) -> str:
+    """What a command says: the numbers that are not 0."""
+    return ", ".join(f"{name} = {value:g}" for name, value in command.items() if value) or "all numbers 0"
+
+
+def same(command: dict[str, float], wanted: dict[str, float]) -> bool:
+    """Whether two commands mean one movement."""
+    return all(abs(command[name] - value) < 1e-3 for name, value in wanted.items())
+
+
+@heard.each_text
+@first_move.criterion("velocity", 6, "Drives straight ahead")
+def velocity(seen: Publisher, expected: Publisher) -> Finding:
+    """Every command is the reference's."""
+    wanted = commands(expected)[0]
+    told = commands(seen)
+    odd = [command for command in told if not same(command, wanted)]
+    found = words((odd or told)[0]) if told else "no command arrived"
+    if told and not odd and not seen.went_on:
+        found += ", and no more"
+    return Finding(seen.went_on and not odd, words(wanted), found)
+
+
+first_move.asks("rate", 4, "Keeps telling it", heard.keeps_rate)
+
+
+@first_move.mistake(
+    "no_movement",
+    certain=True,
+    says="Your commands arrive, but all their numbers are 0: the robot is told to stand still.",
+    next_step="Set command.linear.x = 0.5 before you publish the command.",
+)
+def no_movement(seen: Publisher, _: Publisher) -> bool:
+    """Commands arrive, and none of them moves the robot."""
+    told = commands(seen)
+    return bool(told) and not any(any(command.values()) for command in told)
+
+
+@first_move.mistake("wrong_movement", certain=True)
+def wrong_movement(seen: Publisher, expected: Publisher) -> Advice | None:
+    """Commands arrive that mean another movement."""
+    wanted = commands(expected)[0]
+    odd = next((command for command in commands(seen) if not same(command, wanted)), None)
+    if odd is None:
+        return None
+    return Advice(
+        f"Your command says {words(odd)}; the task asks for {words(wanted)}.", _what_to_do(odd, wanted)
+    )
+
+
+def _what_to_do(odd: dict[str, float], wanted: dict[str, float]) -> str:
+    forward = wanted["linear.x"]
+    if odd["angular.x"] or odd["angular.y"] or odd["angular.z"]:
+        return "angular is for turning. Straight ahead means: set linear.x only, and leave angular alone."
+    if odd["linear.y"] or odd["linear.z"]:
+        return "linear.x points ahead, linear.y to the left, linear.z up; this robot rolls along x only."
+    if odd["linear.x"] < 0:
+        return f"A negative linear.x drives backwards: write {forward:g} without a minus."
+    return f"linear.x is in metres per second: set it to {forward:g} in every command."
+
+
+EXERCISE = first_move.exercise()

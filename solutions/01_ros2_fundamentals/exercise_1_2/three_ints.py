@@ -1,0 +1,205 @@
+"""Exercise 1.2: a client that adds three numbers with two calls of a service that adds two.
+
+The judge serves. Its answers are not what the client could have added up by itself, so that the second call and the
+reported sum show whether they were really used.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit import service_calls
+from autograder.kit.draft import Draft
+from autograder.kit.model import Advice, Finding
+from autograder.kit.recipes.service_client import Calls, Run, hidden
+from autograder.kit.service_calls import (
+    BIASED,
+    CALLED,
+    EXTREME,
+    LATE,
+    Client,
+    answers,
+    pair,
+    reports,
+    requests,
+)
+
+if TYPE_CHECKING:
+    from random import Random
+
+    from autograder.kit.evidence import Part
+
+
+def runs(random: Random) -> tuple[Run, ...]:
+    """A late service, a surprising one, and large numbers."""
+    return (
+        # 0 is a first answer here and a last one there, and no number that was asked for looks like the latter.
+        Run(LATE, everyday(random), (0, -hidden(random))),
+        Run(BIASED, negative(random), (random.choice((-1, 1)) * hidden(random), 0), held=1),
+        Run(EXTREME, extreme(random), held=2),
+    )
+
+
+def everyday(random: Random) -> tuple[int, int, int]:
+    """A number of everyday size and a zero, in any order, and another number."""
+    a, c = random.sample(range(1001, 99_999), 2)
+    first, second = random.sample((a, 0), 2)
+    return first, second, c
+
+
+def negative(random: Random) -> tuple[int, int, int]:
+    """A negative number and two positive ones."""
+    return -random.randint(1001, 99_999), random.randint(1001, 99_999), random.randint(1001, 99_999)
+
+
+def extreme(random: Random) -> tuple[int, int, int]:
+    """Numbers near both ends of an int64, whose sums stay inside it; the last sum is negative."""
+    return (
+        2**63 - 1 - random.randint(0, 999),
+        -(2**62) - random.randint(1, 999),
+        -(2**63) + random.randint(2001, 2999),
+    )
+
+
+recipe = Calls(
+    2,
+    runs,
+    (everyday, negative, extreme),
+    too_many=(
+        "Your client called the service {count} times; two calls are enough.",
+        "Call once with a and b, once with the first answer and c, and no more.",
+    ),
+)
+adder = Draft(
+    "exercise_1_2.three_ints",
+    "Exercise 1.2 · Three numbers, two calls",
+    "Add three numbers with two calls of a service that adds two.",
+    recipe,
+)
+
+
+@adder.criterion("calls", 2, "Calls exactly twice")
+def calls(seen: Client, expected: Client) -> Finding:
+    """In each run it calls as often as the reference solution."""
+    counts = [len(requests(part)) for part in seen.served]
+    found = ", ".join(f"{count} ({name})" for count, name in zip(counts, CALLED, strict=True))
+    return Finding(seen.called(expected.calls), f"{expected.calls} calls in each run", found)
+
+
+@adder.criterion("chain", 3, "Builds the second call on the first answer")
+def chain(seen: Client, expected: Client) -> Finding:
+    """The first call adds the first two numbers, the second its answer and the third number."""
+    wrong = next((part for part in seen.served if not is_chained(part, expected)), None)
+    wanted = "first a + b, then that answer + c"
+    if wrong is None:
+        return Finding(True, wanted, wanted)
+    made = [f"{e.data['fields']['a']} + {e.data['fields']['b']}" for e in requests(wrong)[:3]]
+    numbers = wrong.inputs.get("numbers")
+    found = (f"for {', '.join(map(str, numbers))}: " if numbers else "") + (", then ".join(made) or "no call")
+    return Finding(False, wanted, found)
+
+
+def is_chained(part: Part, expected: Client) -> bool:
+    """Whether a run made the reference's calls."""
+    made = requests(part)
+    if len(made) != expected.calls:
+        return False
+    a, b, c = part.inputs["numbers"]
+    return pair(made[0]) == sorted((a, b)) and pair(made[1]) == sorted((answers(part)[0], c))
+
+
+adder.asks("sum", 3, "Reports the final sum", service_calls.reports_the_sum)
+
+
+@adder.criterion("late", 1, "Waits for a service that comes late")
+def late(seen: Client, _: Client) -> Finding:
+    """With a service that comes late it calls all the same; how often and with which numbers is asked elsewhere."""
+    return recipe.waits(seen, called=seen.calls > 0)
+
+
+adder.asks("limit", 1, "Ends clearly when there is no service", service_calls.gives_up_in_time)
+
+
+@adder.mistake("first_answer_ignored", certain=True)
+def first_answer_ignored(seen: Client, _: Client) -> Advice | None:
+    """The second call carries a + b as computed by the client."""
+    part = seen.evidence.part(BIASED)
+    made = requests(part)
+    if len(made) < 2:
+        return None
+    a, b, c = part.inputs["numbers"]
+    first = answers(part)[0]
+    if pair(made[1]) != sorted((a + b, c)) or pair(made[1]) == sorted((first, c)):
+        return None
+    return Advice(
+        f"The service answered {first} to the first call, but your second call does not use that answer: it adds up "
+        "on its own.",
+        "Take first.sum from the first answer and put it into the second request.",
+    )
+
+
+@adder.mistake("wrong_arguments", certain=True)
+def wrong_arguments(seen: Client, expected: Client) -> Advice | None:
+    """Two calls with other numbers."""
+    finding = chain(seen, expected)
+    if finding.passed or not seen.called(expected.calls):
+        return None
+    return Advice(
+        f"The calls carry the wrong numbers ({finding.seen}).",
+        "The first call adds a and b, the second adds the first answer and c. Look at which field gets which number, "
+        "and whether one request object is reused before it was sent.",
+    )
+
+
+@adder.mistake("one_call_only", late=True, certain=Client.called_each_time)
+def one_call_only(seen: Client, expected: Client) -> Advice | None:
+    """It ends by itself after one call or none."""
+    part = next((p for p in seen.served if p.ending and len(requests(p)) < expected.calls), None)
+    if part is None or (not part.endpoints("client") and not requests(part)):
+        return None
+    how_often = "once" if len(requests(part)) == 1 else "not at all"
+    return Advice(
+        f"Your client called the service {how_often}; the task asks for two calls.",
+        "Call once with a and b, then again with the first answer and c.",
+    )
+
+
+@adder.mistake("wrong_sum_reported", late=True, certain=Client.ended_each_time)
+def wrong_sum_reported(seen: Client, expected: Client) -> Advice | None:
+    """The calls are right, and another number is said."""
+    part = unreported(seen, expected)
+    lines = part.said(after=part.of("response")[-1]) if part else []
+    if part is None or not any(re2.search(r"\d", line) for line in lines):
+        return None
+    return Advice(
+        f"The service's last answer was {answers(part)[-1]}, but your program said “{lines[-1]}”.",
+        "Report the sum of the second answer, not the first one and not one of your own.",
+    )
+
+
+@adder.mistake(
+    "sum_not_reported",
+    late=True,
+    certain=Client.ended_each_time,
+    says="Both calls are right, but the final sum is never said.",
+    next_step="Log or print the sum of the second answer (in the notebook, return it too).",
+)
+def sum_not_reported(seen: Client, expected: Client) -> bool:
+    """The calls are right, and the last answer is never said."""
+    return unreported(seen, expected) is not None
+
+
+def unreported(seen: Client, expected: Client) -> Part | None:
+    """A run whose last answer is not said, where all calls are right."""
+    silent = (part for part in seen.served if part.of("response") and not reports(part))
+    return next(silent, None) if chain(seen, expected).passed else None
+
+
+EXERCISE = adder.exercise(
+    limit=150.0,
+    arguments="three whole numbers",
+    remarks=(service_calls.no_limit,),
+    sample_arguments=(1, 2, 3),
+)

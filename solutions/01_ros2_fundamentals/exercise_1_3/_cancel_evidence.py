@@ -1,0 +1,83 @@
+"""What the runs of Exercise 1.3 show of a client: its goal, when it asked to cancel, what it said of the end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from autograder.kit.goal_reports import left_at_once
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Event, Evidence, Part
+
+HONOURED = "the server cancels"
+REFUSED = "the server refuses to cancel"
+
+FIRST_FEEDBACK, LAST_FEEDBACK = 3, 5
+"""The cancel request must come after this many feedback messages, at the earliest and at the latest."""
+
+LEFT = "it asked, and ended before the answer"
+
+
+@dataclass(frozen=True)
+class Request:
+    """A request to cancel.
+
+    Attributes:
+        count: How many feedback messages were sent before it.
+        after: Seconds of wall time from the answer to the goal to it.
+        asked_for_result: Whether the result was asked for, too, sooner or later.
+    """
+
+    count: int
+    after: float
+    asked_for_result: bool
+
+
+def goals(part: Part) -> list[Event]:
+    """The goals that were sent."""
+    return part.of("goal")
+
+
+def expected_order(evidence: Evidence) -> int:
+    """The order that the reference solution asks for."""
+    return int(goals(evidence.reference.part(HONOURED))[0].data["fields"]["order"])
+
+
+def orders(evidence: Evidence) -> list[int]:
+    """The orders of the goals that were sent in the first run."""
+    return [int(goal.data["fields"]["order"]) for goal in goals(evidence.main)]
+
+
+def feedbacks_before_cancel(part: Part) -> int | None:
+    """How many feedback messages were sent before the first cancel request; None where none came."""
+    cancel = part.first("cancel")
+    if cancel is None:
+        return None
+    before = part.events[: part.events.index(cancel)]
+    return sum(event.kind == "feedback" for event in before)
+
+
+def request_of(part: Part) -> Request | None:
+    """The first request to cancel; None where none came."""
+    answered, cancel, count = part.first("goal_answered"), part.first("cancel"), feedbacks_before_cancel(part)
+    if answered is None or cancel is None or count is None:
+        return None
+    return Request(count, cancel.t - answered.t, part.first("result_request") is not None)
+
+
+def left_before_its_answer(part: Part) -> bool:
+    """Whether the client was about to end before its cancel request was answered, so that chance decides on both."""
+    return part.first("cancel") is not None and left_at_once(part, "cancel_answered")
+
+
+def telling_count(evidence: Evidence) -> int | None:
+    """How many feedback messages were sent before the cancel request, in the run where that is least right."""
+    counts = [feedbacks_before_cancel(part) for part in evidence if goals(part)] or [None]
+    return next((n for n in counts if n is None or not FIRST_FEEDBACK <= n <= LAST_FEEDBACK), counts[0])
+
+
+def after_result(part: Part) -> list[str]:
+    """What was said after the result."""
+    result = part.first("result")
+    return part.said(after=result) if result else []

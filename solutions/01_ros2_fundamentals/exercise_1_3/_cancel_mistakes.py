@@ -1,0 +1,195 @@
+"""Known mistakes of clients that cancel a goal, and what to do about them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from exercise_1_3._cancel_evidence import (
+    FIRST_FEEDBACK,
+    HONOURED,
+    LAST_FEEDBACK,
+    REFUSED,
+    after_result,
+    expected_order,
+    goals,
+    orders,
+    telling_count,
+)
+from exercise_1_3._cancel_words import false_claim, says_canceled
+
+from autograder.kit.goal_reports import MANY_REQUESTS
+from autograder.kit.meant_errors import meant
+from autograder.kit.model import Advice
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Evidence
+
+
+def wrong_order(evidence: Evidence) -> Advice | None:
+    """A goal of another order."""
+    made, wanted = orders(evidence), expected_order(evidence)
+    if made == [wanted] or not made:
+        return None
+    seen = f"{len(made)} goals" if len(made) > 1 else f"order {made[0]}"
+    return Advice(
+        f"The judge got {seen}; the task asks for one goal of order {wanted}.",
+        f"Set goal.order = {expected_order(evidence)} and send the goal once.",
+    )
+
+
+def order_never_filled(evidence: Evidence) -> Advice | None:
+    """A goal of order 0: the field's default."""
+    made = goals(evidence.main)
+    if not made or any(goal.data["fields"]["order"] != 0 for goal in made):
+        return None
+    return Advice(
+        "The goal asks for order 0: its field was never filled.",
+        "Set goal.order (or Fibonacci.Goal(order=...)). A misspelt keyword is ignored silently.",
+    )
+
+
+def not_waited_for(evidence: Evidence) -> Advice | None:
+    """It was there, and no goal of its ever reached the server, which came a moment after it."""
+    part = evidence.main
+    returned_silently = part.ending is not None and part.ending.name == "returned" and not part.said()
+    if goals(part) or part.traceback or returned_silently or not part.endpoints("action_client"):
+        return None
+    return Advice(
+        "The server came a moment after your client, and no goal of your client ever reached it.",
+        "Wait for the server with a few seconds of patience, wait_for_server(timeout_sec=5.0), and send the goal when "
+        "it is there: a goal that is sent before is lost.",
+    )
+
+
+def never_spun(evidence: Evidence) -> Advice | None:
+    """It sent its goal, and nothing that came back was taken in."""
+    part = evidence.main
+    if not goals(part) or part.first("cancel") is not None or not part.of("unanswered"):
+        return None
+    return Advice(
+        "Your client sent its goal, but it takes in nothing that comes back: no callback of it is called "
+        "any more.",
+        "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future), in one "
+        "place, and never "
+        "inside a callback.",
+    )
+
+
+def ended_on_the_way(evidence: Evidence) -> Advice | None:
+    """It ended before it had to cancel, or before the answer to its cancel request."""
+    part = evidence.main
+    ending, cancel = part.ending, part.first("cancel")
+    if not goals(part) or ending is None or (part.traceback and not meant(part.traceback)):
+        return None
+    events = list(part.events)
+    before = events[: events.index(ending)]
+    if cancel is None and not any(event.kind == "result" for event in before):
+        missing = "a request to cancel it came"
+    elif cancel is not None and not any(event.kind == "cancel_answered" for event in before):
+        missing = "the answer to its cancel request was there"
+    else:
+        return None
+    return Advice(
+        f"Your client sent its goal, and ended before {missing}.",
+        "Keep it alive until the result is there: rclpy.spin(node), or rclpy.spin_until_future_complete(node, future) "
+        "with a few seconds of patience. A single spin_once takes in one thing only.",
+    )
+
+
+def result_repeated(evidence: Evidence) -> Advice | None:
+    """A poll that was never stopped."""
+    asked = len(evidence.main.of("result_request"))
+    if asked <= MANY_REQUESTS:
+        return None
+    return Advice(
+        f"Your client asked for the result of one goal {asked} times.",
+        "Ask once, and wait for the future that you get. A timer that looks whether something is there has to be "
+        "switched off (timer.cancel()) when it is.",
+    )
+
+
+def cancel_missing(evidence: Evidence) -> Advice | None:
+    """A goal, feedback, and no cancel request."""
+    part = evidence.main
+    if not goals(part) or part.first("cancel") is not None:
+        return None
+    return Advice(
+        "Your client sent its goal and got its feedback, but it never asked to cancel.",
+        "Count in the feedback callback, and at the third message call goal_handle.cancel_goal_async(). "
+        "Keep the "
+        "goal_handle from the goal response.",
+    )
+
+
+def cancel_too_early(evidence: Evidence) -> Advice | None:
+    """Fewer feedback messages than the task asks for."""
+    count = telling_count(evidence)
+    if count is None or count >= FIRST_FEEDBACK:
+        return None
+    return Advice(
+        f"Your client asked to cancel after {count} feedback messages; the task asks for {FIRST_FEEDBACK} to "
+        f"{LAST_FEEDBACK}.",
+        f"Count the calls of the feedback callback and cancel when the count reaches {FIRST_FEEDBACK}.",
+    )
+
+
+def cancel_too_late(evidence: Evidence) -> Advice | None:
+    """More feedback messages than the task asks for."""
+    count = telling_count(evidence)
+    if count is None or count <= LAST_FEEDBACK:
+        return None
+    return Advice(
+        f"Your client asked to cancel only after {count} feedback messages; the task asks for "
+        f"{FIRST_FEEDBACK} to "
+        f"{LAST_FEEDBACK}.",
+        f"Cancel in the feedback callback itself, when the count reaches {FIRST_FEEDBACK}: a timer of a "
+        f"fixed length "
+        "does not know how fast the server is.",
+    )
+
+
+def cancel_repeated(evidence: Evidence) -> Advice | None:
+    """More than one cancel request."""
+    total = len(evidence.main.of("cancel"))
+    if total < 2:
+        return None
+    return Advice(
+        f"Your client asked to cancel {total} times. Feedback goes on arriving until the server has ended "
+        f"the goal.",
+        "Remember that you have asked: test `count == 3` rather than `count >= 3`, or keep a flag.",
+    )
+
+
+def status_not_reported(evidence: Evidence) -> Advice | None:
+    """It cancels, and never says how the goal ended."""
+    part = evidence.part(HONOURED)
+    if part.first("cancel") is None or says_canceled(after_result(part), evidence.part(REFUSED).said()):
+        return None
+    if part.first("result_request") is None:
+        return Advice(
+            "Your client asked to cancel, but it never asked for the result, so it cannot know how the goal "
+            "ended.",
+            "Call goal_handle.get_result_async() once the goal is accepted, and read result.status when it "
+            "is done.",
+        )
+    return Advice(
+        "The goal ended with the status CANCELED (5), but your client did not say so after it got the "
+        "result.",
+        "When the result is there, log its status: future.result().status, by name or by number.",
+    )
+
+
+def status_misreported(evidence: Evidence) -> Advice | None:
+    """What it says of one goal is true of the other one."""
+    honoured, refused = evidence.part(HONOURED), evidence.part(REFUSED)
+    claim = false_claim(honoured, refused)
+    if claim is None:
+        return None
+    of_canceled = claim in after_result(honoured)
+    ended = "The goal was canceled" if of_canceled else "The goal succeeded in spite of the request"
+    return Advice(
+        f"{ended}, but your client said “{claim}”.",
+        "Compare result.status with GoalStatus.STATUS_CANCELED before you say so: a cancel is a request, "
+        "and the "
+        "server may refuse it.",
+    )

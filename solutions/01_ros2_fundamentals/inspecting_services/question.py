@@ -1,0 +1,330 @@
+"""Inspecting services: a function that finds a service by its type, as `ros2 service find` does.
+
+The judge serves. The names are drawn anew each time, and so are the types that are asked for and the order of the runs.
+One service carries a tempting name and another type, one comes late, and once there is none of the type.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit import common_mistakes as common
+from autograder.kit import giving_up
+from autograder.kit.giving_up import LATENESS
+from autograder.kit.lateness import SOON, was_patient
+from autograder.kit.meant_errors import OTHER_SLIPS, meant
+from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Look, Mistake
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from random import Random
+
+    from autograder.kit.evidence import Evidence, Part
+
+ADDER = "my_robot_interfaces/srv/AddTwoInts"
+TEMPTING = {
+    ADDER: "/add_two_ints",
+    "std_srvs/srv/SetBool": "/set_bool",
+    "std_srvs/srv/Empty": "/empty",
+    "std_srvs/srv/Trigger": "/trigger",
+}
+"""The types that are asked for, each with a name that sounds like it and is given to a service of another type."""
+
+LATE = "the service comes late"
+OTHER = "another type is asked for"
+ABSENT = "no service has the type"
+
+LOOKS = 4
+"""Looks at the graph after which a subject is sure to look again: the service need not be any later for that one. Who
+looks so often and then gives up has not kept its patience where there is none."""
+IMPATIENT = 3.0
+"""Seconds after which nobody who looked for a while has given up; on a busy machine a single look may take one."""
+FIND_LIMIT = 12.0
+"""Seconds of wall time in which a subject must have found a service that is there."""
+PATIENCE_IN_LATE = (4.0, 5.0)
+"""Between which the patience is drawn that a function is told to have where the service comes late."""
+PATIENCE_ELSEWHERE = {Look.FAST: (0.3, 0.6), Look.REAL_TIME: (1.5, 2.5)}
+"""The same where it is there from the start, and where there is none: nobody can tell the two apart by it."""
+
+_WORDS = ("kitchen", "garage", "tower", "harbour", "meadow", "attic", "bridge", "cellar", "garden", "forge")
+
+
+def scenario(bench: Bench) -> None:
+    """Three runs, in an order that is drawn: a late service, one of another type, and none at all."""
+    random = bench.random
+    asked = random.sample(sorted(TEMPTING), 3)
+    runs = [(LATE, asked[0]), (OTHER, asked[1]), (ABSENT, asked[2])]
+    for name, type_name in random.sample(runs, len(runs)):
+        others = [other for other in random.sample(sorted(TEMPTING), len(TEMPTING)) if other != type_name]
+        misleading = {TEMPTING[type_name]: others[0], _name(random): others[0], _name(random): others[1]}
+        if name == ABSENT:
+            unserved(bench, type_name, misleading)
+        else:
+            served(bench, name, type_name, misleading, late=name == LATE)
+
+
+def unserved(bench: Bench, type_name: str, others: Mapping[str, str]) -> None:
+    """The run in which there is no service of the type."""
+    if bench.keep(ABSENT):
+        return
+    patience = round(bench.random.uniform(*PATIENCE_ELSEWHERE[bench.look]), 2)
+    bench.part(ABSENT, type=type_name, right="", others=dict(others), patience_sec=patience)
+    _serve(bench, others)
+    bench.start(type_name, patience_sec=patience)
+    giving_up.await_it(bench)
+    bench.stop()
+
+
+def served(bench: Bench, name: str, type_name: str, others: Mapping[str, str], *, late: bool) -> None:
+    """One run in which there is one service of the type."""
+    right = _name(bench.random)
+    patience = round(bench.random.uniform(*(PATIENCE_IN_LATE if late else PATIENCE_ELSEWHERE[bench.look])), 2)
+    bench.part(name, type=type_name, right=right, others=dict(others), patience_sec=patience)
+    looks_for(bench, patience, lateness=LATENESS if late else 0.0)
+    if late and not names_it(bench.seen()) and was_patient(bench.seen()):
+        bench.again()
+        looks_for(bench, patience, lateness=SOON)
+    bench.stop()
+
+
+def looks_for(bench: Bench, patience: float, *, lateness: float) -> None:
+    """Start the subject and let it find the service.
+
+    Args:
+        bench: Where it happens.
+        patience: Seconds that a function is told to look.
+        lateness: Seconds after the subject's node at which the service comes; 0 where it is there from the start.
+    """
+    inputs = bench.seen().inputs
+    right = {inputs["right"]: inputs["type"]}
+    _serve(bench, inputs["others"])
+    if not lateness:
+        _serve(bench, right)
+    bench.start(inputs["type"], patience_sec=patience)
+    if lateness:
+        bench.await_node()
+        bench.run_time(lateness, until=lambda: len(bench.seen().of("looked")) >= LOOKS)
+        if bench.await_end(0.0):
+            return
+        _serve(bench, right)
+    if bench.wait_until(
+        lambda evidence: evidence.main.ending is not None or names_it(evidence.main), FIND_LIMIT
+    ):
+        bench.await_end(0.5)
+
+
+def _serve(bench: Bench, services: Mapping[str, str]) -> None:
+    for service, type_name in services.items():
+        bench.serve(service, type_name, lambda _: {})
+
+
+def _name(random: Random) -> str:
+    return f"/{random.choice(_WORDS)}/s{random.randrange(10**5, 10**6)}"
+
+
+# --- questions to the evidence -----------------------------------------------------------------------------
+
+
+def named(part: Part) -> list[str]:
+    """The services of this run that the last line with any of them names."""
+    services = [name for name in (part.inputs.get("right"), *part.inputs.get("others", {})) if name]
+    for line in reversed(part.said()):
+        found = [name for name in services if _mentions(line, name)]
+        if found:
+            return found
+    return []
+
+
+def _mentions(line: str, service: str) -> bool:
+    """Whether a line has the name in it, with or without the slash in front."""
+    return (
+        re2.search(rf"(?:^|[^\pL\pN_/])/?{re2.escape(service.lstrip('/'))}(?:[^\pL\pN_/]|$)", line)
+        is not None
+    )
+
+
+def names_it(part: Part) -> bool:
+    """Whether the right service is named, and no other one with it."""
+    return bool(part.inputs.get("right")) and named(part) == [part.inputs["right"]]
+
+
+def gave_up_at_once(part: Part) -> bool:
+    """Whether the subject ended without the late service, and much too early."""
+    seen = part.first("interface")
+    if part.ending is None or names_it(part):
+        return False
+    return seen is None or part.ending.t < seen.t + IMPATIENT
+
+
+def finds_the_late_one(evidence: Evidence) -> Finding:
+    """It goes on looking until the service is there."""
+    return _found(evidence.part(LATE))
+
+
+def finds_the_other_type(evidence: Evidence) -> Finding:
+    """It looks for the type that it is given."""
+    return _found(evidence.part(OTHER))
+
+
+def _found(part: Part) -> Finding:
+    expected = "the one service of the type that was asked for"
+    if names_it(part):
+        return Finding(True, expected, part.inputs["right"])
+    return Finding(False, expected, ", ".join(named(part)) or _how_it_went(part))
+
+
+def says_that_there_is_none(evidence: Evidence) -> Finding:
+    """Without such a service it ends by itself and says so."""
+    part = evidence.part(ABSENT)
+    expected = "says so and ends by itself"
+    if not any(names_it(evidence.part(name)) for name in (LATE, OTHER)):
+        # What finds nothing anywhere has not shown that it looked.
+        return Finding(False, expected, "found no service in the other runs")
+    said = part.said()
+    if part.ending and said and any(_mentions(said[-1], name) for name in part.inputs["others"]):
+        return Finding(False, expected, f"named {', '.join(named(part))}")
+    wrong = giving_up.objection(part)
+    seen = "says again and again that it looks" if giving_up.goes_on_waiting(part) else "it did"
+    return Finding(not wrong, expected, wrong or seen)
+
+
+def no_limit(evidence: Evidence) -> str:
+    """A remark for a program that looks without end, and says so."""
+    return giving_up.remark(evidence.part(ABSENT))
+
+
+def _how_it_went(part: Part) -> str:
+    if part.ending is None:
+        return "named none, and never ended" if part.events else "not reached"
+    if "TimeoutError" in part.traceback:
+        return "gave up"
+    return f"“{part.said()[-1]}”" if part.said() else "named none"
+
+
+# --- known mistakes ----------------------------------------------------------------------------------------
+
+
+def not_written(evidence: Evidence) -> Advice | None:
+    """It comes back at once, with nothing, whatever it is asked."""
+    runs = [evidence.part(name) for name in (LATE, OTHER, ABSENT)]
+    if any(part.said() or part.traceback for part in runs):
+        return None
+    if not gave_up_at_once(runs[0]):
+        return None
+    return Advice(
+        "Your function comes back at once and names no service.",
+        "Find the TODO in your solution cell and write that step; the hints below it open one at a time.",
+    )
+
+
+def wrong_service(evidence: Evidence) -> Advice | None:
+    """It names a service of another type."""
+    for part in evidence:
+        others = [name for name in named(part) if name != part.inputs["right"]]
+        if others:
+            return Advice(
+                f"You were asked for a service of the type {part.inputs['type']} and named {others[0]}, which is a "
+                f"{part.inputs['others'][others[0]]}.",
+                "Compare each service's type with the type_name that you are given. The name of a service says nothing "
+                "about its type.",
+            )
+    return None
+
+
+def _crashed(part: Part) -> bool:
+    """Whether it ended with an error; what it raises on purpose is an answer, and a TimeoutError above all."""
+    return bool(part.traceback) and "TimeoutError" not in part.traceback and not meant(part.traceback)
+
+
+def looked_once(evidence: Evidence) -> Advice | None:
+    """It has given up before the late service was there."""
+    part = evidence.part(LATE)
+    if not gave_up_at_once(part) or _crashed(part):
+        return None
+    return Advice(
+        "You looked once, at once. A node that was just made knows hardly anything of the graph, and a service may "
+        "start later than whoever looks for it.",
+        "Look again and again, with a short pause, until the service is there or patience_sec seconds have passed.",
+    )
+
+
+def type_never_matches(evidence: Evidence) -> Advice | None:
+    """It looks long enough and finds nothing, although it is there."""
+    runs = [evidence.part(LATE), evidence.part(OTHER)]
+    if gave_up_at_once(runs[0]):
+        return None
+    if any(named(part) for part in runs) or not all(part.events for part in runs):
+        return None
+    if any(map(_crashed, runs)):
+        return None
+    return Advice(
+        "The service was on the graph, and you looked, but never found it.",
+        "get_service_names_and_types() gives pairs of a name and a *list* of types, each written like "
+        "std_srvs/srv/Empty. Ask with `type_name in types`.",
+    )
+
+
+def waits_forever(evidence: Evidence) -> Advice | None:
+    """Without such a service it never ends, and does not say that it looks."""
+    part = evidence.part(ABSENT)
+    if not part.events or part.ending is not None or giving_up.goes_on_waiting(part):
+        return None
+    return Advice(
+        "When no service has the type, you look for it without end.",
+        "Note the time at the start (time.monotonic()), and raise TimeoutError when patience_sec seconds have passed.",
+    )
+
+
+def patience_not_kept(evidence: Evidence) -> Advice | None:
+    """Without such a service it looks by a limit of its own."""
+    wrong = giving_up.broken_patience(evidence.part(ABSENT))
+    if not wrong:
+        return None
+    return Advice(
+        f"When no service has the type, your function {wrong}.",
+        "Note the time at the start, give_up_at = time.monotonic() + patience_sec, and look until that moment.",
+    )
+
+
+def silent_end(evidence: Evidence) -> Advice | None:
+    """Without such a service it ends, and says nothing."""
+    if says_that_there_is_none(evidence).seen != "ended without a word":
+        return None
+    return Advice(
+        "When no service has the type, you end without a word.",
+        "Raise TimeoutError, with a few words on what was not found.",
+    )
+
+
+EXERCISE = Exercise(
+    id="inspecting_services.question",
+    title="Inspecting services · Find it by its type",
+    task="Find the service of a given type on the graph, and name it.",
+    scenario=scenario,
+    criteria=(
+        Criterion("late", "Finds a service that comes late", 4, finds_the_late_one),
+        Criterion("other", "Finds a service of another type", 3, finds_the_other_type),
+        Criterion("none", "Says so when there is none", 3, says_that_there_is_none),
+    ),
+    mistakes=(
+        Mistake("not_written", not_written, certain=True),
+        *common.CRASHES,
+        Mistake("wrong_service", wrong_service, certain=True),
+        Mistake("looked_once", looked_once, certain=True),
+        Mistake("type_never_matches", type_never_matches),
+        *OTHER_SLIPS,
+        common.usage_message(),
+        Mistake("waits_forever", waits_forever),
+        Mistake("silent_end", silent_end, certain=True),
+        Mistake("patience_not_kept", patience_not_kept),
+        *common.OTHER_CRASHES,
+        *common.NOTHING_THERE,
+    ),
+    roles=(),
+    limit=90.0,
+    arguments="the type of a service, such as std_srvs/srv/Empty",
+    sample_arguments=(ADDER,),
+    remarks=(no_limit,),
+)

@@ -1,0 +1,306 @@
+"""Inspecting topics: find out on the graph why two nodes do not hear each other.
+
+The judge plants a talker and a listener that do not meet, under names that nobody can guess, and asks for the name and
+the type that each of them uses. Nothing of that is in any code that the student can read: it must be looked up.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+from typing import TYPE_CHECKING, Any
+
+from autograder.kit import common_mistakes as common
+from autograder.kit.evidence import Evidence
+from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Look, Mistake
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from random import Random
+
+    from autograder.kit.evidence import Part
+
+KEYS = ("topic_published", "topic_subscribed", "type_published", "type_subscribed")
+"""What is asked for."""
+CASES = ("the name differs", "the type differs", "both differ")
+ANSWERING = {Look.FAST: 8.0, Look.REAL_TIME: 15.0}
+"""Seconds of wall time for an answer; discovery takes up to three in a process that has just started."""
+
+_THINGS = ("camera", "lidar", "gripper", "battery", "wheel", "sonar", "compass", "beacon", "valve", "lamp")
+_BYSTANDERS = ("actuator", "adapter", "aerial", "airbag")
+"""These come first in every list of names, so that who takes the first one that there is takes the same in each run."""
+_QUALITIES = ("state", "status", "level", "position", "speed", "report", "alarm", "mode")
+_TYPES = (
+    "std_msgs/msg/String", "std_msgs/msg/Int32", "std_msgs/msg/Float64", "std_msgs/msg/Bool", "std_msgs/msg/Int64",
+    "std_msgs/msg/UInt8",
+)  # fmt: skip
+
+
+def scenario(bench: Bench) -> None:
+    """Plant three pairs, one after the other, and ask about each."""
+    for case in CASES:
+        planted = mismatch(bench.random, case)
+        bench.part(case, **planted)
+        # Made first, it comes first among the ends of a topic: who looks at one of them only finds the wrong node.
+        bench.plant(planted["bystander"], **bystander(planted))
+        bench.plant(
+            planted["talker"],
+            publishes={planted["topic_published"]: planted["type_published"]},
+            subscribes={},
+        )
+        bench.plant(
+            planted["listener"],
+            publishes={},
+            subscribes={planted["topic_subscribed"]: planted["type_subscribed"]},
+        )
+        bench.start(f"/{planted['talker']}", f"/{planted['listener']}")
+        answered = bench.wait_until(_is_answered, ANSWERING[bench.look])
+        bench.stop()
+        if not answered:
+            return
+
+
+def _is_answered(evidence: Evidence) -> bool:
+    """An answer came, or the subject has ended, or a program that stays has printed all that is asked for."""
+    given = answer(evidence.main)
+    return evidence.main.ending is not None or (given is not None and set(KEYS) <= set(given))
+
+
+def bystander(planted: Mapping[str, Any]) -> dict[str, dict[str, str]]:
+    """What a third node publishes and subscribes to: a topic of its own, and each side's beside the node in question.
+
+    In one participant a topic has one type, so where the two sides share the name it is on the listener's only.
+    """
+    published, subscribed = planted["topic_published"], planted["topic_subscribed"]
+    talks = {published: planted["type_published"]} if published != subscribed else {}
+    return {
+        "publishes": {**planted["beside"], **talks},
+        "subscribes": {**planted["beside"], subscribed: planted["type_subscribed"]},
+    }
+
+
+def mismatch(random: Random, case: str) -> dict[str, Any]:
+    """Names and types of two nodes that do not meet, and of a third that has nothing to do with it."""
+    thing, other = random.sample(_THINGS, 2)
+    third = random.choice(_BYSTANDERS)
+    quality, second = random.sample(_QUALITIES, 2)
+    kind, another = random.sample(_TYPES, 2)
+    topic = f"/{thing}/{quality}"
+    # The wrong names are of the kind that happens: an ending, a namespace, another word.
+    wrong = random.choice(
+        (f"{topic}s", f"/{other}{topic}", f"/{thing}/{second}", f"/{quality}", f"/{thing}_{quality}")
+    )
+    numbers = random.sample(range(100, 1000), 3)
+    return {
+        "talker": f"{thing}_{numbers[0]}",
+        "listener": f"{quality}_monitor_{numbers[1]}",
+        "bystander": f"{third}_{numbers[2]}",
+        "beside": {f"/{third}/{quality}": kind},
+        "topic_published": topic,
+        "topic_subscribed": topic if case == CASES[1] else wrong,
+        "type_published": kind,
+        "type_subscribed": kind if case == CASES[0] else another,
+    }
+
+
+def answer(part: Part) -> Mapping[str, Any] | None:
+    """The last dictionary that the subject returned or printed; None where there is none."""
+    for text in reversed(part.said()):
+        found = _dictionary(text)
+        if found is not None:
+            return found
+    return None
+
+
+def _dictionary(text: str) -> dict[str, Any] | None:
+    start, end = text.find("{"), text.rfind("}")
+    if start < 0 or end < start:
+        return None
+    body = text[start : end + 1]
+    for read in (ast.literal_eval, json.loads):
+        try:
+            value = read(body)
+        except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
+            continue
+        if isinstance(value, dict):
+            return value
+    return None
+
+
+def _same(key: str, given: Any, truth: str) -> bool:
+    """Whether an answer is the truth: a topic may lack its first slash, a type its `msg`, and both may be in a list."""
+    if isinstance(given, (list, tuple, set)) and len(given) == 1:
+        given = next(iter(given))
+    text = str(given).strip()
+    if key.startswith("topic"):
+        return f"/{text.lstrip('/')}" == truth
+    return text.replace("/msg/", "/").replace(".msg.", "/") == truth.replace("/msg/", "/")
+
+
+def _named(evidence: Evidence, case: str, keys: tuple[str, ...]) -> tuple[bool, str, str]:
+    part = evidence.part(case)
+    given = answer(part) or {}
+    right = bool(part.inputs) and all(_same(key, given.get(key), str(part.inputs[key])) for key in keys)
+    wanted = ", ".join(str(part.inputs.get(key)) for key in keys)
+    seen = ", ".join(str(given.get(key, "nothing")) for key in keys)
+    return right, wanted, seen
+
+
+def _criterion(name: str, title: str, points: float, keys: tuple[str, ...]) -> Criterion:
+    def judge(evidence: Evidence) -> Finding:
+        results = [_named(evidence, case, keys) for case in CASES]
+        _, wanted, seen = next((result for result in results if not result[0]), results[0])
+        return Finding(all(result[0] for result in results), wanted, seen)
+
+    return Criterion(name, title, points, judge)
+
+
+def _wrong_cases(evidence: Evidence) -> list[Part]:
+    """The parts that were run and not answered right."""
+    return [part for part in evidence if part.inputs and not _named(evidence, part.name, KEYS)[0]]
+
+
+def swapped(evidence: Evidence) -> Advice | None:
+    """What is published is given as what is subscribed to."""
+    for part in _wrong_cases(evidence):
+        given = answer(part) or {}
+        crossed = {
+            key: key.replace("published", "#").replace("subscribed", "published").replace("#", "subscribed")
+            for key in KEYS
+        }
+        if given and all(_same(key, given.get(crossed[key]), str(part.inputs[key])) for key in KEYS):
+            return Advice(
+                "The two sides are mixed up: what you give as published is what the listener subscribes to.",
+                "Look at the publishers of the first node, and at the subscriptions of the second.",
+            )
+    return None
+
+
+def one_side_only(evidence: Evidence) -> Advice | None:
+    """One side's answer is given for both."""
+    for part in _wrong_cases(evidence):
+        given = answer(part) or {}
+        for what in ("topic", "type"):
+            one, two = given.get(f"{what}_published"), given.get(f"{what}_subscribed")
+            if (
+                one is not None
+                and one == two
+                and part.inputs[f"{what}_published"] != part.inputs[f"{what}_subscribed"]
+            ):
+                return Advice(
+                    f"Your answer has the same {what} on both sides, {one}; the two nodes use different ones.",
+                    "Ask the graph about each node by itself: the publishers of the first, the subscriptions of the "
+                    "second.",
+                )
+    return None
+
+
+def wrong_node(evidence: Evidence) -> Advice | None:
+    """What a node has that every node has, or what another node has, is given as the answer."""
+    for part in _wrong_cases(evidence):
+        given = {str(value) for value in (answer(part) or {}).values()}
+        if given & {"/rosout", "/parameter_events", "/clock"}:
+            return Advice(
+                "Your answer names /rosout or /parameter_events: every node has these, for its log and its parameters.",
+                "Leave them out, and take the topic that is left.",
+            )
+        if given & set(part.inputs.get("beside", ())):
+            return Advice(
+                f"Your answer names {', '.join(part.inputs['beside'])}, a topic of a third node that has nothing to do "
+                "with it.",
+                "Ask for the topics of the two nodes you were given, not for all that there are.",
+            )
+    return None
+
+
+def looked_too_early(evidence: Evidence) -> Advice | None:
+    """A node was asked about before it was met."""
+    missing = any("NodeNameNonExistentError" in part.traceback for part in evidence)
+    empty = any(
+        (given := answer(part)) is not None and not any(given.values()) for part in _wrong_cases(evidence)
+    )
+    if not (missing or empty):
+        return None
+    return Advice(
+        "Your function asked the graph before it had met the two nodes: a node that was just made knows nobody yet.",
+        "Wait, with a limit, until both names are in node.get_node_names_and_namespaces(); then ask what they have.",
+    )
+
+
+def no_answer(evidence: Evidence) -> Advice | None:
+    """Something came back, and it is no dictionary with the four keys."""
+    for part in _wrong_cases(evidence):
+        given = answer(part)
+        ended = part.ending is not None
+        if ended and (given is None or not set(KEYS) <= set(given)):
+            missing = ", ".join(key for key in KEYS if key not in (given or {}))
+            return Advice(
+                f"Your answer lacks {missing}." if given else "Your function ended without an answer.",
+                "Return a dictionary with the keys " + ", ".join(KEYS) + " (a program prints it).",
+            )
+    return None
+
+
+def invented_answer(evidence: Evidence) -> Advice | None:
+    """The same answer whatever was planted."""
+    given = [answer(evidence.part(case)) for case in CASES]
+    if None in given or any(one != given[0] for one in given):
+        return None
+    return Advice(
+        "Your answer is the same each time, but each pair of nodes is another one.",
+        "The names of the two nodes are the arguments of your function: look these nodes up.",
+    )
+
+
+def type_missing(evidence: Evidence) -> Advice | None:
+    """The names are right, and a type is not."""
+    for part in _wrong_cases(evidence):
+        given = answer(part) or {}
+        names = all(_same(key, given.get(key), str(part.inputs[key])) for key in KEYS[:2])
+        if names and given:
+            return Advice(
+                f"The topics are right, but not the types: you give {given.get(KEYS[2])} and {given.get(KEYS[3])}.",
+                "A topic's type stands beside its name, in get_publisher_names_and_types_by_node as in `ros2 topic "
+                "list -t`. The two sides may have different ones.",
+            )
+    return None
+
+
+def never_ended(evidence: Evidence) -> Advice | None:
+    """No answer came in time."""
+    if all(_is_answered(Evidence([part], evidence.reference)) for part in evidence):
+        return None
+    return Advice(
+        "Your function was still busy when the time was over.",
+        "Looking at the graph needs no spin. Wait for the two nodes with a limit, and return.",
+    )
+
+
+EXERCISE = Exercise(
+    id="inspecting_topics.mismatch",
+    title="Inspecting topics · Why they do not meet",
+    task="Find out which topic and type each of two nodes uses.",
+    scenario=scenario,
+    criteria=(
+        _criterion("topic_published", "Finds the talker's topic", 2.5, KEYS[:1]),
+        _criterion("topic_subscribed", "Finds the listener's topic", 2.5, KEYS[1:2]),
+        _criterion("type_published", "Finds the talker's type", 2.5, KEYS[2:3]),
+        _criterion("type_subscribed", "Finds the listener's type", 2.5, KEYS[3:]),
+    ),
+    mistakes=(
+        Mistake("looked_too_early", looked_too_early),
+        *common.CRASHES,
+        *common.OTHER_CRASHES,
+        Mistake("invented_answer", invented_answer),
+        Mistake("no_answer", no_answer),
+        Mistake("sides_swapped", swapped),
+        Mistake("wrong_node", wrong_node),
+        Mistake("one_side_only", one_side_only),
+        Mistake("wrong_type", type_missing),
+        Mistake("never_ended", never_ended),
+    ),
+    roles=(),
+    limit=120.0,
+    arguments="the full names of the talker and of the listener",
+    sample_arguments=("/nobody", "/nobody_else"),
+)

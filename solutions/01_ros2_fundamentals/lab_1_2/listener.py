@@ -1,0 +1,16 @@
+"""Lab 1.2, the listener: says what it hears, and nothing else."""
+
+from autograder.kit.draft import Draft
+from autograder.kit.recipes.subscriber import Speaks, says_every_text, says_nothing_else, subscribes
+
+listener = Draft(
+    "lab_1_2.listener",
+    "Lab 1.2 · The listener",
+    "Say every text that arrives on the topic.",
+    Speaks(pace=0.5, paced_by="the lab's talker"),
+)
+listener.asks("topic", 3, "Subscribes to the right topic and type", subscribes)
+listener.asks("says", 5, "Says every text it hears", says_every_text)
+listener.asks("honest", 2, "Says only what it heard", says_nothing_else)
+
+EXERCISE = listener.exercise(limit=120.0)

@@ -1,0 +1,131 @@
+"""Lab 1.2, the talker: a counted greeting on a topic, at a steady rate."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import re2
+
+from autograder.kit.draft import Draft
+from autograder.kit.model import Advice, Finding
+from autograder.kit.recipes.publisher import Hears, Publisher
+
+heard = Hears(messages=8, long_run=20)
+talker = Draft(
+    "lab_1_2.talker",
+    "Lab 1.2 · The talker",
+    "Publish a counted greeting on the topic every half second.",
+    heard,
+)
+
+talker.asks("topic", 2, "Publishes on the right topic", heard.on_topic)
+talker.asks("type", 1, "Publishes the right message type", heard.has_type)
+
+
+@heard.each_text
+@talker.criterion("text", 2, "Says the right text")
+def text(seen: Publisher, expected: Publisher) -> Finding:
+    """Every text is the reference's, the number aside."""
+    odd = [
+        text for text, form in zip(seen.texts, seen.templates, strict=True) if form not in expected.templates
+    ]
+    found = f"“{(odd or seen.texts)[0]}”" if seen.texts else "no message arrived"
+    if seen.texts and not odd and not seen.went_on:
+        found += ", and no more"
+    passed = seen.went_on and not odd
+    return Finding(passed, f"“{expected.texts[0]}”, “{expected.texts[1]}”, …", found)
+
+
+@heard.whole_course
+@talker.criterion("counter", 2, "Counts up from the start")
+def counter(seen: Publisher, expected: Publisher) -> Finding:
+    """The numbers are the reference's, from the first message on."""
+    numbers = seen.counters
+    steady = len(numbers) >= seen.enough and numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+    found = ", ".join(map(str, numbers)) if len(numbers) < seen.enough else row(numbers[:5])
+    passed = steady and seen.went_on and starts_right(seen, expected)
+    return Finding(passed, row(expected.counters[:5]), found or "no whole number arrived")
+
+
+talker.asks("rate", 3, "Keeps the rate", heard.keeps_rate)
+
+
+def starts_right(seen: Publisher, expected: Publisher) -> bool:
+    """Whether it counted from the reference's first number."""
+    return seen.first_number == expected.counters[0]
+
+
+def row(numbers: list[int]) -> str:
+    """Numbers that go on."""
+    return ", ".join(map(str, numbers)) + ", …"
+
+
+@talker.mistake(
+    "field_typo",
+    certain=True,
+    says="Your messages arrive, but their text is empty: the field was never filled.",
+    next_step="A String has one field, data. Write msg.data = ...; String(...) ignores a misspelt keyword silently.",
+)
+def field_typo(seen: Publisher, _: Publisher) -> bool:
+    """Messages arrive, and every text is empty."""
+    return bool(seen.texts) and not any(seen.texts)
+
+
+@talker.mistake(
+    "counter_stuck",
+    certain=True,
+    says="Every message carries the number {seen.counters[0]}: the counter is never counted up.",
+    next_step="Add self.count += 1 at the end of the method. A plain count = count + 1 counts a local variable.",
+)
+def counter_stuck(seen: Publisher, _: Publisher) -> bool:
+    """The number never changes."""
+    return len(seen.counters) >= 3 and len(set(seen.counters)) == 1
+
+
+@talker.mistake("wrong_text", certain=True)
+def wrong_text(seen: Publisher, expected: Publisher) -> Advice | None:
+    """Messages arrive, but with another text."""
+    finding = text(seen, expected)
+    if all(form in expected.templates for form in seen.templates):
+        return None
+    if blank := re2.search(r"\{[^{}]*\}|%[ds]", finding.seen):
+        return Advice(
+            f"Your talker says {finding.seen}: {blank[0]} is sent as it stands, Python put no number in its place.",
+            "Put an f in front of the opening quotation mark: f'Hello, world! {self.count}'.",
+        )
+    if re2.search(r"\d[.,]\d", finding.seen):
+        return Advice(
+            f"Your talker says {finding.seen}: its number is no whole number; the task asks for {finding.expected}",
+            "Begin with self.count = 0 (not 0.0) and add 1, or write int(...) around the number.",
+        )
+    return Advice(
+        f"Your talker says {finding.seen}; the task asks for {finding.expected}",
+        "Compare the two letter by letter: capitals, the comma, the exclamation mark and the space before the number "
+        "all count, because other nodes read this text.",
+    )
+
+
+@talker.mistake(
+    "counter_start",
+    late=True,
+    says="The first message carries the number {seen.counters[0]}; the counter must begin at {expected.counters[0]}.",
+    next_step="Set self.count = {expected.counters[0]} in __init__ and add 1 only after the message was published.",
+)
+def counter_start(seen: Publisher, expected: Publisher) -> bool:
+    """It counts by one, but from another number."""
+    steady = len(seen.counters) > 1 and all(b - a == 1 for a, b in pairwise(seen.counters))
+    return steady and not starts_right(seen, expected)
+
+
+@talker.mistake("counter_step", late=True)
+def counter_step(seen: Publisher, _: Publisher) -> Advice | None:
+    """The numbers do not go up by one."""
+    if len(seen.counters) < 3 or all(b - a == 1 for a, b in pairwise(seen.counters)):
+        return None
+    return Advice(
+        f"The numbers come as {row(seen.counters[:6])} They must go up by one with each message.",
+        "Count once for each published message: one self.count += 1 at the end of the method, and one timer.",
+    )
+
+
+EXERCISE = talker.exercise()

@@ -1,0 +1,34 @@
+"""Right: an exception of its own says that nobody serves."""
+import sys
+
+import rclpy
+from my_robot_interfaces.srv import AddTwoInts
+from rclpy.node import Node
+
+
+class TwoInts(Node):
+    def __init__(self):
+        super().__init__('two_ints')
+        self.cli = self.create_client(AddTwoInts, 'add_two_ints')
+
+    def add(self, a, b):
+        request = AddTwoInts.Request()
+        request.a = a
+        request.b = b
+        future = self.cli.call_async(request)
+        rclpy.spin_until_future_complete(self, future)
+        return future.result().sum
+
+
+def main():
+    a, b = int(sys.argv[1]), int(sys.argv[2])
+    rclpy.init()
+    node = TwoInts()
+    if not node.cli.wait_for_service(timeout_sec=5.0):
+        raise RuntimeError('add_two_ints is not there')
+    total = node.add(a, b)
+    node.get_logger().info(f'Final sum: {total}')
+
+
+if __name__ == '__main__':
+    main()

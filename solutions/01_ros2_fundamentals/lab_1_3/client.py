@@ -1,0 +1,181 @@
+"""Lab 1.3: a client that has a service add two numbers and reports what it answered.
+
+The judge serves, and its answers are not what the client could have added up by itself.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit import service_calls
+from autograder.kit.draft import Draft
+from autograder.kit.model import Advice, Finding
+from autograder.kit.numbers_said import mentions
+from autograder.kit.recipes.service_client import Calls, Run, hidden
+from autograder.kit.service_calls import (
+    BIASED,
+    EXTREME,
+    LATE,
+    Client,
+    answers,
+    pair,
+    reports,
+    requests,
+)
+
+if TYPE_CHECKING:
+    from random import Random
+
+    from autograder.kit.evidence import Part
+
+
+def runs(random: Random) -> tuple[Run, ...]:
+    """A late service, a surprising one, and large numbers."""
+    return (
+        Run(LATE, everyday(random), (-hidden(random),)),
+        # 0 is an answer like any other, and neither of the numbers looks like it.
+        Run(BIASED, negative(random), (0,)),
+        # Held back is another answer: who does not wait for it must not look like who takes 0 for none.
+        Run(EXTREME, extreme(random), held=1),
+    )
+
+
+def everyday(random: Random) -> tuple[int, int]:
+    """A number of everyday size and a zero, in any order."""
+    first, second = random.sample((random.randint(1001, 99_999), 0), 2)
+    return first, second
+
+
+def negative(random: Random) -> tuple[int, int]:
+    """A negative number and a positive one."""
+    return -random.randint(1001, 49_999), random.randint(50_001, 99_999)
+
+
+def extreme(random: Random) -> tuple[int, int]:
+    """Numbers near both ends of an int64, whose sum is negative and stays inside it."""
+    return 2**62 - 1 - random.randint(0, 999), -(2**63) + random.randint(0, 999)
+
+
+recipe = Calls(
+    1,
+    runs,
+    (everyday, negative, extreme),
+    too_many=(
+        "Your client called the service {count} times for one sum.",
+        "Call once, and wait for that answer.",
+    ),
+)
+client = Draft(
+    "lab_1_3.client",
+    "Lab 1.3 · A client that asks for a sum",
+    "Have the service add_two_ints add two numbers, and report its answer.",
+    recipe,
+)
+
+
+@client.criterion("call", 4, "Calls once, with the two numbers")
+def call(seen: Client, expected: Client) -> Finding:
+    """In each run it calls once, with the two numbers."""
+    wrong = next((part for part in seen.served if not is_right(part, expected)), None)
+    wanted = "one call with the two numbers, in each run"
+    if wrong is None:
+        return Finding(True, wanted, wanted)
+    made = [f"{e.data['fields']['a']} + {e.data['fields']['b']}" for e in requests(wrong)[:3]]
+    numbers = " and ".join(map(str, wrong.inputs.get("numbers", ())))
+    return Finding(False, wanted, (f"for {numbers}: " if numbers else "") + (", ".join(made) or "no call"))
+
+
+def is_right(part: Part, expected: Client) -> bool:
+    """Whether a run made as many calls as the reference solution, with its numbers."""
+    made = requests(part)
+    return len(made) == expected.calls and pair(made[0]) == sorted(part.inputs["numbers"])
+
+
+client.asks("sum", 4, "Reports the sum that the service answered", service_calls.reports_the_sum)
+
+
+@client.criterion("late", 1, "Waits for a service that comes late")
+def late(seen: Client, _: Client) -> Finding:
+    """With a service that comes late it makes its call all the same; how often and with what is asked elsewhere."""
+    return recipe.waits(seen, called=seen.calls > 0)
+
+
+client.asks("limit", 1, "Ends clearly when there is no service", service_calls.gives_up_in_time)
+
+
+@client.mistake("wrong_arguments", certain=True)
+def wrong_arguments(seen: Client, expected: Client) -> Advice | None:
+    """One call with other numbers."""
+    finding = call(seen, expected)
+    if finding.passed or not seen.called(expected.calls):
+        return None
+    return Advice(
+        f"The call carries the wrong numbers ({finding.seen}).",
+        "The request's a is the first number, its b the second. On a command line, sys.argv[0] is the program itself.",
+    )
+
+
+@client.mistake(
+    "no_call",
+    late=True,
+    says="Your client never called the service.",
+    next_step="Make a request, fill a and b, and send it with call_async. "
+    "What you add up yourself is no answer of the server.",
+)
+def no_call(seen: Client, _: Client) -> bool:
+    """It ends by itself, with a client and without a call."""
+    part = next((part for part in seen.served if part.ending and not requests(part)), None)
+    return part is not None and bool(part.endpoints("client"))
+
+
+@client.mistake("wrong_sum_reported", late=True, certain=Client.ended_each_time)
+def wrong_sum_reported(seen: Client, expected: Client) -> Advice | None:
+    """The call is right, and another number is said."""
+    part = unreported(seen, expected)
+    lines = part.said(after=part.of("response")[-1]) if part else []
+    told = (
+        next(
+            (
+                line
+                for line in reversed(lines)
+                if re2.search(r"\d", line) and not mentions([line], answers(part)[-1])
+            ),
+            None,
+        )
+        if part
+        else None
+    )
+    if part is None or told is None:
+        return None
+    return Advice(
+        f"The service answered {answers(part)[-1]}, but your program said “{told}”.",
+        "Report what the answer holds, future.result().sum, and add nothing up yourself.",
+    )
+
+
+@client.mistake(
+    "sum_not_reported",
+    late=True,
+    certain=Client.ended_each_time,
+    says="The call is right, but the sum is never said.",
+    next_step="Log or print the sum of the answer (in the notebook, return it too): future.result().sum.",
+)
+def sum_not_reported(seen: Client, expected: Client) -> bool:
+    """The call is right, and the answer is never said."""
+    return unreported(seen, expected) is not None
+
+
+def unreported(seen: Client, expected: Client) -> Part | None:
+    """A run with a right call whose answer is not said."""
+    answered = (part for part in seen.served if part.of("response"))
+    return next((part for part in answered if is_right(part, expected) and not reports(part)), None)
+
+
+EXERCISE = client.exercise(
+    limit=150.0,
+    arguments="two whole numbers",
+    remarks=(service_calls.no_limit,),
+    sample_arguments=(1, 2),
+)

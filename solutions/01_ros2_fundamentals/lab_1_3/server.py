@@ -1,0 +1,107 @@
+"""Lab 1.3: a server that adds two integers: of everyday size, negative, zero, and near the ends of 64 bits."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from autograder.kit.draft import Draft
+from autograder.kit.model import Advice, Finding
+from autograder.kit.recipes.service_server import AT_ONCE, Asks, Server
+
+if TYPE_CHECKING:
+    from random import Random
+
+    from autograder.kit.recipes.service_server import Fields
+
+ORDINARY = 6
+"""Calls with numbers of everyday size."""
+
+
+def single_calls(random: Random) -> list[Fields]:
+    """What is asked one by one: everyday numbers, negative ones, zeros, and sums just inside an int64."""
+    wide, low = 2**63 - 1, -(2**63)
+    some = random.randint(1001, 99_999)
+    return [
+        *(ordinary(random) for _ in range(ORDINARY)),
+        {"a": -some, "b": random.randint(1001, 99_999)},
+        {"a": -random.randint(1001, 99_999), "b": -random.randint(1001, 99_999)},
+        {"a": 0, "b": some},
+        {"a": -some, "b": 0},
+        {"a": 0, "b": 0},
+        {"a": some, "b": -some},
+        {"a": wide - some, "b": some},
+        {"a": low + some, "b": -some + random.randint(0, 9)},
+        {"a": wide, "b": low + random.randint(1, 999)},
+    ]
+
+
+def ordinary(random: Random) -> Fields:
+    """Two numbers of everyday size."""
+    a, b = random.sample(range(1001, 99_999), 2)
+    return {"a": a, "b": b}
+
+
+def objection(request: Fields, answer: Fields | None) -> str:
+    """What is wrong about an answer."""
+    a, b = request["a"], request["b"]
+    if answer is None:
+        return f"no answer to {a} + {b}"
+    return "" if answer["sum"] == a + b else f"{a} + {b} was answered with {answer['sum']}"
+
+
+server = Draft(
+    "lab_1_3.server",
+    "Lab 1.3 · A server that adds",
+    "Serve add_two_ints: answer each request with the sum of its two numbers.",
+    asks := Asks(single_calls, ordinary),
+)
+server.asks("service", 2, "Serves add_two_ints, with the right type", asks.serves)
+
+
+@server.criterion("sums", 4, "Answers with the sum")
+def sums(seen: Server, _: Server) -> Finding:
+    """Each call of the first phase is answered with the sum."""
+    return seen.all_right(seen.singly, objection, "the sum, for every pair of numbers")
+
+
+@server.criterion("together", 2, "Answers several calls at once")
+def together(seen: Server, _: Server) -> Finding:
+    """Each of the calls at once is answered with its own sum."""
+    return seen.all_right(seen.together, objection, f"the right sum for each of {AT_ONCE} calls at once")
+
+
+@server.criterion("alive", 2, "Stays alive")
+def alive(seen: Server, _: Server) -> Finding:
+    """The call after all others is answered."""
+    return seen.all_right(seen.last, objection, "answers once more after all that")
+
+
+@server.mistake(
+    "field_typo",
+    certain=True,
+    says="Every answer is 0: the field sum of the response was never filled.",
+    next_step="Set response.sum = request.a + request.b. A misspelt keyword in AddTwoInts.Response(...) is ignored "
+    "silently.",
+)
+def field_typo(seen: Server, _: Server) -> bool:
+    """Every answer is 0."""
+    return bool(seen.answers) and not any(answer["sum"] for answer in seen.answers.values())
+
+
+@server.mistake("wrong_sum", certain=True)
+def wrong_sum(seen: Server, _: Server) -> Advice | None:
+    """An answer is not the sum."""
+    wrong = [text for text in seen.objections(seen.asked, objection) if " was answered" in text]
+    if seen.part.traceback:
+        # rclpy answers with -1 what it cannot put into the message, and dies of it: that is no sum of the subject's.
+        wrong = [text for text in wrong if not text.endswith(" was answered with -1")]
+    if not wrong:
+        return None
+    return Advice(
+        f"The answer is not the sum: {wrong[0]}.",
+        "Compute it from this very request: response.sum = request.a + request.b. Python's whole numbers have no "
+        "limit, so nothing needs to be converted.",
+    )
+
+
+EXERCISE = server.exercise(limit=90.0)

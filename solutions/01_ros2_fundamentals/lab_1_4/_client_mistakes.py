@@ -1,0 +1,294 @@
+"""Known mistakes of a client that sends one goal and tells how it ended."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from autograder.kit import common_mistakes as common
+from autograder.kit.giving_up import gave_up, patience_not_kept
+from autograder.kit.goal_reports import (
+    ABORTED,
+    ABSENT,
+    AT_ONCE,
+    LATE,
+    MANY_REQUESTS,
+    NO_GOAL,
+    NOT_AWAITED,
+    REFUSED,
+    SERVED,
+    aborted_as_seen,
+    asked_for,
+    given_up,
+    goals_as_seen,
+    miscalled,
+    refused_as_seen,
+    reports_result,
+    said_of_result,
+    unshown_feedback,
+)
+from autograder.kit.hangs import HANGS
+from autograder.kit.meant_errors import OTHER_SLIPS, meant
+from autograder.kit.model import Advice, Mistake
+from autograder.kit.numbers_said import mentions
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Evidence
+
+
+def waits_for_nobody(evidence: Evidence) -> Advice | None:
+    """Without a server it never ends, and does not say that it waits."""
+    if not given_up(evidence).startswith("still waiting"):
+        return None
+    return Advice(
+        "When there is no action server, your client waits without end.",
+        "Give the wait a limit: `if not client.wait_for_server(timeout_sec=5.0):` say so and stop.",
+    )
+
+
+def another_patience(evidence: Evidence) -> Advice | None:
+    """A function gives up at another moment than it was told."""
+    return patience_not_kept(evidence.part(ABSENT))
+
+
+def waits_forever(evidence: Evidence) -> Advice | None:
+    """With a server that is there, it neither sends a goal nor ends."""
+    part = evidence.part(LATE)
+    if not part.endpoints("action_client") or part.ending is not None or asked_for(part):
+        return None
+    return Advice(
+        "The server was there, but your client never sent a goal and never ended.",
+        "Wait with a limit, `client.wait_for_server(timeout_sec=5.0)`, and send the goal as soon as it is True.",
+    )
+
+
+def gave_up_too_early(evidence: Evidence) -> Advice | None:
+    """It ended before it had met the server."""
+    served = [evidence.part(name) for name in SERVED]
+    if not gave_up(served, evidence.part(ABSENT), lambda part: bool(asked_for(part))):
+        return None
+    return Advice(
+        "The server was there, or came a moment late, and your client had already given up.",
+        "Wait for it with wait_for_server and a few seconds of patience before you send the goal.",
+    )
+
+
+def order_never_filled(evidence: Evidence) -> Advice | None:
+    """Every goal asks for order 0."""
+    made = [order for name in SERVED for order in asked_for(evidence.part(name))]
+    if not made or any(made):
+        return None
+    return Advice(
+        "The goal asks for order 0: its field was never filled.",
+        "Set goal.order (or Fibonacci.Goal(order=...)). A misspelt keyword is ignored silently.",
+    )
+
+
+def wrong_order(evidence: Evidence) -> Advice | None:
+    """Another order than the one given, or several goals."""
+    wrong = goals_as_seen(evidence)
+    if not wrong or wrong in (NO_GOAL, NOT_AWAITED):
+        return None
+    return Advice(
+        f"The judge got {wrong}.",
+        "Send one goal, once, with the order that your function or program was given (sys.argv[1] on a command line). "
+        "A timer that sends it has to be switched off when it has done so.",
+    )
+
+
+def never_spun(evidence: Evidence) -> Advice | None:
+    """It sent its goal, and nothing that came back was taken in."""
+    part = evidence.part(LATE)
+    if not asked_for(part) or part.first("result_request") is not None or not part.of("unanswered"):
+        return None
+    return Advice(
+        "Your client sent its goal, but it takes in nothing that comes back: no callback of it is called any more.",
+        "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future), in one place.",
+    )
+
+
+def result_of_rejected_goal(evidence: Evidence) -> Advice | None:
+    """It asked for a result that will never be."""
+    if evidence.part(REFUSED).first("result_request") is None:
+        return None
+    return Advice(
+        "The goal was refused, and your client asked for its result all the same: there is none, and the status that "
+        "comes back is 0, UNKNOWN.",
+        "Look at goal_handle.accepted first. Where it is False, say so and stop.",
+    )
+
+
+def never_ended(evidence: Evidence) -> Advice | None:
+    """It says that the goal was refused and stays."""
+    if refused_as_seen(evidence) != "said so, and did not end":
+        return None
+    return Advice(
+        "Your client says that the goal was refused, and then waits for ever for a result that will not come.",
+        "End it there, too: shut down where you found `not goal_handle.accepted`, or spin until a future of your own "
+        "is complete and set its result.",
+    )
+
+
+def refusal_not_reported(evidence: Evidence) -> Advice | None:
+    """It does not say that the goal was refused."""
+    if refused_as_seen(evidence) != "nothing was said of it":
+        return None
+    return Advice(
+        "The goal was refused, and your client did not say so.",
+        "Look at goal_handle.accepted when the answer to the goal is there, and log an error where it is False.",
+    )
+
+
+def feedback_not_shown(evidence: Evidence) -> Advice | None:
+    """Feedback came and was not logged."""
+    part = evidence.part(LATE)
+    missing = unshown_feedback(part)
+    if not missing or part.first("result_request") is None:
+        return None
+    return Advice(
+        f"{len(part.of('feedback'))} feedback messages were sent, and your client showed "
+        f"{len(part.of('feedback')) - len(missing)} of them.",
+        "Give send_goal_async a feedback_callback, and log message.feedback.partial_sequence in it, each time.",
+    )
+
+
+def ended_before_its_answers(evidence: Evidence) -> Advice | None:
+    """It ended while an answer was on its way, or as soon as its goal was accepted."""
+    part = evidence.part(LATE)
+    ending, answered, result = part.ending, part.first("goal_answered"), part.first("result")
+    if not asked_for(part) or ending is None or (part.traceback and not meant(part.traceback)):
+        return None
+    events = list(part.events)
+    took = part.first("feedback") is not None and len(unshown_feedback(part)) < len(part.of("feedback"))
+    if answered is None or (
+        not took and ending.t - answered.t < AT_ONCE and part.first("result_request") is None
+    ):
+        missing = "it could make anything of the answer"
+    elif part.first("result_request") and (result is None or events.index(ending) < events.index(result)):
+        missing = "the result that it had asked for was there"
+    else:
+        return None
+    return Advice(
+        f"Your client sent its goal, and ended before {missing}. An answer may take half a second and more.",
+        "Spin until the answer is there: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), or "
+        "rclpy.spin(node) where callbacks take the answers. A single spin_once takes in one thing only.",
+    )
+
+
+def result_not_requested(evidence: Evidence) -> Advice | None:
+    """It never asked for the result."""
+    part = evidence.part(LATE)
+    if not asked_for(part) or part.first("result_request") is not None:
+        return None
+    return Advice(
+        "Your client sent its goal and never asked for the result.",
+        "Call goal_handle.get_result_async() once the goal is accepted, and wait for that future.",
+    )
+
+
+def result_requested_again_and_again(evidence: Evidence) -> Advice | None:
+    """A poll that was never stopped."""
+    asked = len(evidence.part(LATE).of("result_request"))
+    if asked <= MANY_REQUESTS:
+        return None
+    return Advice(
+        f"Your client asked for the result of one goal {asked} times.",
+        "Ask once, when the goal is accepted, and wait for the future that you get. A timer that looks whether "
+        "something is there has to be switched off (timer.cancel()) when it is.",
+    )
+
+
+def wrong_result_reported(evidence: Evidence) -> Advice | None:
+    """It says the last feedback once more, and takes it for the result."""
+    part = evidence.part(LATE)
+    result, feedback = part.first("result"), part.of("feedback")
+    if result is None or reports_result(part) or not feedback:
+        return None
+    if not mentions(said_of_result(part), feedback[-1].data["fields"]["partial_sequence"][-1]):
+        return None
+    return Advice(
+        "Your client reported the last feedback as if it were the result; the result was another sequence.",
+        "Take the sequence from the result: future.result().result.sequence.",
+    )
+
+
+def status_misreported(evidence: Evidence) -> Advice | None:
+    """It calls a goal canceled or aborted that has succeeded."""
+    wrong = miscalled(evidence.part(LATE))
+    if not wrong:
+        return None
+    return Advice(
+        f"The goal succeeded (status 4), but your client said “{wrong}”.",
+        "Look the number up in GoalStatus (from action_msgs.msg): 4 is SUCCEEDED, 5 is CANCELED, 6 is ABORTED.",
+    )
+
+
+def result_not_reported(evidence: Evidence) -> Advice | None:
+    """The result came and was not said."""
+    part = evidence.part(LATE)
+    if part.first("result_request") is None or reports_result(part):
+        return None
+    return Advice(
+        "The result came, but your client did not say its sequence.",
+        "When the result is there, log future.result().result.sequence (and in the notebook return it).",
+    )
+
+
+def abort_not_reported(evidence: Evidence) -> Advice | None:
+    """An aborted goal sounds like one that succeeded."""
+    wrong = aborted_as_seen(evidence)
+    if not wrong or evidence.part(ABORTED).first("result_request") is None:
+        return None
+    return Advice(
+        f"The goal was aborted (status 6), but what your client said of it is the same as for a success: {wrong}.",
+        "Compare future.result().status with GoalStatus.STATUS_SUCCEEDED (from action_msgs.msg) and say what it is.",
+    )
+
+
+def silent_end(evidence: Evidence) -> Advice | None:
+    """Without a server it ends, and says nothing."""
+    if given_up(evidence) != "ended without a word" or not asked_for(evidence.part(LATE)):
+        return None
+    return Advice(
+        "When there is no action server, your client ends without a word.",
+        "Log an error (or raise TimeoutError) before you return.",
+    )
+
+
+_WHAT_IS_SAID = (
+    ("result_of_rejected_goal", result_of_rejected_goal),
+    ("result_not_reported", result_not_requested),
+    ("status_misreported", status_misreported),
+    ("wrong_result_reported", wrong_result_reported),
+    ("result_not_reported", result_not_reported),
+    ("refusal_not_reported", refusal_not_reported),
+    ("abort_not_reported", abort_not_reported),
+    ("silent_end", silent_end),
+)
+"""What a client asks and says: where it has come to its own end in every part, time had no part in it."""
+
+MISTAKES = (
+    *common.CRASHES,
+    common.endpoint_name("action_client"),
+    common.message_type("action_client"),
+    *OTHER_SLIPS,
+    Mistake("field_typo", order_never_filled, certain=True),
+    Mistake("wrong_order", wrong_order, certain=True),
+    common.usage_message(),
+    Mistake("gave_up_too_early", gave_up_too_early),
+    Mistake("ended_too_early", ended_before_its_answers),
+    Mistake("result_repeated", result_requested_again_and_again, certain=True),
+    Mistake("waits_forever", waits_for_nobody, certain=True),
+    Mistake("patience_not_kept", another_patience),
+    Mistake("waits_forever", waits_forever),
+    *(replace(hang, certain=True) for hang in HANGS),
+    Mistake("never_spun", never_spun),
+    # Never certain: a client that is starved of time may leave feedback unread when its result is there.
+    Mistake("feedback_not_shown", feedback_not_shown),
+    *(Mistake(key, common.only_if_ended(advice), certain=True) for key, advice in _WHAT_IS_SAID),
+    Mistake("never_ended", never_ended),
+    *(Mistake(key, advice) for key, advice in _WHAT_IS_SAID),
+    *common.OTHER_CRASHES,
+    *common.NOTHING_THERE,
+)
+"""Most telling first."""

@@ -1,0 +1,130 @@
+"""What lab 1.4 asks of an action server, decided from what the judge's action client has seen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from lab_1_4._goals import (
+    ALONE,
+    BAD_ORDERS,
+    FIRST_OF_TWO,
+    FIRST_TOO_LARGE,
+    GOALS,
+    LAST_ORDER,
+    LONG,
+    ORDERS,
+    SECOND_OF_TWO,
+    expected_sequence,
+    feedback_objection,
+    first_two,
+    good_goals,
+    is_beginning,
+    objection,
+    paced_goals,
+    takes_no_time,
+)
+
+from autograder.kit.goals_seen import CANCELED, Goal, all_goals, goal, servers, status_text
+from autograder.kit.model import Finding
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Evidence
+
+
+def serves(evidence: Evidence) -> Finding:
+    """One action server of the right name and type, and it accepts a goal."""
+    name, type_name = evidence.reference.only("action_server")
+    part, expected = evidence.main, f"one server of {name} ({type_name}) that accepts goals"
+    made = part.endpoints("action_server")
+    if name not in made:
+        return Finding(
+            False, expected, f"an action {', '.join(sorted(made))}" if made else "no action server"
+        )
+    if made[name] != type_name:
+        return Finding(False, expected, f"{name} is a {made[name]}")
+    if servers(part) > 1:
+        return Finding(False, expected, f"{servers(part)} servers of {name}")
+    taken = bool(goal(part, ALONE).accepted)
+    return Finding(taken, expected, "it accepts goals" if taken else objection(evidence, goal(part, ALONE)))
+
+
+def counts(evidence: Evidence) -> Finding:
+    """Every good goal succeeds with the reference's sequence."""
+    wrong = [text for seen in good_goals(evidence) if (text := objection(evidence, seen))]
+    expected = f"succeeds with {expected_sequence(evidence, max(ORDERS))} for order {max(ORDERS)}, and so on"
+    asked = bool(good_goals(evidence))
+    return Finding(
+        asked and not wrong, expected, wrong[0] if wrong else "it does" if asked else "no goal was sent"
+    )
+
+
+def gives_feedback(evidence: Evidence) -> Finding:
+    """The feedback of every good goal grows by one number."""
+    wrong = [text for seen in paced_goals(evidence) if (text := feedback_objection(evidence, seen))]
+    asked = bool(paced_goals(evidence))
+    seen = wrong[0] if wrong else "it does" if asked else "no goal was sent"
+    return Finding(asked and not wrong, "one more number in each feedback message", seen)
+
+
+def serves_two_at_once(evidence: Evidence) -> Finding:
+    """Both of two goals at once are right."""
+    two = [goal(evidence.part(GOALS), number) for number in (FIRST_OF_TWO, SECOND_OF_TWO)]
+    wrong = [text for seen in two if seen.order is not None and (text := objection(evidence, seen))]
+    asked = all(seen.order is not None for seen in two)
+    seen = wrong[0] if wrong else "both are right" if asked else "not reached"
+    return Finding(asked and not wrong, "each of two goals at once ends with its own sequence", seen)
+
+
+def lets_cancel(evidence: Evidence) -> Finding:
+    """A cancel is accepted, ends the goal soon, and the part that was computed comes back."""
+    long = goal(evidence.part(GOALS), LONG)
+    expected = "the cancel is accepted, the goal ends as CANCELED with the numbers found so far"
+    seen = _cancel_objection(evidence, long)
+    return Finding(not seen, expected, seen or f"CANCELED with {len(long.sequence)} numbers")
+
+
+def _cancel_objection(evidence: Evidence, long: Goal) -> str:
+    if long.order is None:
+        return "not reached"
+    if not long.accepted:
+        return f"order {long.order} was refused" if long.accepted is False else "the goal was not answered"
+    if long.cancel_accepted is None and long.status is None:
+        return f"the cancel request was not answered; {long.unread} feedback messages came after it"
+    if not long.cancel_accepted:
+        return f"the cancel request was not accepted; status {status_text(long.status)}"
+    if long.status != CANCELED:
+        return f"the cancel was accepted, then: status {status_text(long.status)}"
+    if not is_the_part(evidence, long):
+        return f"CANCELED with {long.sequence}"
+    return (
+        "only as the machine is busy: it counts without a pause"
+        if takes_no_time(evidence.part(GOALS))
+        else ""
+    )
+
+
+def is_the_part(evidence: Evidence, long: Goal) -> bool:
+    """Whether a canceled goal came back with what had been computed, and no more."""
+    extra = len(expected_sequence(evidence, min(ORDERS))) - min(ORDERS)
+    least = max(2, long.before_cancel)
+    return least <= len(long.sequence) < int(long.order or 0) + extra and is_beginning(
+        long.sequence, first_two(evidence)
+    )
+
+
+def refuses_bad_orders(evidence: Evidence) -> Finding:
+    """Negative and too large orders are refused, and a good goal after them succeeds."""
+    part, expected = (
+        evidence.part(BAD_ORDERS),
+        f"refuses negative orders and {FIRST_TOO_LARGE} or more, and lives on",
+    )
+    sent = all_goals(part)
+    bad, last = [s for s in sent if s.order != LAST_ORDER], [s for s in sent if s.order == LAST_ORDER]
+    taken = [seen for seen in bad if seen.accepted is not False]
+    if taken:
+        how = "accepted" if taken[0].accepted else "not answered"
+        return Finding(False, expected, f"order {taken[0].order} was {how}")
+    if not last:
+        return Finding(False, expected, "not reached")
+    wrong = objection(evidence, last[0])
+    return Finding(not wrong, expected, f"after the refusals, {wrong}" if wrong else "it does")

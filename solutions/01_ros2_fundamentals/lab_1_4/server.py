@@ -1,0 +1,194 @@
+"""Lab 1.4: an action server that counts Fibonacci numbers, with feedback, cancel and refusal.
+
+The judge is the client. In one run of the server it sends a goal alone, two goals at once, many that take no time, and
+the largest one, which it cancels; in another one orders that must be refused, and one more goal to see that the node is
+still alive. A server may pace its work as it likes, so orders are small.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from lab_1_4 import _server_criteria as criteria
+from lab_1_4._goals import (
+    ALONE,
+    BAD_ORDERS,
+    FIRST_OF_TWO,
+    FIRST_TOO_LARGE,
+    GOALS,
+    LAST_ORDER,
+    LONG,
+    SECOND_OF_TWO,
+    expected_sequence,
+    feedback_objection,
+    feedback_slip,
+    good_goals,
+    objection,
+    paced_goals,
+    takes_no_time,
+)
+from lab_1_4._server_run import scenario
+
+from autograder.kit.crashes import traceback_of
+from autograder.kit.draft import Draft
+from autograder.kit.goals_seen import CANCELED, SUCCEEDED, all_goals, goal
+from autograder.kit.model import Advice
+from autograder.kit.recipes.action_server import SendsGoals, is_quick
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Evidence
+
+server = Draft(
+    "lab_1_4.server",
+    "Lab 1.4 · An action server that counts",
+    "Serve the action fibonacci: feedback for each number, cancel at any time, bad orders refused.",
+    sends := SendsGoals(scenario, good=good_goals, canceled=(GOALS, LONG)),
+)
+server.asks("action", 1, "Serves fibonacci, with the right type", criteria.serves)
+server.asks("sequence", 3, "Succeeds with the right numbers", criteria.counts)
+server.asks("feedback", 1, "Sends feedback that grows by one number", criteria.gives_feedback)
+server.asks("two", 1, "Serves two goals at once", criteria.serves_two_at_once)
+server.asks("cancel", 2, "Lets a goal be canceled", criteria.lets_cancel)
+server.asks("refuse", 2, "Refuses bad orders and lives on", criteria.refuses_bad_orders)
+
+
+@server.mistake("bad_order_accepted", certain=True)
+def only_bad_orders(seen: Evidence, _: Evidence) -> bool | Advice | None:
+    """All else is right."""
+    rest = (criteria.counts, criteria.gives_feedback, criteria.serves_two_at_once, criteria.lets_cancel)
+    return bad_order_accepted(seen, seen) if all(judge(seen).passed for judge in rest) else None
+
+
+@server.mistake("goal_rejected", certain=True, before="goal_not_succeeded")
+def goal_rejected(seen: Evidence, _: Evidence) -> Advice | None:
+    """A good goal is refused."""
+    good = (*good_goals(seen), sends.canceled(seen))
+    refused = [one for one in good if one.accepted is False]
+    if not refused or traceback_of(seen):
+        return None
+    if len(refused) < sum(one.accepted is not None for one in good):
+        return Advice(
+            f"Your server refused a goal of order {refused[0].order}, which is a good one, and took others.",
+            f"Look at the comparison in your goal_callback: all orders from 0 to {FIRST_TOO_LARGE - 1} can be served.",
+        )
+    return Advice(
+        f"Your server refused a goal of order {refused[0].order}, which is a good one. A goal_callback that returns "
+        "True (or anything but GoalResponse.ACCEPT) refuses.",
+        "Return GoalResponse.ACCEPT for the orders that you can serve, and GoalResponse.REJECT for the others.",
+    )
+
+
+@server.mistake(
+    "field_typo",
+    certain=True,
+    before="cancel_not_accepted",
+    says="The goals succeed, but the result is empty: its field sequence was never filled.",
+    next_step="Set result.sequence before you return the result. A misspelt keyword in Fibonacci.Result(...) is "
+    "ignored silently.",
+)
+def result_never_filled(seen: Evidence, _: Evidence) -> bool:
+    """Every goal succeeds with an empty sequence."""
+    good = [one for one in paced_goals(seen) if one.status == SUCCEEDED]
+    return bool(good) and not any(one.sequence for one in good)
+
+
+@server.mistake("goals_mixed_up", before="cancel_not_accepted")
+def goals_mixed_up(seen: Evidence, _: Evidence) -> Advice | None:
+    """Alone it is right, two at once are not."""
+    alone, *two = (goal(seen.part(GOALS), number) for number in (ALONE, FIRST_OF_TWO, SECOND_OF_TWO))
+    if not two[0].accepted or objection(seen, alone) or feedback_objection(seen, alone):
+        return None
+    ended = [one for one in two if one.status is not None]
+    wrong = [text for one in ended if (text := objection(seen, one) or feedback_slip(seen, one))]
+    if not wrong:
+        return None
+    return Advice(
+        f"One goal alone is right, but of two at once one is not ({wrong[0]}): they disturb each other.",
+        "Keep the sequence in a variable of the execute callback. What is stored in self is shared by all goals, and "
+        "lives on after each.",
+    )
+
+
+@server.mistake("wrong_sequence", certain=True, before="cancel_not_accepted")
+def wrong_sequence(seen: Evidence, _: Evidence) -> Advice | None:
+    """A goal succeeds with other numbers than the reference's."""
+    wrong = [one for one in good_goals(seen) if one.status == SUCCEEDED and objection(seen, one)]
+    if not wrong:
+        return None
+    wanted = expected_sequence(seen, int(wrong[0].order or 0))
+    return Advice(
+        f"For order {wrong[0].order} the result is {wrong[0].sequence}; it should be {wanted}: one number more than "
+        "the order says.",
+        "Begin with [0, 1] in each goal, and append the sum of the last two numbers until there are order + 1.",
+    )
+
+
+@server.mistake(
+    "feedback_missing",
+    before="cancel_not_accepted",
+    says="The goals succeed, but no feedback comes.",
+    next_step="In the loop of the execute callback, fill a Fibonacci.Feedback() and call "
+    "goal_handle.publish_feedback(feedback).",
+)
+def feedback_missing(seen: Evidence, _: Evidence) -> bool:
+    """Goals succeed without feedback."""
+    good = [one for one in paced_goals(seen) if one.status == SUCCEEDED]
+    return bool(good) and not any(one.feedback for one in good)
+
+
+@server.mistake("wrong_feedback", before="cancel_not_accepted")
+def wrong_feedback(seen: Evidence, _: Evidence) -> Advice | None:
+    """Feedback comes, and does not grow by one number. What a goal that hangs has sent says nothing about that."""
+    told = [one for one in paced_goals(seen) if one.feedback and one.was_computed]
+    wrong = [text for one in told if (text := feedback_objection(seen, one))]
+    if not wrong:
+        return None
+    return Advice(
+        f"The feedback does not grow by one number each time ({wrong[0]}).",
+        "Publish once for each number that you append, with all numbers found so far in partial_sequence.",
+    )
+
+
+@server.mistake("done_at_once", before="cancel_ignored")
+def done_at_once(seen: Evidence, _: Evidence) -> Advice | None:
+    """The long goal was over before anybody could cancel it."""
+    long = sends.canceled(seen)
+    quick = long.status == SUCCEEDED and not long.cancel_accepted and is_quick(long)
+    if not quick and not (long.status == CANCELED and takes_no_time(seen.part(GOALS))):
+        return None
+    return Advice(
+        f"A goal of order {long.order} was done at once: there was no time to cancel it.",
+        "Take some time for each number, for example time.sleep(0.5): an action is for work that takes long.",
+    )
+
+
+@server.mistake("partial_result_missing", certain=True, late=True)
+def partial_result_missing(seen: Evidence, _: Evidence) -> Advice | None:
+    """Canceled, and the part that was computed does not come back."""
+    long = sends.canceled(seen)
+    if long.status != CANCELED or criteria.is_the_part(seen, long):
+        return None
+    return Advice(
+        f"The canceled goal ended with {long.sequence or 'an empty result'}, although {long.before_cancel} numbers had "
+        "been found.",
+        "After goal_handle.canceled(), return a result whose sequence holds the numbers found so far.",
+    )
+
+
+@server.mistake("bad_order_accepted", certain=True, late=True)
+def bad_order_accepted(seen: Evidence, _: Evidence) -> Advice | None:
+    """A bad order is taken on."""
+    bad = (one for one in all_goals(seen.part(BAD_ORDERS)) if one.order != LAST_ORDER)
+    order = next((int(one.order or 0) for one in bad if one.accepted), None)
+    if order is None or not criteria.counts(seen).passed:
+        return None
+    too_large = f"from order {FIRST_TOO_LARGE} on, the last number does not fit into an int32"
+    why = "there is no sequence of a negative length" if order < 0 else too_large
+    return Advice(
+        f"Your server accepted a goal of order {order}, which it cannot serve: {why}.",
+        "Give the ActionServer a goal_callback that looks at goal_request.order and returns GoalResponse.REJECT for "
+        "such orders.",
+    )
+
+
+EXERCISE = server.exercise(limit=180.0)

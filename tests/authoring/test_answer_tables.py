@@ -1,0 +1,150 @@
+"""The tables of the bank: what a right one gives, and what is said of a broken one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.authoring import as_edit
+from autograder.authoring.answer_tables import BadTable, listed, settings
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+RIGHT = '"""Right: counts."""\ni = 0\nwhile True:\n    print(i)\n    i += 1\n'
+WHOLE = '"usual.py" = { why = "counts" }\n'
+EDIT = """
+["counter_start.py"]
+diagnosis = "counter_start"
+why = "1, 2, 3"
+base = "usual.py"
+shows = "Wrong: counts from 1."
+change = '''
+-i = 0
++i = 1
+'''
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder of answers with a right one and one that changes it."""
+    for kind in ("right", "wrong"):
+        (tmp_path / kind).mkdir()
+    (tmp_path / "right" / "usual.py").write_text(RIGHT)
+    (tmp_path / "right" / "answers.toml").write_text(WHOLE)
+    (tmp_path / "wrong" / "answers.toml").write_text(EDIT)
+    return tmp_path
+
+
+def texts(folder: Path) -> dict[str, str]:
+    return {answer.file.name: answer.text() for answer in listed(folder)}
+
+
+def test_an_edit_is_a_whole_program_with_its_own_first_line(folder: Path) -> None:
+    wrong = RIGHT.replace("Right: counts.", "Wrong: counts from 1.").replace("i = 0", "i = 1")
+    assert texts(folder) == {"usual.py": RIGHT, "counter_start.py": wrong}
+
+
+def test_its_first_line_is_like_that_of_its_base_and_says_why(folder: Path) -> None:
+    (folder / "right" / "usual.py").write_text(RIGHT.replace('"""', "# ", 1).replace('"""', ""))
+    table = folder / "wrong" / "answers.toml"
+    table.write_text(EDIT.replace('shows = "Wrong: counts from 1."\n', ""))
+    assert texts(folder)["counter_start.py"].startswith("# Wrong: 1, 2, 3\ni = 1\n")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        pytest.param(
+            '"usual.py"',
+            '"usul.py"',
+            "its base usul.py is no file of .*right; did you mean usual.py",
+            id="base",
+        ),
+        pytest.param("-i = 0", "-i = 5", "does not fit usual.py: 'i = 5' is no line of the base", id="line"),
+    ],
+)
+def test_an_edit_that_does_not_fit_is_named_when_it_is_used(
+    folder: Path, old: str, new: str, words: str
+) -> None:
+    table = folder / "wrong" / "answers.toml"
+    table.write_text(EDIT.replace(old, new))
+    with pytest.raises(BadTable, match=f"wrong/answers.toml: counter_start.py: .*{words}"):
+        texts(folder)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        pytest.param(
+            'diagnosis = "counter_start"\n', "", "a wrong answer needs a diagnosis", id="no diagnosis"
+        ),
+        pytest.param('base = "usual.py"\n', "", "an edit needs base and change", id="no base"),
+        pytest.param("shows", "show", "unknown field `show`", id="misspelt"),
+        pytest.param("why =", "why", "Expected '='", id="no TOML"),
+        pytest.param(
+            'why = "1, 2, 3"', "why = 1", r"Expected `str`, got `int` - at `\$\[...\].why`", id="no text"
+        ),
+        pytest.param(
+            EDIT, '"a.py" = { why = "?", diagnosis = "a" }', "there is no file .*a.py", id="no file"
+        ),
+    ],
+)
+def test_a_broken_table_is_named(folder: Path, old: str, new: str, words: str) -> None:
+    (folder / "wrong" / "answers.toml").write_text(EDIT.replace(old, new))
+    with pytest.raises(BadTable, match=f"wrong/answers.toml: .*{words}"):
+        list(listed(folder))
+
+
+def test_a_workspace_is_told_by_what_it_changes(folder: Path) -> None:
+    table = folder / "wrong" / "answers.toml"
+    table.write_text(EDIT.replace(".py", ".workspace").replace('base = "usual.workspace"\n', ""))
+    assert texts(folder)["counter_start.workspace"] == "Wrong: counts from 1.\n-i = 0\n+i = 1\n"
+    table.write_text(EDIT.replace("counter_start.py", "counter_start.workspace"))
+    with pytest.raises(BadTable, match=r"counter_start\.workspace: a workspace needs no base"):
+        list(listed(folder))
+
+
+def test_a_folder_without_settings_holds_python_programs(folder: Path) -> None:
+    assert settings(folder).command == ("python3", "{file}")
+    (folder / "settings.toml").write_text('command = ["{file}"]\nbase = "base"\n')
+    assert (settings(folder).command, settings(folder).base) == (("{file}",), "base")
+    (folder / "settings.toml").write_text('comand = ["{file}"]\n')
+    with pytest.raises(BadTable, match=r"settings\.toml: .*unknown field `comand`"):
+        settings(folder)
+
+
+def test_an_answer_is_told_once_and_either_whole_or_as_an_edit(folder: Path) -> None:
+    (folder / "wrong" / "more.toml").write_text(EDIT)
+    with pytest.raises(BadTable, match=r"more\.toml: counter_start.py: it is listed twice"):
+        list(listed(folder))
+    (folder / "wrong" / "more.toml").unlink()
+    (folder / "wrong" / "counter_start.py").write_text(RIGHT)
+    with pytest.raises(BadTable, match="is there as well: remove one of them"):
+        list(listed(folder))
+    (folder / "wrong" / "counter_start.py").unlink()
+    (folder / "right" / "answers.toml").write_text('"usual.py" = { why = "counts", diagnosis = "crashed" }\n')
+    with pytest.raises(BadTable, match="a right answer has no diagnosis"):
+        list(listed(folder))
+
+
+def test_a_program_becomes_the_entry_that_gives_it_back(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = folder / "wrong" / "counter_step.py"
+    text = RIGHT.replace("Right: counts", 'Wrong: says "2"').replace("    i += 1\n", "    i += 2\n\n")
+    file.write_text(text)
+    table = folder / "wrong" / "more.toml"
+    table.write_text('"counter_step.py" = { diagnosis = "counter_step", also = ["crashed"], why = "0, 2" }')
+    assert as_edit.main([str(file)]) == 0
+    table.write_text(capsys.readouterr().out)
+    file.unlink()
+    (answer,) = (answer for answer in listed(folder) if answer.file == file)
+    assert answer.text() == text
+    assert (answer.entry.diagnosis, answer.entry.also, answer.entry.why) == (
+        "counter_step",
+        ("crashed",),
+        "0, 2",
+    )

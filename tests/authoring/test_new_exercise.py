@@ -1,0 +1,177 @@
+"""A new exercise is a copy of its recipe's example, with a name of its own."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.authoring.new_exercise import EXAMPLES, CannotMake, new_exercise, recipes
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+ID = "lab_9_1.battery_of_mine"
+
+
+@pytest.fixture
+def root(tmp_path: Path) -> Path:
+    """A course with a chapter in which there is nothing."""
+    (tmp_path / "solutions/01_first").mkdir(parents=True)
+    (tmp_path / "solutions/01_first/chapter.toml").write_text('title = "First"\n')
+    return tmp_path
+
+
+def autograder(root: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    """Run a command of the autograder in a course."""
+    environ = os.environ | {"AUTOGRADER_COURSE": str(root)}
+    return subprocess.run(
+        [sys.executable, "-m", "autograder", *words], env=environ, capture_output=True, text=True, check=False
+    )
+
+
+def test_it_is_written_into_the_newest_chapter_or_the_one_that_is_named(root: Path) -> None:
+    (root / "solutions/02_second").mkdir()
+    (root / "solutions/02_second/chapter.toml").write_text('title = "Second"\n')
+    made = new_exercise(root, ID, "publisher")
+    assert {path.parent for path in made} >= {root / "solutions/02_second/lab_9_1"}
+    made = new_exercise(root, "lab_9_2.other", "publisher", chapter="03_third")
+    assert root / "solutions/03_third/lab_9_2/other.py" in made
+
+
+@pytest.mark.parametrize("recipe", recipes())
+def test_nothing_in_it_bears_the_name_of_the_example(root: Path, recipe: str) -> None:
+    made = new_exercise(root, ID, recipe)
+    assert {path.name for path in made if path.parent.name == "lab_9_1"} == {"lab.md", "battery_of_mine.py"}
+    example = next(path.stem for path in (recipes()[recipe]).glob("[!_]*.py"))
+    assert not [path for path in made if f"{recipe}.{example}" in path.read_text()]
+    assert (root / "solutions/01_first/lab_9_1/lab.md").read_text().count(f'check("{ID}"') == 1
+    assert "\n# Lab 9.1: " in (root / "solutions/01_first/lab_9_1/lab.md").read_text()
+
+
+@pytest.mark.parametrize("recipe", recipes())
+def test_an_example_has_at_most_a_hundred_lines(recipe: str) -> None:
+    files = recipes()[recipe].glob("*.py")
+    assert sum(len(file.read_text().splitlines()) for file in files) <= 100
+
+
+@pytest.mark.parametrize(
+    ("exercise_id", "recipe", "chapter", "said"),
+    [
+        ("lab_9_1", "publisher", None, "is no id"),
+        ("Lab_9_1.battery", "publisher", None, "is no id"),
+        ("../lab.battery", "publisher", None, "is no id"),
+        ("lab_9_1.battery", "telepathy", None, "There are: publisher"),
+        ("lab_9_1.battery", "publisher", "../elsewhere", "no good name of a chapter"),
+        ("json.battery", "publisher", None, "Python has a module json"),
+    ],
+)
+def test_a_bad_name_is_refused(
+    root: Path, exercise_id: str, recipe: str, chapter: str | None, said: str
+) -> None:
+    before = sorted(root.rglob("*"))
+    with pytest.raises(CannotMake, match=said):
+        new_exercise(root, exercise_id, recipe, chapter=chapter)
+    assert sorted(root.rglob("*")) == before
+
+
+def test_a_lab_that_is_there_is_left_as_it_is(root: Path) -> None:
+    lab = root / "solutions/01_first/lab_9_1"
+    lab.mkdir()
+    (lab / "lab.md").write_text("mine")
+    for chapter in ("01_first", "02_second"):
+        with pytest.raises(CannotMake, match="is there already"):
+            new_exercise(root, "lab_9_1.other", "publisher", chapter=chapter)
+    assert [path.name for path in lab.iterdir()] == ["lab.md"]
+
+
+def test_a_course_without_a_chapter_needs_one_to_be_named(tmp_path: Path) -> None:
+    (tmp_path / "solutions").mkdir()
+    with pytest.raises(CannotMake, match="--chapter"):
+        new_exercise(tmp_path, ID, "publisher")
+
+
+def test_the_command_says_what_to_do_next_and_refuses_with_exit_code_2(root: Path) -> None:
+    made = autograder(root, "new-exercise", ID)
+    assert made.returncode == 0, made.stderr
+    assert "written    solutions/01_first/lab_9_1/battery_of_mine.py" in made.stdout
+    assert f"./course try-exercise {ID}" in made.stdout
+    again = autograder(root, "new-exercise", ID)
+    assert (again.returncode, again.stdout) == (2, "")
+    assert "is there already" in again.stderr
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+@pytest.mark.parametrize("recipe", recipes())
+def test_an_example_is_in_step_and_judged_as_its_author_expects(recipe: str) -> None:
+    example = next(path.stem for path in recipes()[recipe].glob("[!_]*.py"))
+    tried = autograder(EXAMPLES, "try-exercise", f"{recipe}.{example}")
+    assert tried.returncode == 0, tried.stdout + tried.stderr
+    assert "unchanged" in tried.stdout
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+def test_a_new_exercise_works_and_shows_what_its_author_got_wrong(root: Path) -> None:
+    new_exercise(root, ID, "publisher")
+    tried = autograder(root, "try-exercise", ID)
+    assert tried.returncode == 0, tried.stdout + tried.stderr
+    assert f"{ID}: recorded in solutions/01_first/lab_9_1/battery_of_mine.reference.json" in tried.stdout
+    table = root / "solutions/01_first/lab_9_1/battery_of_mine.answers/wrong/answers.toml"
+    table.write_text(table.read_text().replace('diagnosis = "topic_name"', 'diagnosis = "message_type"'))
+    tried = autograder(root, "try-exercise", ID, "--only", "topic_name", "--only", "no_class")
+    assert tried.returncode == 1, tried.stdout + tried.stderr
+    assert "wrong/topic_name.py: diagnosed as topic_name, not as message_type" in tried.stdout
+    assert "Your node publishes on /batery; the topic is called /battery." in tried.stdout
+    assert "2 answers, 1 not as expected" in tried.stdout
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+def test_a_judge_that_dies_of_the_exercise_is_a_surprise(root: Path) -> None:
+    new_exercise(root, ID, "publisher")
+    file = root / "solutions/01_first/lab_9_1/battery_of_mine.py"
+    broken = file.read_text().replace(
+        "return len(seen.counters) > 2 and len", 'raise RuntimeError("mine") or len'
+    )
+    assert broken != file.read_text()
+    file.write_text(broken)
+    tried = autograder(root, "try-exercise", ID, "--only", "counter_step")
+    assert tried.returncode == 1, tried.stdout + tried.stderr
+    assert "RuntimeError: mine" in tried.stderr
+    assert "wrong/counter_step.py: no verdict: the judge's process ended" in tried.stdout
+    assert "1 answer, 1 not as expected" in tried.stdout
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+def test_what_is_expected_does_not_change_unasked(root: Path) -> None:
+    new_exercise(root, ID, "publisher")
+    lab = root / "solutions/01_first/lab_9_1"
+    shutil.copy(
+        EXAMPLES / "solutions/recipes/publisher/battery.reference.json",
+        lab / "battery_of_mine.reference.json",
+    )
+    tried = autograder(root, "try-exercise", ID)
+    assert tried.returncode == 1, tried.stdout + tried.stderr
+    assert f"./course record {ID}" in tried.stdout
+    assert "answers" not in tried.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["lab_9_1.nothing"], "no exercise is called"),
+        ([ID, "--only", "nobody"], "There are: right/usual.py"),
+    ],
+)
+def test_what_is_not_there_is_said(root: Path, words: list[str], said: str) -> None:
+    new_exercise(root, ID, "publisher")
+    tried = autograder(root, "try-exercise", *words)
+    assert tried.returncode == 2
+    assert said in tried.stderr

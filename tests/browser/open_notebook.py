@@ -1,0 +1,51 @@
+"""A notebook in JupyterLab, used as by hand."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Locator, Page
+
+
+class OpenNotebook:
+    """A notebook in JupyterLab, used as by hand."""
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+        self.panel = page.locator(".jp-NotebookPanel")
+
+    def cell(self, begin: str) -> Locator:
+        """The code cell whose text begins so, scrolled to."""
+        found = self.panel.locator(
+            ".jp-CodeCell", has=self.page.locator(".cm-line", has_text=re.compile(begin))
+        )
+        found.first.scroll_into_view_if_needed()
+        return found.first
+
+    def write(self, begin: str, source: str) -> None:
+        """Replace a cell's text."""
+        self.cell(begin).locator(".cm-content").click()
+        self.page.keyboard.press("Control+A")
+        self.page.keyboard.insert_text(source)
+
+    def run(self, begin: str) -> Locator:
+        """Run one cell, and give it back."""
+        cell = self.cell(begin)
+        cell.locator(".cm-content").click()
+        self.page.keyboard.press("Control+Enter")
+        return cell
+
+    def menu(self, name: str, entry: str) -> None:
+        """Choose from the menu bar."""
+        self.page.locator(".lm-MenuBar-item", has_text=name).click()
+        self.page.get_by_role("menuitem", name=entry, exact=True).click()
+
+
+def look(page: Page, name: str) -> None:
+    """Keep a picture for whoever develops the cards, where ``SCREENSHOTS`` names a folder."""
+    if folder := os.environ.get("SCREENSHOTS"):
+        page.screenshot(path=Path(folder) / f"{name}.png")

@@ -1,0 +1,56 @@
+"""The first minutes: from the opened notebook to a robot that moves and a green card."""
+
+from __future__ import annotations
+
+import base64
+import re
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+from open_notebook import OpenNotebook, look
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+pytestmark = [pytest.mark.browser, pytest.mark.ros, pytest.mark.slow]
+ROBOT = 'img[alt^="The robot is in"]'
+
+
+def test_a_student_drives_the_robot_in_five_actions(page: Page, lab: str) -> None:
+    """Open, run the first cell, write two lines, see the robot go through the door, and the card is green."""
+    from playwright.sync_api import expect
+
+    page.goto(lab.format("lab/tree/01_ros2_fundamentals/00_nervous_system.ipynb"))
+    notebook = OpenNotebook(page)
+    expect(page.locator("#jp-main-statusbar")).to_contain_text("Python 3 (ipykernel) | Idle")
+
+    first = notebook.run(r"^from geometry_msgs")
+    standing = first.locator(ROBOT)
+    expect(standing).to_have_attribute("alt", re.compile(r"x = 1\.00 m, .*It stands still\."))
+    look(page, "robot-stands")
+
+    given = notebook.cell(r"^class Driver").locator(".cm-content").inner_text()
+    assert "# TODO" in given
+    notebook.write(r"^class Driver", driver())
+    notebook.run(r"^class Driver")
+    driven = notebook.run(r"^driving = ").locator(ROBOT)
+    look(page, "robot-moves")
+    expect(driven).to_have_attribute("alt", re.compile(r"in the right room.*A wall is in its way"))
+
+    checked = notebook.run(r'^check\("00_nervous_system')
+    expect(checked.locator(".agc-passed")).to_contain_text("10 of 10 points")
+    look(page, "first-green")
+    picture = base64.b64decode((driven.get_attribute("src") or "").partition("base64,")[2]).decode()
+    assert "trail" in picture
+
+
+def driver() -> str:
+    """What a student has in the solution cell in the end."""
+    master = Path(__file__).parents[2] / "solutions/01_ros2_fundamentals/00_nervous_system/lab.md"
+    cell = master.read_text(encoding="utf-8").partition("class Driver(Node):")[2].partition("```")[0]
+    kept = [line for line in cell.splitlines() if "###" not in line and "# TODO" not in line]
+    return "class Driver(Node):" + "\n".join(kept)

@@ -1,0 +1,35 @@
+"""What is missing in a text, and what is too much."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.cards.differences import difference, marked
+from autograder.verdict import Criterion
+
+
+def between(expected: str, seen: str, *, passed: bool = False) -> str:
+    return marked(difference(Criterion("text", "Text", 1.0, passed, expected, seen)))
+
+
+@pytest.mark.parametrize(
+    ("seen", "shown"),
+    [
+        ("“Hello world 0”", "Hello[,] world[!] 0"),
+        ("“Hello, world! 0 ”, and more", "Hello, world! 0{␣}"),
+        ("“Hello, World! 0”", "Hello, [w]{W}orld! 0"),
+        ("“Hello, world! 0”", ""),
+        ("“I heard nothing of the kind”", ""),
+        ("no message arrived", ""),
+    ],
+)
+def test_shows_what_is_missing_and_what_is_too_much(seen: str, shown: str) -> None:
+    assert between("“Hello, world! 0”, “Hello, world! 1”, …", seen) == shown
+
+
+def test_has_nothing_to_say_of_what_holds() -> None:
+    assert between("“a b c d”", "“a b c”", passed=True) == ""
+
+
+def test_long_texts_are_not_compared() -> None:
+    assert between(f"“{'ab' * 5000}”", f"“{'ab' * 4999}”") == ""

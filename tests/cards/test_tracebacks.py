@@ -1,0 +1,28 @@
+"""Which line of the student's a traceback is about."""
+
+from __future__ import annotations
+
+from autograder.cards.tracebacks import Place, place
+
+OF_A_PROGRAM = """Traceback (most recent call last):
+  File "/home/ada/talker.py", line 30, in main
+    rclpy.spin(node)
+  File "/opt/x/lib/python3.12/site-packages/rclpy/__init__.py", line 226, in spin
+    executor.spin_once()
+TypeError: tick() takes 0 positional arguments but 1 was given"""
+
+
+def test_of_a_program_it_is_the_last_line_of_its_own() -> None:
+    error = "TypeError: tick() takes 0 positional arguments but 1 was given"
+    assert place(OF_A_PROGRAM) == Place("Line 30 of talker.py", "rclpy.spin(node)", error)
+
+
+def test_a_line_that_python_does_not_quote_has_no_quote() -> None:
+    found = place('Traceback (most recent call last):\n  File "<ipython-input-3>", line 2, in f\nKeyError: 1')
+    assert found == Place("Line 2 of your cell", "", "KeyError: 1")
+
+
+def test_output_that_is_no_traceback_has_no_place() -> None:
+    assert place("Hello, world! 0\nTerminated") is None
+    assert place("") is None
+    assert place("Traceback (most recent call last):") is None

@@ -1,0 +1,70 @@
+"""What counts as saying how a canceled goal ended, and what is false of one of the two goals: no ROS is started."""
+
+from __future__ import annotations
+
+import pytest
+from exercise_1_3._cancel_words import false_claim, says_canceled
+
+from autograder.kit.evidence import Event, Part
+
+
+def run(*lines: str) -> Part:
+    said = [Event(0.0, "output", "stdout", {"text": line}) for line in lines]
+    result = Event(0.0, "result", "/fibonacci", {"status": "", "fields": {"sequence": [0, 1]}})
+    return Part("", {}, [Event(0.0, "result_request", "/fibonacci", {"known": True}), result, *said])
+
+
+def right(canceled: str, succeeded: str) -> bool:
+    one, other = run(canceled), run(*filter(None, [succeeded]))
+    told = says_canceled(one.said(), other.said(), other.said())
+    return told and false_claim(one, other) is None
+
+
+@pytest.mark.parametrize(
+    ("canceled", "succeeded"),
+    [
+        ("status=5 canceled=True", "status=4 canceled=False"),
+        ("Final status: 5", "Final status: 4"),
+        ("Goal was successfully canceled.", "Goal succeeded! Result: [0, 1]"),
+        ("canceled, with 5 numbers", "NOT canceled: the goal ended with status 4"),
+        ("the goal ended as CANCELED", "the goal ended as SUCCEEDED"),
+        ("Endzustand: CANCELED", "Endzustand: SUCCEEDED"),
+        ("das Ziel wurde abgebrochen", "das Ziel wurde nicht abgebrochen"),
+        ("goals canceled: 1, status 5", "goals canceled: 0, status 4"),
+        ("cancel succeeded, status 5", "cancel refused, status 4"),
+        ("after the cancel request: status 5", "after the cancel request: status 4"),
+        ("status 5, canceled after 3 feedbacks", "status 4, canceled after 3 feedbacks"),
+        ("goal was canceled", "expected canceled, got 4"),
+        ("the goal was canceled", "the goal could not be canceled, it succeeded"),
+        ("canceled: yes, succeeded: no", "canceled: no, succeeded: yes"),
+        ("goal canceled", ""),
+        ("5 = CANCELED, not SUCCEEDED", "4 = SUCCEEDED, not CANCELED"),
+        ("was it canceled? yes", "was it canceled? no"),
+        ("is_canceled=True", "is_canceled=False"),
+        ("Goal canceled: True (5)", "Goal canceled: False (4)"),
+    ],
+)
+def test_who_says_how_each_goal_ended_is_right(canceled: str, succeeded: str) -> None:
+    assert right(canceled, succeeded)
+
+
+@pytest.mark.parametrize(
+    ("canceled", "succeeded"),
+    [
+        ("status=5 canceled=True", "status=4 canceled=True"),
+        ("status=5 canceled=False", "status=4 canceled=True"),
+        ("status=5 canceled=False", "status=4 canceled=False"),
+        ("status=5 succeeded=True", "status=4 succeeded=True"),
+        ("status=5 succeeded=True", "status=4 succeeded=False"),
+        ("status 5: CANCELED", "status 4: CANCELED"),
+        ("status 5: SUCCEEDED", "status 4: SUCCEEDED"),
+        ("the goal was canceled (5)", "the goal was canceled (4)"),
+        ("the goal succeeded (5)", "the goal succeeded (4)"),
+        ("canceled: yes, status 5", "canceled: yes, status 4"),
+        ("goal canceled", "goal canceled"),
+        ("the goal ended as SUCCEEDED", "the goal ended as CANCELED"),
+        ("done", "done"),
+    ],
+)
+def test_a_word_that_is_true_of_the_other_goal_only_is_wrong(canceled: str, succeeded: str) -> None:
+    assert not right(canceled, succeeded)

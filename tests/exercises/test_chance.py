@@ -1,0 +1,139 @@
+"""No point and no diagnosis hangs on the moment in which a program that ends was looked at."""
+
+from __future__ import annotations
+
+import pytest
+from lab_1_2 import listener, talker
+from lab_1_4 import client as action_client
+
+from autograder.kit import common_mistakes as common
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.goal_reports import LATE, left_at_once
+from autograder.kit.texts_said import has_much_of
+
+TOPIC, TYPE = "/chatter", "std_msgs/msg/String"
+EXITED = Event(9.0, "subject", "exited", {"code": 1})
+TRACEBACK = (
+    "Traceback (most recent call last):",
+    '  File "/home/student/talker.py", line 3, in <module>',
+    "    with TalkerNode() as node:",
+    "AttributeError: 'NoneType' object has no attribute 'spin'",
+)
+
+
+def _interface(role: str) -> Event:
+    return Event(0.2, "interface", "graph", {"nodes": ["/node"], role: {TOPIC: TYPE}})
+
+
+def _printed(lines: tuple[str, ...], t: float = 0.3) -> list[Event]:
+    return [Event(t, "output", "stderr", {"text": line}) for line in lines]
+
+
+def _message(number: int) -> Event:
+    return Event(
+        number * 0.5, "message", TOPIC, {"fields": {"data": f"Hello, world! {number - 1}"}, "number": number}
+    )
+
+
+def _points(module: object, evidence: Evidence) -> float:
+    exercise = module.EXERCISE  # type: ignore[attr-defined]
+    return sum(c.points for c in exercise.criteria if c.judge(evidence).passed)
+
+
+TALKER = Reference(
+    "lab_1_2.talker",
+    {"publisher": {TOPIC: TYPE}},
+    [Part("talking", {}, [Event(e.t, e.kind, e.name, e.data, e.t) for e in map(_message, range(1, 21))])],
+)
+
+
+@pytest.mark.parametrize("seen", [[], [_interface("publisher")], [_interface("publisher"), _message(1)]])
+def test_a_talker_that_dies_at_once_earns_the_same_whatever_was_seen_of_it(seen: list[Event]) -> None:
+    evidence = Evidence([Part("talking", {}, [*seen, *_printed(TRACEBACK), EXITED])], TALKER)
+    assert _points(talker, evidence) == 0
+
+
+def test_a_notebook_s_class_is_held_until_it_is_known() -> None:
+    held = Event(0.1, "subject", "constructed")
+    evidence = Evidence([Part("talking", {}, [held, _interface("publisher"), EXITED])], TALKER)
+    assert _points(talker, evidence) == 3
+
+
+SAID = [
+    Event(number * 0.5, "output", "stdout", {"text": f"Hello, world! {number - 1}"}) for number in (1, 2, 3)
+]
+MET = Event(0.2, "matched", TOPIC, {"count": 1})
+
+
+@pytest.mark.parametrize("said", [SAID, SAID[2:]])
+def test_a_talker_that_spoke_for_a_while_did_not_publish_all_at_once_whatever_was_heard_of_it(
+    said: list[Event],
+) -> None:
+    seen = [MET, _interface("publisher"), _message(2), *said, Event(1.6, "subject", "exited", {"code": 0})]
+    evidence = Evidence([Part("talking", {}, seen)], TALKER)
+    first = next(mistake.key for mistake in talker.EXERCISE.mistakes if mistake.recognise(evidence))
+    assert first == "ended_too_early"
+
+
+@pytest.mark.parametrize("heard", [[], [_message(1)]])
+def test_a_deaf_talker_is_told_and_earns_the_same_whether_its_only_text_was_heard(heard: list[Event]) -> None:
+    stack = 'Thread 0x1 (most recent call first):\n  File "/x/rclpy/executors.py", line 1 in spin\n'
+    deaf = [Event(5.0, "unanswered", "/node"), Event(5.0, "stack", "subject", {"text": stack})]
+    evidence = Evidence([Part("talking", {}, [_interface("publisher"), *heard, *deaf])], TALKER)
+    assert _points(talker, evidence) == 3
+    first = next(mistake.key for mistake in talker.EXERCISE.mistakes if mistake.recognise(evidence))
+    assert first == "node_taken_from_executor"
+    assert common.never_spun("publisher").recognise(evidence) is None
+
+
+@pytest.mark.parametrize("seen", [[], [_interface("subscription")]])
+def test_a_listener_that_dies_at_once_earns_the_same(seen: list[Event]) -> None:
+    reference = Reference("lab_1_2.listener", {"subscription": {TOPIC: TYPE}})
+    late = Event(9.1, "sent", TOPIC, {"fields": {"data": "fjord 1234"}})
+    part = Part("listening", {"texts": ["fjord 1234"]}, [*seen, *_printed(TRACEBACK), EXITED, late])
+    assert _points(listener, Evidence([part], reference)) == 0
+
+
+@pytest.mark.parametrize(
+    ("line", "is_made_of_it"),
+    [
+        ("I heard: 'ta tundra 2548'", True),
+        ("I HEARD: 'DELTA TUNDRA'", True),
+        ("I heard something", False),
+        ("heard a message with 17 characters", False),
+        ("I heard: 'delta tundra 2548'", False),
+    ],
+)
+def test_a_text_is_known_again_when_it_was_changed(line: str, is_made_of_it: bool) -> None:
+    assert has_much_of(line, "delta tundra 2548") is is_made_of_it
+
+
+def test_a_traceback_is_nobody_s_words_wherever_an_event_falls_into_it() -> None:
+    goal = Event(0.3, "goal", "/fibonacci", {"fields": {"order": 20}})
+    lines = _printed(TRACEBACK)
+    for place in range(len(lines) + 1):
+        assert Part(LATE, {}, [*lines[:place], goal, *lines[place:]]).said(after=goal) == []
+
+
+ANSWERED = Event(0.8, "goal_answered", "/fibonacci")
+
+
+@pytest.mark.parametrize(
+    ("events", "early"),
+    [
+        ([*_printed(TRACEBACK), ANSWERED, EXITED], True),
+        ([EXITED, ANSWERED], True),
+        ([ANSWERED, Event(1.5, "subject", "exited")], True),
+        ([ANSWERED, *_printed(TRACEBACK, 1.0), Event(1.5, "subject", "exited")], False),
+        ([ANSWERED, EXITED], False),
+        ([ANSWERED], False),
+        ([ANSWERED, Event(0.9, "result_request", ""), Event(1.5, "subject", "exited")], False),
+    ],
+)
+def test_who_ends_at_once_has_not_shown_a_goal(events: list[Event], early: bool) -> None:
+    goal = Event(0.3, "goal", "/fibonacci", {"fields": {"order": 20}})
+    part = Part(LATE, {"order": 20}, [goal, *events])
+    assert left_at_once(part) is early
+    criteria = {c.name: c for c in action_client.EXERCISE.criteria}
+    evidence = Evidence([part], Reference("lab_1_4.client", {"action_client": {}}, [part]))
+    assert criteria["late"].judge(evidence).passed is not early

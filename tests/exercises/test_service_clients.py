@@ -1,0 +1,161 @@
+"""What a service client meets in a check, and in which order: no ROS is started."""
+
+from __future__ import annotations
+
+from random import Random
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from exercise_1_2 import three_ints as exercise_1_2_three_ints
+from lab_1_3 import client as lab_1_3_client
+
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.numbers_said import mentions
+from autograder.kit.recipes import service_client
+from autograder.kit.recipes.service_client import Run, answering, has_spoken, is_done
+from autograder.kit.service_calls import ABSENT, BIASED, LATE, gives_up_in_time, reports
+
+SEEDS = range(60)
+RETURNED = Event(0.4, "subject", "returned", {"value": "-987654321"})
+RAISED = Event(
+    0.4, "subject", "raised", {"traceback": "AttributeError: 'Response' object has no attribute 'total'"}
+)
+
+
+def runs_of(scenario: Any, seed: int, monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, Any]]:
+    """The runs of a check in their order, each with its name and what it is made of."""
+    order: list[tuple[str, Any]] = []
+
+    def called(_: Any, run: Run, calls: int) -> bool:
+        order.append((run.name, run))
+        return True
+
+    monkeypatch.setattr(service_client, "called", called)
+    monkeypatch.setattr(service_client, "unserved", lambda _, numbers: order.append((ABSENT, numbers)))
+    scenario(SimpleNamespace(random=Random(seed)))
+    return order
+
+
+@pytest.mark.parametrize("exercise", [exercise_1_2_three_ints, lab_1_3_client])
+def test_nobody_can_tell_the_run_without_a_service_by_its_place_or_its_numbers(
+    exercise: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    places, kinds = set(), set()
+    for seed in SEEDS:
+        order = runs_of(exercise.EXERCISE.scenario, seed, monkeypatch)
+        assert order[0][0] == LATE
+        places.add([name for name, _ in order].index(ABSENT))
+        numbers = dict(order)[ABSENT]
+        kinds.add("zero" if 0 in numbers else "64 bits" if max(map(abs, numbers)) > 2**40 else "negative")
+    assert places == {1, 2, 3}
+    assert kinds == {"zero", "64 bits", "negative"}
+
+
+@pytest.mark.parametrize("exercise", [exercise_1_2_three_ints, lab_1_3_client])
+@pytest.mark.parametrize("seed", SEEDS)
+def test_each_check_has_a_zero_a_negative_answer_64_bits_and_an_answer_that_is_held_back(
+    exercise: Any, seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    last, held = [], []
+    for name, run in runs_of(exercise.EXERCISE.scenario, seed, monkeypatch):
+        if name == ABSENT:
+            continue
+        answer = answering(run.answers)
+        total, *others = run.numbers
+        for number in others:
+            total = answer({"a": total, "b": number})["sum"]
+        last.append(total)
+        held.append(run.held)
+        # What a client repeats of its numbers must not be taken for a 0 that it reports.
+        assert total != 0 or not mentions([str(list(run.numbers))], 0)
+    assert 0 in last
+    assert min(last) < -(2**61)
+    assert sum(total < 0 for total in last) >= 2
+    assert any(held)
+
+
+@pytest.mark.parametrize(
+    ("line", "number", "expected"),
+    [
+        ("the sum is 0.", 0, True),
+        ("sum=0, done", 0, True),
+        ("it took 0.5 s, then 1.0 s", 0, False),
+        ("a + b = 10", 0, False),
+        ("the sum is 5", -5, False),
+        ("the sum is -5", 5, False),
+        ("the sum is -5.", -5, True),
+        ("1,234,567", 1234567, True),
+    ],
+)
+def test_a_number_is_known_among_words(line: str, number: int, expected: bool) -> None:
+    assert mentions([line], number) is expected
+
+
+def seen_of(name: str, *seen: tuple[str, str, dict[str, Any]]) -> Part:
+    """A part in which these events were seen, one each second."""
+    events = [Event(float(t), kind, what, data) for t, (kind, what, data) in enumerate(seen)]
+    return Part(name, {"numbers": [1001, 1002]}, events)
+
+
+def answered(total: int) -> tuple[str, str, dict[str, Any]]:
+    return "response", "/add_two_ints", {"fields": {"sum": total}}
+
+
+def test_who_is_done_stays_so_while_one_more_call_is_on_its_way() -> None:
+    said = ("output", "stdout", {"text": "Final sum: -4321"})
+    part = seen_of(LATE, answered(0), answered(-4321), said, answered(1001))
+    for until in (3, 4):
+        evidence = Evidence([Part(LATE, part.inputs, part.events[:until])], Reference("e", {}))
+        assert is_done(evidence, 2)
+        assert has_spoken(evidence, 2)
+
+
+def test_to_give_up_at_once_does_not_count_more_where_one_call_came_through_by_chance() -> None:
+    gone = ("output", "stderr", {"text": "add_two_ints is not there"}), ("subject", "exited", {"code": 1})
+    asked = ("request", "/add_two_ints", {"fields": {"a": 1, "b": 2}})
+    reference = Reference("e", {"client": {"/add_two_ints": "my_robot_interfaces/srv/AddTwoInts"}})
+    unlucky = [seen_of(name, *gone) for name in (LATE, BIASED, ABSENT)]
+    lucky = [unlucky[0], seen_of(BIASED, asked, answered(3)), unlucky[2]]
+    patient = [seen_of(LATE, asked, answered(3)), lucky[1], unlucky[2]]
+    passed = [gives_up_in_time(Evidence(parts, reference)).passed for parts in (unlucky, lucky, patient)]
+    assert passed == [False, False, True]
+
+
+@pytest.mark.parametrize(
+    ("value", "right"),
+    [
+        ("-4321", True),
+        ("AddTwoInts_Response(sum=-4321)", True),
+        (None, True),
+        ("4321", False),
+        ("True", False),
+    ],
+)
+def test_a_function_that_returns_something_returns_the_sum_whatever_it_logs(
+    value: str | None, right: bool
+) -> None:
+    said = ("output", "notebook log", {"text": "1 + 2 = -4321"})
+    part = seen_of(LATE, answered(-4321), said, ("subject", "returned", {"value": value, "traceback": ""}))
+    assert reports(part) is right
+
+
+def _reported(*after: Event) -> Part:
+    asked = Event(0.1, "request", "/add_two_ints", {"fields": {"a": 1, "b": 2}})
+    given = Event(0.2, "response", "/add_two_ints", {"fields": {"sum": -987654321}})
+    return Part(LATE, {"numbers": [1, 2]}, [asked, given, *after])
+
+
+@pytest.mark.parametrize(
+    ("after", "right"),
+    [
+        ([Event(0.3, "log", "node", {"text": "1 + 2 = -987654321"})], True),
+        ([Event(0.3, "log", "node", {"text": "1 + 2 = 987654321"})], False),
+        ([Event(0.3, "log", "node", {"text": "1 + 2 = 987654321"}), RETURNED], False),
+        ([Event(0.3, "log", "node", {"text": "1 + 2 = -987654321 (or 987654321 without its sign)"})], True),
+        ([Event(0.3, "log", "node", {"text": "1 + 2 = -987654321"}), RAISED], False),
+        ([RETURNED], True),
+    ],
+)
+def test_one_wrong_report_beside_a_right_one_is_wrong(after: list[Event], right: bool) -> None:
+    assert reports(_reported(*after)) is right

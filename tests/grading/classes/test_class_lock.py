@@ -1,0 +1,221 @@
+"""Two never write into one gradebook, whichever command or button started them."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from conftest import LISTENER, TALKER, FakeEngine, TinyClass
+from nbgrader.converters import GenerateFeedback, NbGraderException
+from nbgrader.coursedir import CourseDirectory
+from test_doors import nbgrader_autograde
+from tiny_class import GRADE
+
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.errors import ClassBusy
+from autograder.grading.running import engine
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+WHO = rf"process {os.getpid()}, since \d{{4}}-\d\d-\d\d \d\d:\d\d:\d\d"
+
+HOLD = """
+import os, sys
+from pathlib import Path
+from autograder.grading.classes.class_directory import ClassDirectory
+with ClassDirectory(Path(sys.argv[1])).lock():
+    if os.fork() == 0:
+        print(os.getpid(), flush=True)
+        os.read(0, 1)
+        os._exit(0)
+    os.wait()
+"""
+
+
+def command(tiny: TinyClass, *words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-W", "ignore", "-m", *words],
+        cwd=tiny.path,
+        env=os.environ | {"HOME": str(tiny.path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_the_command_says_who_is_at_work_and_since_when(tiny: TinyClass) -> None:
+    with ClassDirectory(tiny.path).lock():
+        second = command(tiny, "autograder", "grade", str(tiny.path))
+    assert second.returncode == 2
+    assert re.search(
+        rf"Another grading run is at work in {re.escape(str(tiny.path))} \({WHO}\)", second.stderr
+    )
+    assert len(second.stderr.splitlines()) == 1
+
+
+def test_a_lock_by_another_path_is_the_same_lock(tiny: TinyClass, tmp_path: Path) -> None:
+    (tmp_path / "shortcut").symlink_to(tiny.path)
+    with (
+        ClassDirectory(tiny.path).lock(),
+        pytest.raises(ClassBusy, match=WHO),
+        ClassDirectory(tmp_path / "shortcut").lock(),
+    ):
+        pass
+
+
+@pytest.mark.parametrize(
+    "left", [b"", b"12345", b'{"pid":1,"host":"elsewhere","since":"2020-01-01 00:00:00"}', b"\xff\x00" * 500]
+)
+def test_a_file_that_a_killed_run_left_behind_means_nothing(
+    tiny: TinyClass, fake_engine: FakeEngine, left: bytes
+) -> None:
+    (tiny.path / ".autograder" / "lock").write_bytes(left)
+    tiny.submit("ada")
+    tiny.grade()
+    assert tiny.scores("ada")[TALKER] == 10
+
+
+def test_a_killed_runs_child_does_not_hold_the_lock(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada")
+    with subprocess.Popen(
+        [sys.executable, "-c", HOLD, str(tiny.path)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as holder:
+        assert holder.stdout is not None
+        child = int(holder.stdout.readline())
+        with pytest.raises(ClassBusy, match=f"process {holder.pid}, since"):
+            tiny.grade()
+        holder.send_signal(signal.SIGKILL)
+        holder.wait()
+        os.kill(child, 0)  # it lives
+        tiny.grade()
+        assert holder.stdin is not None
+    assert tiny.scores("ada")[TALKER] == 10
+
+
+def test_the_lock_is_free_after_a_run_that_failed(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    def fail(_: object) -> None:
+        raise RuntimeError("no more")
+
+    tiny.submit("ada")
+    fake_engine.before = fail
+    with pytest.raises(RuntimeError):
+        tiny.grade()
+    fake_engine.before = lambda _: None
+    assert tiny.grade().exit_code == 0
+
+
+# -- plain nbgrader
+# ------------------------------------------------------------------------------------------------------
+
+
+def generate_feedback(tiny: TinyClass) -> None:
+    config = ClassDirectory(tiny.path).config
+    course = CourseDirectory(config=config)
+    course.assignment_id = "lab_1_2"
+    converter = GenerateFeedback(coursedir=course, config=config)
+    converter.force = True
+    converter.start()
+
+
+@pytest.mark.parametrize("conversion", [nbgrader_autograde, generate_feedback])
+def test_formgraders_buttons_do_nothing_while_a_batch_runs(
+    tiny: TinyClass, fake_engine: FakeEngine, conversion: Any
+) -> None:
+    """In formgrader they run in the server's process; here, that of the batch itself."""
+    tiny.submit("ada", 3, 4)
+    tiny.submit("ben", 5, 6)
+    tiny.grade(feedback=True)
+    tiny.submit("ben", 7, 8)
+
+    def press(_: object) -> None:
+        with pytest.raises(NbGraderException, match=f"Another grading run is at work .*{WHO}"):
+            conversion(tiny)
+        assert tiny.scores("ada") == {TALKER: 3, LISTENER: 4}
+        assert not (tiny.path / "feedback" / "ben" / "lab_1_2").exists()
+
+    fake_engine.before = press
+    assert tiny.grade(feedback=True).exit_code == 0
+    assert tiny.scores("ada") == {TALKER: 3, LISTENER: 4}
+    assert tiny.scores("ben") == {TALKER: 7, LISTENER: 8}
+    fake_engine.before = lambda _: None
+    conversion(tiny)
+
+
+def test_the_command_of_nbgrader_does_nothing_while_a_batch_runs(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    tiny.submit("ada", 3, 4)
+    ended: list[subprocess.CompletedProcess[str]] = []
+    fake_engine.before = lambda _: ended.append(command(tiny, "nbgrader", "autograde", "lab_1_2", "--force"))
+    tiny.grade()
+    (autograde,) = ended
+    assert autograde.returncode == 1
+    assert re.search(f"Another grading run is at work in .*{WHO}", autograde.stderr)
+    assert "Traceback" not in autograde.stderr
+    assert tiny.scores("ada") == {TALKER: 3, LISTENER: 4}
+
+
+def test_a_batch_does_nothing_while_nbgrader_grades(
+    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tiny.submit("ada", 3, 4)
+    usual = engine.execute_one
+
+    def meanwhile(*args: Any, **kw: Any) -> Any:
+        with pytest.raises(ClassBusy, match=WHO):
+            tiny.grade()
+        return usual(*args, **kw)
+
+    monkeypatch.setattr(engine, "execute_one", meanwhile)
+    nbgrader_autograde(tiny)
+    assert tiny.scores("ada") == {TALKER: 3, LISTENER: 4}
+    assert tiny.grade().executed == 0
+
+
+# -- two at once
+# ---------------------------------------------------------------------------------------------------------
+
+
+def batch(tiny: TinyClass, judge: str) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-W", "ignore", "-c", GRADE, str(tiny.path), judge],
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+@pytest.mark.slow
+def test_two_batches_started_at_once_on_one_class(tiny: TinyClass, with_fake_judge: str) -> None:
+    right = {"ada": 1, "ben": 2, "cleo": 3}
+    for student, points in right.items():
+        tiny.submit(student, points)
+    ended = [(process, process.communicate()[1]) for process in [batch(tiny, with_fake_judge) for _ in "ab"]]
+    failed = [said for process, said in ended if process.returncode]
+    assert len(failed) <= 1
+    assert all("Another grading run is at work" in said for said in failed)
+    assert {student: tiny.scores(student)[TALKER] for student in right} == right
+    assert tiny.grade(judge=with_fake_judge).executed == 0
+
+
+@pytest.mark.slow
+def test_two_batches_at_once_on_two_classes(tiny: TinyClass, with_fake_judge: str, tmp_path: Path) -> None:
+    other = TinyClass(tmp_path / "other")
+    shutil.copytree(tiny.path, other.path)
+    for student in ("ada", "ben"):
+        tiny.submit(student, 3, 4)
+        other.submit(student, 5, 6)
+    ended = [
+        (process, process.communicate()[1])
+        for process in [batch(one, with_fake_judge) for one in (tiny, other)]
+    ]
+    assert [(process.returncode, said) for process, said in ended if process.returncode] == []
+    assert tiny.scores("ada") == tiny.scores("ben") == {TALKER: 3, LISTENER: 4}
+    assert other.scores("ada") == other.scores("ben") == {TALKER: 5, LISTENER: 6}

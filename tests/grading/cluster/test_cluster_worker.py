@@ -1,0 +1,131 @@
+"""``autograder worker``: looks at what it can offer, says so, and comes and goes cleanly."""
+
+from __future__ import annotations
+
+import importlib.util
+import shutil
+import signal
+import subprocess
+
+import pytest
+from click.testing import CliRunner
+from dask_cluster import VERSION, DaskCluster
+
+pytest.importorskip("distributed", reason="./course setup --with cluster installs it")
+
+from typing import TYPE_CHECKING, Any
+
+from autograder.cli import cli
+from autograder.grading.cluster import offer as offer_module
+from autograder.grading.cluster import pool
+from autograder.grading.cluster.connection import connected
+from autograder.grading.cluster.pool import SchedulerGone
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import TinyClass
+
+
+def test_without_a_sandbox_it_does_not_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(offer_module, "why_impossible", lambda: "bubblewrap is not installed")
+    done = CliRunner().invoke(cli, ["worker", "tcp://127.0.0.1:1"])
+    assert done.exit_code == 2
+    assert "No sandbox is possible here: bubblewrap is not installed." in done.output
+    assert "--unsafe-no-sandbox" in done.output
+
+
+def test_without_an_address_it_says_how_to_give_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("DASK_SCHEDULER_ADDRESS", raising=False)
+    done = CliRunner().invoke(cli, ["worker"])
+    assert done.exit_code == 2
+    assert "autograder worker tcp://host:8786" in done.output
+
+
+@pytest.mark.parametrize(
+    "address", ["nonsense://x:1", "host:8786", "tcp://host", "tcp://a b:1", "-x", "tcp://h:1;x"]
+)
+def test_what_is_no_address_is_refused(address: str) -> None:
+    done = CliRunner().invoke(cli, ["worker", "--", address])
+    assert done.exit_code == 2
+    assert "is no address of a Dask scheduler. One looks like tcp://host:8786" in done.output
+
+
+def test_without_a_scheduler_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    from autograder.grading.cluster import start_worker
+
+    monkeypatch.setattr(start_worker, "_CONNECT_SECONDS", 0.5)
+    monkeypatch.setattr(offer_module, "why_impossible", lambda: "")
+    done = CliRunner().invoke(cli, ["worker", "tcp://127.0.0.1:1"])
+    assert done.exit_code == 2, done.output
+    assert "There is no Dask scheduler at tcp://127.0.0.1:1" in done.output
+
+
+def test_without_dask_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch, tiny: TinyClass) -> None:
+    find = importlib.util.find_spec
+    monkeypatch.setattr(
+        importlib.util, "find_spec", lambda name: None if name == "distributed" else find(name)
+    )
+    for words in (["worker", "tcp://x:1"], ["grade", str(tiny.path), "--scheduler", "tcp://x:1"]):
+        done = CliRunner().invoke(cli, words)
+        assert done.exit_code == 2
+        assert "./course setup --with cluster" in done.output
+
+
+def test_what_is_no_address_or_belongs_to_this_machine_is_refused_by_grade(tiny: TinyClass) -> None:
+    done = CliRunner().invoke(cli, ["grade", str(tiny.path), "--scheduler", "host"])
+    assert done.exit_code == 2
+    assert "is no address of a Dask scheduler" in done.output
+    done = CliRunner().invoke(cli, ["grade", str(tiny.path), "--scheduler", "tcp://x:1", "--jobs", "2"])
+    assert done.exit_code == 2
+    assert "autograder worker --jobs" in done.output
+
+
+def test_it_says_what_it_offers_and_ends_when_it_is_told(tmp_path_factory: pytest.TempPathFactory) -> None:
+    with DaskCluster() as cluster, cluster.worker("w", slots=3, version="v1", obstacle="") as process:
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(timeout=180) == 0
+    assert "w offers 3 notebooks at once, in boxes, with course version v1." in cluster.said
+
+
+@pytest.fixture
+def certificates(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """One certificate for all, where Dask looks for its settings."""
+    if shutil.which("openssl") is None:
+        pytest.skip("there is no openssl to make a certificate with")
+    key, certificate = tmp_path / "key.pem", tmp_path / "certificate.pem"
+    subject = ["-subj", "/CN=localhost", "-days", "1", "-keyout", str(key), "-out", str(certificate)]
+    subprocess.run(
+        ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", *subject],
+        check=True,
+        capture_output=True,
+    )
+    monkeypatch.setenv("DASK_DISTRIBUTED__COMM__TLS__CA_FILE", str(certificate))
+    for part in ("SCHEDULER", "WORKER", "CLIENT"):
+        monkeypatch.setenv(f"DASK_DISTRIBUTED__COMM__TLS__{part}__CERT", str(certificate))
+        monkeypatch.setenv(f"DASK_DISTRIBUTED__COMM__TLS__{part}__KEY", str(key))
+
+
+@pytest.mark.usefixtures("certificates")
+def test_with_certificates_all_speak_tls_and_who_has_none_stays_outside(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(pool, "course_version", lambda: VERSION)
+    options: dict[str, Any] = {"judge": "a:B", "boxed": False}
+    with DaskCluster("tls") as cluster, cluster.worker("w"):
+        assert cluster.address.startswith("tls://")
+        with connected(cluster.address, **options) as workers:
+            assert [worker.name for worker in workers._workers.values()] == ["w"]
+        with pytest.raises(SchedulerGone), connected(cluster.address.replace("tls", "tcp"), **options):
+            pass
+        monkeypatch.delenv("DASK_DISTRIBUTED__COMM__TLS__CLIENT__CERT")
+        with pytest.raises(SchedulerGone), connected(cluster.address, **options):
+            pass
+
+
+def test_it_ends_when_the_scheduler_does() -> None:
+    with DaskCluster() as cluster, cluster.worker("w") as process:
+        cluster.scheduler.kill()
+        assert process.wait(timeout=180) == 0
+        assert process.stdout
+        assert "the scheduler at" in process.stdout.read()

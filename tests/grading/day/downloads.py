@@ -1,0 +1,35 @@
+"""What learning management systems let an instructor download, made by this program for tests."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+ROSTER = """\
+id,first_name,last_name,email,canvas,github
+ada,Ada,Lovelace,ada.love@uni.example,101,adalove
+ben,Ben,Bär,ben@uni.example,102,
+jose,José,Núñez,jose@uni.example,103,josen
+eve,Eve,O'Neill,eve@uni.example,104,
+zoe,Zoë,Zuse,zoe@uni.example,105,zz-top
+"""
+
+
+def zipped(files: Mapping[str, bytes | str]) -> bytes:
+    """A zip with these files."""
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    return data.getvalue()
+
+
+def write_zip(path: Path, files: Mapping[str, bytes | str]) -> Path:
+    """The same as a file."""
+    path.write_bytes(zipped(files))
+    return path

@@ -1,0 +1,159 @@
+"""What lies a little beside its place in ``submitted`` is graded or has a line: a browser's habit costs nothing."""
+
+from __future__ import annotations
+
+import unicodedata
+from typing import TYPE_CHECKING
+
+import pytest
+from conftest import LISTENER, TALKER
+from downloads import zipped
+
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.classes.new_class import release
+from autograder.grading.errors import MasterUnusable
+
+if TYPE_CHECKING:
+    from conftest import FakeEngine, TinyClass
+
+    from autograder.grading.reporting.report import GradeReport
+
+
+def refused(report: GradeReport) -> str:
+    return "\n".join(f"{one.path.name}: {one.reason}" for one in report.refused)
+
+
+@pytest.mark.parametrize(
+    "name", ["lab_1_2 (1).ipynb", "lab_1_2(1).ipynb", "lab_1_2-1.ipynb", "LAB_1_2 - Copy.ipynb"]
+)
+def test_a_number_that_a_browser_adds_costs_nothing(
+    tiny: TinyClass, fake_engine: FakeEngine, name: str
+) -> None:
+    path = tiny.submit("ada", 4, 7)
+    path.rename(path.with_name(name))
+    report = tiny.grade()
+    assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
+    assert any(name in notice for notice in report.notices)
+    assert report.exit_code == 0
+    assert tiny.grade().notices == ()
+
+
+def test_beside_the_notebook_it_is_mentioned(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    path = tiny.submit("ada", 4, 7)
+    path.with_name("lab_1_2 (1).ipynb").write_text("{}")
+    report = tiny.grade()
+    assert any("lab_1_2 (1).ipynb was left out" in notice for notice in report.notices)
+    assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
+
+
+def test_two_numbered_ones_need_a_decision(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    path = tiny.submit("ada", 4, 7)
+    path.with_name("lab_1_2 (2).ipynb").write_bytes(path.read_bytes())
+    path.rename(path.with_name("lab_1_2 (1).ipynb"))
+    report = tiny.grade()
+    assert refused(report).count("put the notebook that counts at") == 2
+    assert report.exit_code == 2
+
+
+def test_one_folder_too_high_is_put_right_unless_one_is_there(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    path = tiny.submit("ada", 4, 7)
+    path.rename(path.parent.parent / "lab_1_2.ipynb")
+    path.parent.rmdir()
+    report = tiny.grade()
+    assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
+    assert report.exit_code == 0
+    (path.parent.parent / "lab_1_2.ipynb").write_text("{}")
+    report = tiny.grade()
+    assert "one folder too high" in refused(report)
+    assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
+
+
+def test_loose_files_and_zips_are_named(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada")
+    (tiny.path / "submitted" / "lab_1_2.ipynb").write_text("{}")
+    (tiny.path / "submitted" / "ben" / "lab_1_2").mkdir(parents=True)
+    (tiny.path / "submitted" / "ben" / "lab_1_2" / "work.zip").write_bytes(zipped({"a": "b"}))
+    (tiny.path / "submitted" / "moodle.zip").write_bytes(zipped({"a": "b"}))
+    report = tiny.grade()
+    assert {one.path.name for one in report.refused} == {"lab_1_2.ipynb", "work.zip", "moodle.zip"}
+    assert "autograder collect" in refused(report)
+
+
+def test_a_name_as_a_mac_writes_it_is_the_same_name(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit(unicodedata.normalize("NFD", "José"), 4, 7)
+    report = tiny.grade()
+    assert report.exit_code == 0
+    assert tiny.scores("José") == {TALKER: 4, LISTENER: 7}
+    assert any("José" in notice for notice in report.notices)
+
+
+def test_capitals_alone_deserve_a_word(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("bob")
+    tiny.submit("Bob")
+    assert any("Bob and bob" in notice for notice in tiny.grade().notices)
+
+
+def test_who_asks_for_one_student_hears_of_that_one(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada")
+    (tiny.path / "submitted" / "a*").mkdir()
+    assert tiny.grade().exit_code == 2
+    report = tiny.grade(students=["ada"])
+    assert (report.refused, report.exit_code) == ((), 0)
+
+
+def test_nothing_is_moved_through_a_link(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    neighbour = tiny.submit("ada")
+    folder = tiny.path / "submitted" / "eve" / "lab_1_2"
+    folder.mkdir(parents=True)
+    (folder / "lab_1_2 (1).ipynb").symlink_to(neighbour)
+    (tiny.path / "submitted" / "eve" / "lab_1_2.ipynb").symlink_to(neighbour)
+    tiny.grade()
+    assert (folder / "lab_1_2 (1).ipynb").is_symlink()
+    assert tiny.scores("eve")[TALKER] == 0
+
+
+def own_assignment(tiny: TinyClass, *, manual: bool) -> None:
+    """A second assignment: a question of the instructor's, or a check of an exercise that there is not."""
+    import nbformat
+
+    marks = {"grade": True, "solution": manual, "locked": not manual, "schema_version": 3, "task": False}
+    cell = (
+        nbformat.v4.new_markdown_cell("Why?")
+        if manual
+        else nbformat.v4.new_code_cell("check('gone', Talker)")
+    )
+    cell.metadata["nbgrader"] = {**marks, "grade_id": "own", "points": 3}
+    path = tiny.path / "source" / "own" / "own.ipynb"
+    path.parent.mkdir()
+    notebook = nbformat.v4.new_notebook(cells=[cell])
+    notebook.metadata["kernelspec"] = {"name": "python3", "display_name": "Python 3", "language": "python"}
+    nbformat.write(notebook, path)
+    release(ClassDirectory(tiny.path))
+
+
+def test_an_assignment_that_the_judge_cannot_grade_holds_up_no_other(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    own_assignment(tiny, manual=False)
+    tiny.submit("ada", 4, 7)
+    report = tiny.grade()
+    assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
+    assert "carries points, but" in refused(report)
+    assert report.exit_code == 2
+    assert tiny.grade(assignments=["lab_1_2"]).exit_code == 0
+    with pytest.raises(MasterUnusable, match="own"):
+        tiny.grade(assignments=["own"])
+
+
+def test_an_assignment_for_persons_alone_is_in_the_table(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    own_assignment(tiny, manual=True)
+    path = tiny.path / "submitted" / "ada" / "own" / "own.ipynb"
+    path.parent.mkdir(parents=True)
+    text = (tiny.path / "release" / "own" / "own.ipynb").read_text()
+    path.write_text(text.replace("YOUR ANSWER HERE", "Because."))
+    report = tiny.grade()
+    assert [(row.exercise, row.max_score, row.state, row.waits) for row in report.rows] == [
+        ("own", 3, "waits", True)
+    ]

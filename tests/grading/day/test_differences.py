@@ -1,0 +1,86 @@
+"""Who has other points than before is said before a run, after it, and at any time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from click.testing import CliRunner
+from conftest import LISTENER, TALKER
+from test_true_table import by_person, shown
+
+from autograder.cli import cli
+from autograder.grading import batch
+from autograder.grading.rebuilding import task_making
+
+if TYPE_CHECKING:
+    import pytest
+    from conftest import FakeEngine, TinyClass
+
+
+def files(tiny: TinyClass) -> dict[str, bytes]:
+    """What a run leaves, without the journal and the logs."""
+    found: dict[str, bytes] = {}
+    for name in ("autograded", "feedback", "submitted"):
+        found |= {str(path): path.read_bytes() for path in (tiny.path / name).rglob("*") if path.is_file()}
+    return found | {"csv": (tiny.path / "grades.csv").read_bytes()}
+
+
+def test_a_dry_run_enters_nothing_and_says_who_would_get_other_points(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    tiny.submit("ada", 4, 7)
+    tiny.submit("ben", 4, 7)
+    tiny.submit("eve", 4, 7)
+    tiny.grade(feedback=True)
+    by_person(tiny, "eve", TALKER, 9)
+    tiny.submit("ben", 10, 7)
+    tiny.submit("eve", 10, 7)
+    before = files(tiny)
+    fake_engine.ran.clear()
+    report = tiny.grade(dry_run=True, feedback=True)
+    assert fake_engine.ran == ["ben", "eve"]
+    assert report.would_change is not None
+    assert [change.line() for change in report.would_change] == [
+        "ben  lab_1_2.talker  4 → 10",
+        "eve  lab_1_2.talker  4 → 10, a person's points stay",
+    ]
+    assert "Nothing was entered. 2 results would change:" in shown(report)
+    after = files(tiny)
+    assert after.keys() == before.keys()
+    assert tiny.scores("ben") == {TALKER: 4, LISTENER: 7}
+    assert {name for name in before if before[name] != after[name]} == set()
+    fake_engine.ran.clear()
+    assert tiny.grade(feedback=True).would_change is None
+    assert (fake_engine.ran, tiny.scores("ben")) == ([], {TALKER: 10, LISTENER: 7})
+
+
+def test_two_runs_can_be_compared_at_any_time(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    result = CliRunner().invoke(cli, ["compare", str(tiny.path)])
+    assert result.exit_code == 2
+    tiny.submit("ada", 4, 7)
+    tiny.grade()
+    tiny.grade()
+    tiny.submit("ada", 10, 7)
+    tiny.grade()
+    by_person(tiny, "ada", LISTENER, 9)
+    tiny.grade()
+    last = CliRunner().invoke(cli, ["compare", str(tiny.path)]).output
+    assert "1 results differ" in last
+    assert "ada  lab_1_2.listener  7 → 9" in last
+    names = sorted(path.stem for path in (tiny.path / ".autograder" / "runs").iterdir())
+    assert len(names) == 3, "a run that changes nothing is not kept"
+    whole = CliRunner().invoke(cli, ["compare", str(tiny.path), names[0], names[-1]]).output
+    assert "ada  lab_1_2.talker  4 → 10 (wrong_text → no mistake)" in whole
+    assert CliRunner().invoke(cli, ["compare", str(tiny.path), "yesterday"]).exit_code == 2
+
+
+def test_another_version_of_the_course_is_said(
+    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tiny.submit("ada", 4, 7)
+    assert not any("another version" in notice for notice in tiny.grade().notices)
+    assert not any("another version" in notice for notice in tiny.grade().notices)
+    monkeypatch.setattr(batch, "course_version", lambda: "next")
+    monkeypatch.setattr(task_making, "course_version", lambda: "next")
+    report = tiny.grade()
+    assert any("1 submissions had been graded with another version" in notice for notice in report.notices)

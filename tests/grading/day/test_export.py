@@ -1,0 +1,202 @@
+"""What goes back to an LMS has its form, and the gradebook's numbers."""
+
+from __future__ import annotations
+
+import csv
+import io
+import zipfile
+from typing import TYPE_CHECKING
+
+import pytest
+from click.testing import CliRunner
+from downloads import ROSTER, write_zip
+from nbgrader.api import Gradebook
+from test_true_table import DUE, by_person, due, nbgraders_total, penalty
+
+from autograder.cli import cli
+from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.forms import read_path
+from autograder.grading.errors import GradingError
+from autograder.grading.exporting.export import export
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import FakeEngine, TinyClass
+
+TALKER = "lab_1_2-talker"
+STUDENTS = ("ada", "ben", "eve", "jose", "zoe")
+
+
+@pytest.fixture
+def graded(tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path) -> TinyClass:
+    """A class with points by hand, a late student, one without work and one whose folder was made by hand."""
+    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
+    penalty(tiny)
+    due(tiny, DUE)
+    one, two = tiny.submit("x", 4, 7).read_text(), tiny.submit("x", 10, 10).read_text()
+    for path in sorted((tiny.path / "submitted" / "x").rglob("*"), reverse=True):
+        path.unlink() if path.is_file() else path.rmdir()
+    (tiny.path / "submitted" / "x").rmdir()
+    canvas = {"lovelaceada_101_9001_lab_1_2-2.ipynb": one, "nunezjose_LATE_103_9002_lab_1_2.ipynb": two}
+    moodle = {"Eve O'Neill_555_assignsubmission_file/lab_1_2.ipynb": two}
+    worksheet = tmp_path / "w.csv"
+    worksheet.write_text(
+        "Identifier,Full name,Email address,Grade,Last modified (submission)\n"
+        'Participant 555,Eve O\'Neill,eve@uni.example,,"Sunday, 11 January 2026, 2:05 PM"\n'
+    )
+    collect(tiny.path, [write_zip(tmp_path / "c.zip", canvas)])
+    collect(tiny.path, [write_zip(tmp_path / "m.zip", moodle), worksheet])
+    tiny.submit("ben", 1, 1)
+    tiny.grade(feedback=True)
+    by_person(tiny, "ada", TALKER, 9.5, extra=2)
+    tiny.grade(feedback=True)
+    return tiny
+
+
+def rows(path: Path) -> list[list[str]]:
+    return list(csv.reader(io.StringIO(path.read_text("utf-8-sig"))))
+
+
+def in_gradebook(klass: TinyClass) -> dict[str, float]:
+    with Gradebook(f"sqlite:///{klass.path / 'gradebook.db'}") as book:
+        there = {submission.student.id for submission in book.assignment_submissions("lab_1_2")}
+    return {student: nbgraders_total(klass, student) if student in there else 0.0 for student in STUDENTS}
+
+
+def test_the_class_is_as_it_must_be(graded: TinyClass) -> None:
+    assert in_gradebook(graded) == {"ada": 18.5, "ben": 2, "eve": 0, "jose": 20, "zoe": 0}
+
+
+def test_canvas_takes_the_points(graded: TinyClass) -> None:
+    export(graded.path, "canvas")
+    header, possible, *students = rows(graded.path / "export" / "canvas.csv")
+    # What Canvas's importer asks of a file: these columns in this order, and the points possible behind them.
+    assert header == ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "lab_1_2"]
+    assert "Points Possible" in possible[0]
+    assert possible[-1] == "20"
+    assert {row[3]: float(row[-1]) for row in students} == in_gradebook(graded)
+    assert [row[:2] for row in students[:2]] == [["Lovelace, Ada", "101"], ["Bär, Ben", "102"]]
+    assert not (graded.path / "export" / "canvas.csv").read_bytes().startswith(b"\xef\xbb\xbf")
+
+
+def test_canvas_takes_the_pages_under_the_names_of_its_files(graded: TinyClass) -> None:
+    done = export(graded.path, "canvas")
+    with zipfile.ZipFile(graded.path / "export" / "feedback-canvas-lab_1_2.zip") as archive:
+        assert sorted(archive.namelist()) == [
+            "lovelaceada_101_9001_lab_1_2-2.html",
+            "nunezjose_LATE_103_9002_lab_1_2.html",
+        ]
+        page = archive.read("lovelaceada_101_9001_lab_1_2-2.html").decode()
+    assert "Score: 18.5 / 20.0" in page
+    assert any("ben, eve" in notice for notice in done.notices)
+    for name in ("lovelaceada_101_9001_lab_1_2-2.html", "nunezjose_LATE_103_9002_lab_1_2.html"):
+        found = read_path((name,), "canvas", lambda _: False)
+        assert found is not None
+
+
+def test_moodle_takes_points_and_pages(graded: TinyClass) -> None:
+    done = export(graded.path, "moodle")
+    header, *students = rows(graded.path / "export" / "moodle.csv")
+    assert header == ["First name", "Last name", "ID number", "Email address", "lab_1_2"]
+    assert {row[2]: float(row[-1]) for row in students} == in_gradebook(graded)
+    header, *students = rows(graded.path / "export" / "moodle-lab_1_2.csv")
+    assert {"Identifier", "Grade", "Last modified (grade)"} <= set(header)
+    assert [dict(zip(header, row, strict=True)) for row in students] == [
+        {
+            "Identifier": "Participant 555",
+            "Full name": "Eve O'Neill",
+            "Email address": "eve@uni.example",
+            "Status": "Submitted for grading",
+            "Grade": "0",
+            "Maximum Grade": "20",
+            "Grade can be changed": "Yes",
+            "Last modified (submission)": "",
+            "Last modified (grade)": "",
+            "Feedback comments": "",
+        }
+    ]
+    with zipfile.ZipFile(graded.path / "export" / "feedback-moodle-lab_1_2.zip") as archive:
+        assert archive.namelist() == ["Eve O'Neill_555_assignsubmission_file/lab_1_2.html"]
+    assert any("ada, ben, jose, zoe" in notice for notice in done.notices)
+
+
+def test_a_list_of_the_lms_is_filled_in_and_else_left_as_it_is(graded: TinyClass, tmp_path: Path) -> None:
+    worksheet = tmp_path / "Grades-ROS.csv"
+    worksheet.write_text(
+        "\ufeffIdentifier,Full name,Email address,Status,Grade,Maximum Grade,Last modified (grade),Note\n"
+        "Participant 1,Ada Lovelace,ada.love@uni.example,x,,20.00,-,=1\n"
+        "Participant 2,Guest User,g@uni.example,x,,20.00,-,\n"
+        "Participant 3,José Núñez,,x,3,20.00,-,\n",
+        encoding="utf-8",
+    )
+    done = export(graded.path, "moodle", into=worksheet)
+    header, ada, guest, jose = rows(graded.path / "export" / "Grades-ROS.csv")
+    assert (ada[4], guest[4], jose[4]) == ("18.5", "", "20")
+    assert (header[0], ada[6:], worksheet.read_text("utf-8").count("18.5")) == ("Identifier", ["-", "=1"], 0)
+    assert any("Guest User" in notice for notice in done.notices)
+    gradebook = tmp_path / "canvas.csv"
+    gradebook.write_text(
+        'Student,ID,SIS Login ID,Section,lab_1_2 (815),Other (9)\n"    Points Possible",,,,20,5\n'
+        '"Lovelace, Ada",101,al,A,,4\n"Nobody, N",9,nn,A,1,1\n'
+    )
+    export(graded.path, "canvas", into=gradebook)
+    lines = rows(graded.path / "export" / "canvas.csv")
+    assert lines[2] == ["Lovelace, Ada", "101", "al", "A", "18.5", "4"]
+    assert lines[3] == ["Nobody, N", "9", "nn", "A", "1", "1"]
+    for text, words in (("Student,ID,Section,Lab\n", "no column for lab_1_2"), ("a,b\n", "neither")):
+        gradebook.write_text(text)
+        with pytest.raises(GradingError, match=words):
+            export(graded.path, "canvas", into=gradebook)
+
+
+def test_a_spreadsheet_has_a_line_for_each_student(graded: TinyClass) -> None:
+    export(graded.path, "csv")
+    header, *students = rows(graded.path / "export" / "students.csv")
+    named = [dict(zip(header, row, strict=True)) for row in students]
+    assert {row["student"]: float(row["total"]) for row in named} == in_gradebook(graded)
+    assert {row["student"]: float(row["late_penalty"]) for row in named}["eve"] == 20
+    assert [row["last_name"] for row in named] == ["Lovelace", "Bär", "O'Neill", "Núñez", "Zuse"]
+
+
+def test_a_workbook_holds_the_same_and_no_formula(graded: TinyClass) -> None:
+    (graded.path / "students.csv").write_text(ROSTER + "mal,=1+1,http://x,@x,,\n")
+    export(graded.path, "xlsx")
+    with zipfile.ZipFile(graded.path / "export" / "grades.xlsx") as book:
+        names = book.namelist()
+        sheets = "".join(book.read(name).decode() for name in names if "worksheets/sheet" in name)
+        strings = book.read("xl/sharedStrings.xml").decode()
+    assert sum("worksheets/sheet" in name for name in names) == 2
+    assert "<f>" not in sheets
+    assert not any("hyperlink" in name for name in names)
+    assert "=1+1" in strings
+    assert "<v>18.5</v>" in sheets
+
+
+def test_what_waits_and_what_is_not_graded_is_said(graded: TinyClass) -> None:
+    graded.submit("ada", 2, 2)
+    done = export(graded.path, "csv")
+    assert any("ada/lab_1_2" in notice and "autograder grade" in notice for notice in done.notices)
+    graded.grade()
+    done = export(graded.path, "csv")
+    assert any("1 results wait for a person" in notice for notice in done.notices)
+
+
+def test_the_command_names_the_files(graded: TinyClass, tmp_path: Path) -> None:
+    result = CliRunner().invoke(
+        cli, ["export", str(graded.path), "--to", "canvas", "--output", str(tmp_path / "o")]
+    )
+    assert result.exit_code == 0, result.output
+    assert str(tmp_path / "o" / "canvas.csv") in result.output
+    assert "Canvas: Grades, Import" in result.output
+    for arguments in (
+        ["--to", "excel"],
+        ["--to", "csv", "--assignment", "lab_9"],
+        ["--to", "moodle", "--into", "x"],
+    ):
+        assert CliRunner().invoke(cli, ["export", str(graded.path), *arguments]).exit_code == 2
+
+
+def test_an_empty_class_has_nothing_to_export(tiny: TinyClass) -> None:
+    with pytest.raises(GradingError, match="Nothing was handed in"):
+        export(tiny.path, "csv")

@@ -1,0 +1,110 @@
+"""The page about a class says what the gradebook says, to anybody, without a script and without a network."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+import tiny_class
+from bs4 import BeautifulSoup
+from click.testing import CliRunner
+from downloads import ROSTER
+from test_true_table import by_person, nbgraders_total
+
+from autograder.cli import cli
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.entering.journal import Journal
+from autograder.grading.errors import GradingError
+from autograder.grading.overview import statistics as figures
+from autograder.grading.overview.page import write_report
+from autograder.grading.table.class_table import read_table
+from autograder.verdict import Criterion, Verdict
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import FakeEngine, TinyClass
+
+GIVEN = {"ada": (10, 10), "ben": (4, 0), "eve": (2, 1), "jose": ("1/0", 10)}
+
+
+@pytest.fixture
+def graded(tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch) -> TinyClass:
+    """A class of five, of whom one has handed in nothing, with points by hand."""
+    plain = tiny_class.verdict
+
+    def with_criteria(exercise: str, score: float, seed: str) -> Verdict:
+        criterion = Criterion("text", "Says the right thing", 10, score == 10, "", "")
+        return replace(plain(exercise, score, seed), criteria=(criterion,))
+
+    monkeypatch.setattr(tiny_class, "verdict", with_criteria)
+    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
+    for student, answers in GIVEN.items():
+        tiny.submit(student, *answers)
+    tiny.grade(feedback=True)
+    by_person(tiny, "ben", "lab_1_2-talker", 5, extra=1)
+    tiny.grade(feedback=True)
+    return tiny
+
+
+def test_the_figures_are_the_gradebooks(graded: TinyClass) -> None:
+    table = read_table(ClassDirectory(graded.path))
+    assert {student: table.score(student) for student in GIVEN} == {
+        student: nbgraders_total(graded, student) for student in GIVEN
+    }
+    assert sorted(figures.totals(table)) == [3, 6, 10, 20]
+    assert [(band.low, band.students) for band in figures.bands(table) if band.students] == [
+        (10, ("eve",)),
+        (30, ("ben",)),
+        (50, ("jose",)),
+        (90, ("ada",)),
+    ]
+    talker, listener = figures.items(table, Journal(graded.path / ".autograder" / "journal"))
+    assert (talker.handed_in, talker.mean, talker.full, talker.none) == (4, 4.5, 1, 1)
+    assert talker.discrimination == pytest.approx(7.5 / (59 * 90.75) ** 0.5)
+    assert (listener.full, listener.none) == (2, 1)
+    assert [(one.title, one.passed, one.of) for one in talker.criteria] == [("Says the right thing", 1, 3)]
+    assert [(one.passed, one.of) for one in listener.criteria] == [(2, 4)]
+    mistakes = {(one.exercise, one.key): one.students for one in figures.mistakes(table)}
+    assert mistakes["lab_1_2.talker", "wrong_text"] == ("ben", "eve")
+    assert mistakes["lab_1_2.talker", "crashed"] == ("jose",)
+
+
+def test_the_page_needs_nothing_and_links_lead_somewhere(graded: TinyClass) -> None:
+    path = write_report(graded.path)
+    text = path.read_text()
+    page = BeautifulSoup(text, "html.parser")
+    assert not page.find_all(["script", "link", "img", "iframe"])
+    assert "http" not in text.replace("http-equiv", "")
+    links = {link["href"] for link in page.find_all("a")}
+    assert len(links) == 4
+    assert all((graded.path / str(link)).is_file() for link in links)
+    assert "Zoë Zuse (zoe)" in text
+    assert "Nothing handed in" in text
+    assert "6*" in text
+    assert page.find(role="img")["aria-label"] == "0 students"  # type: ignore[index]
+
+
+def test_names_can_be_left_out(graded: TinyClass) -> None:
+    text = write_report(graded.path, names=False).read_text()
+    for word in ("Ada", "ada", "Lovelace", "ben", "jose", "feedback/"):
+        assert word not in text
+    assert "student 1" in text
+
+
+def test_nothing_of_a_name_is_markup(graded: TinyClass) -> None:
+    (graded.path / "students.csv").write_text("id,first_name\nada,<script>alert(1)</script>\n")
+    assert "<script>" not in write_report(graded.path).read_text()
+
+
+def test_the_command_says_where_the_page_is(graded: TinyClass, tiny: TinyClass, tmp_path: Path) -> None:
+    to = tmp_path / "elsewhere" / "page.html"
+    result = CliRunner().invoke(cli, ["report", str(graded.path), "--output", str(to)])
+    assert (result.exit_code, result.output.strip()) == (0, str(to))
+    assert "file:///" in to.read_text()
+
+
+def test_without_work_there_is_nothing_to_report(tiny: TinyClass) -> None:
+    with pytest.raises(GradingError, match="Nothing was handed in"):
+        write_report(tiny.path)

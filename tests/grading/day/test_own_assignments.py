@@ -1,0 +1,138 @@
+"""Assignments of an instructor's own, with plain tests, are executed in boxes and graded by nbgrader's rules."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import TYPE_CHECKING, Any
+
+import nbformat
+import pytest
+from nbformat.v4 import new_code_cell, new_notebook
+from nbgrader.api import Gradebook
+
+from autograder.boxes.assertions import verdict_of
+from autograder.boxes.execution import CellRun, Check, Ended
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.classes.new_class import release
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import TinyClass
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+
+STUB = "def add(a, b):\n    ### BEGIN SOLUTION\n    return a + b\n    ### END SOLUTION"
+TESTS = {
+    "small": ("assert add(1, 2) == 3, 'one and two are three'", 2),
+    "noisy": ("import sys\nprint('a log line', file=sys.stderr)\nassert add(0, 0) == 0", 3),
+    "partial": ("(add(1, 1) == 2) + 0.5", 4),
+    "hidden": ("### BEGIN HIDDEN TESTS\nassert add(-5, 2) == -3\n### END HIDDEN TESTS", 1),
+}
+
+
+def marked(cell: Any, name: str, points: int | None) -> Any:
+    marks = {"grade": points is not None, "solution": points is None, "locked": points is not None}
+    cell.metadata["nbgrader"] = {**marks, "task": False, "schema_version": 3, "grade_id": name}
+    if points is not None:
+        cell.metadata["nbgrader"]["points"] = points
+    return cell
+
+
+def graded_cells() -> list[Any]:
+    """As *Create Assignment* marks them."""
+    tests = [marked(new_code_cell(source), name, points) for name, (source, points) in TESTS.items()]
+    return [marked(new_code_cell(STUB), "add", None), *tests]
+
+
+def write_assignment(tiny: TinyClass) -> None:
+    """An assignment for stock nbgrader beside the lab."""
+    notebook = new_notebook(cells=graded_cells())
+    notebook.metadata["kernelspec"] = {"name": "python3", "display_name": "Python 3", "language": "python"}
+    path = tiny.path / "source" / "own" / "own.ipynb"
+    path.parent.mkdir()
+    nbformat.write(notebook, path)
+    release(ClassDirectory(tiny.path))
+
+
+def hand_in(tiny: TinyClass, student: str, answer: str, assignment: str = "own") -> Path:
+    notebook: Any = nbformat.read(tiny.path / "release" / assignment / f"{assignment}.ipynb", as_version=4)
+    for cell in notebook.cells:
+        if cell.metadata.get("nbgrader", {}).get("grade_id") == "add":
+            cell.source = answer
+    path = tiny.path / "submitted" / student / assignment / f"{assignment}.ipynb"
+    path.parent.mkdir(parents=True)
+    nbformat.write(notebook, path)
+    return path
+
+
+def points(tiny: TinyClass, student: str) -> dict[str, float]:
+    """The table, which has to say what the gradebook says."""
+    text = (tiny.path / "grades.csv").read_text(encoding="utf-8-sig")
+    rows = [row for row in csv.DictReader(io.StringIO(text)) if row["student"] == student]
+    found = {row["exercise"]: float(row["score"]) for row in rows}
+    with Gradebook(f"sqlite:///{tiny.path / 'gradebook.db'}") as book:
+        total = sum(one.score for one in book.student_submissions(student))
+    assert sum(found.values()) == total
+    return found
+
+
+def test_an_own_assignment_is_graded_by_its_tests(tiny: TinyClass, with_fake_judge: str) -> None:
+    write_assignment(tiny)
+    hand_in(tiny, "ada", "def add(a, b):\n    return a + b")
+    hand_in(tiny, "ben", "def add(a, b):\n    return abs(a) - abs(b)")
+    hand_in(tiny, "eve", "import os\nos._exit(0)")
+    hand_in(tiny, "joe", "def add(a, b:")
+    report = tiny.grade(judge=with_fake_judge, feedback=True)
+    assert report.exit_code == 0
+    assert points(tiny, "ada") == {"small": 2, "noisy": 3, "partial": 1.5, "hidden": 1}
+    assert points(tiny, "ben") == {"small": 0, "noisy": 3, "partial": 0.5, "hidden": 0}
+    assert points(tiny, "eve") == dict.fromkeys(TESTS, 0)
+    assert points(tiny, "joe") == {"small": 0, "noisy": 0, "partial": 0, "hidden": 0}
+    said = {(row.student, row.exercise): row.diagnosis for row in report.rows}
+    assert said["ben", "small"] == "assertion_failed"
+    assert said["ada", "partial"] == "partial_credit"
+    assert said["eve", "small"] == "kernel_died"
+    assert said["joe", "small"] == "syntax_error"
+    page = (tiny.path / "feedback" / "ben" / "own" / "own.html").read_text()
+    assert "Score: 3.5 / 10.0" in page
+    assert "one and two are three" in page
+    assert "Remarks of the grader" not in page  # who leaves hidden tests alone has changed nothing
+    assert tiny.grade(judge=with_fake_judge).executed == 0
+
+
+def test_tests_stand_beside_checks_of_the_judge(tiny: TinyClass, with_fake_judge: str) -> None:
+    source = tiny.path / "source" / "lab_1_2" / "lab_1_2.ipynb"
+    notebook: Any = nbformat.read(source, as_version=4)
+    notebook.cells += graded_cells()
+    nbformat.write(notebook, source)
+    release(ClassDirectory(tiny.path))
+    tiny.submit("ada", 4, 7)
+    tiny.grade(judge=with_fake_judge)
+    assert points(tiny, "ada") == {
+        "lab_1_2.talker": 4,
+        "lab_1_2.listener": 7,
+        **dict.fromkeys(TESTS, 0),  # add is not written
+        "noisy": 0,
+    }
+
+
+@pytest.mark.parametrize(
+    ("value", "score"),
+    [("2", 2), ("0", 0), ("2.5", 2.5), ("99", 4), ("-1", 4), ("nan", 4), ("True", 4), ("'text'", 4)],
+)
+def test_a_value_is_worth_what_nbgrader_takes_it_for(value: str, score: float) -> None:
+    outputs = ({"output_type": "execute_result", "data": {"text/plain": value}},)
+    verdict = verdict_of(Check("own", "own", 4, 4, 0, asserts=True), CellRun(Ended.DONE, outputs))
+    assert verdict is not None
+    assert verdict.score == score
+    assert verdict.passed is (score == 4)
+
+
+def test_nbgraders_own_conversion_gives_the_same_points(tiny: TinyClass, with_fake_judge: str) -> None:
+    tiny.configure_otherwise()
+    write_assignment(tiny)
+    hand_in(tiny, "ben", "def add(a, b):\n    return abs(a) - abs(b)")
+    tiny.grade(judge=with_fake_judge)
+    assert points(tiny, "ben") == {"small": 0, "noisy": 3, "partial": 0.5, "hidden": 0}

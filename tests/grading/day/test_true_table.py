@@ -1,0 +1,321 @@
+"""There is one true table: what the gradebook says, whoever gave the points and whatever being late cost."""
+
+from __future__ import annotations
+
+import csv
+import io
+from datetime import datetime, timedelta
+from typing import TYPE_CHECKING, Any
+
+import nbformat
+import pytest
+from conftest import LISTENER, TALKER, FakeEngine, TinyClass
+from nbgrader.api import Gradebook
+from rich.console import Console
+
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.classes.new_class import release
+from autograder.grading.reporting.report_table import show
+
+if TYPE_CHECKING:
+    from autograder.grading.reporting.report import GradeReport
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+
+DUE = datetime(2026, 1, 10, 12)
+EARLY, LATE = "2026-01-09 12:00:00.000000 UTC", "2026-01-11 12:00:00.000000 UTC"
+
+
+def book(tiny: TinyClass) -> Gradebook:
+    return Gradebook(f"sqlite:///{tiny.path / 'gradebook.db'}")
+
+
+def by_person(
+    tiny: TinyClass, student: str, cell: str, points: float | None = None, extra: float = 0
+) -> None:
+    """What formgrader enters when somebody types points."""
+    with book(tiny) as gradebook:
+        grade = gradebook.find_grade(cell, "lab_1_2", "lab_1_2", student)
+        grade.manual_score, grade.extra_credit, grade.needs_manual_grade = points, extra, False
+        gradebook.db.commit()
+
+
+def due(tiny: TinyClass, at: datetime | None) -> None:
+    with book(tiny) as gradebook:
+        gradebook.find_assignment("lab_1_2").duedate = at
+        gradebook.db.commit()
+
+
+def nbgraders_total(tiny: TinyClass, student: str) -> float:
+    """As nbgrader exports it."""
+    with book(tiny) as gradebook:
+        submission: Any = gradebook.find_submission("lab_1_2", student)
+        return max(0.0, submission.score - (submission.late_submission_penalty or 0.0))
+
+
+def rows(tiny: TinyClass) -> list[dict[str, str]]:
+    text = (tiny.path / "grades.csv").read_text(encoding="utf-8-sig")
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+def total(tiny: TinyClass, student: str) -> float:
+    return sum(float(row["score"]) for row in rows(tiny) if row["student"] == student)
+
+
+def shown(report: GradeReport) -> str:
+    console = Console(file=io.StringIO(), width=140)
+    show(report, console)
+    return console.file.getvalue()  # type: ignore[attr-defined]
+
+
+def page(tiny: TinyClass, student: str) -> str:
+    return (tiny.path / "feedback" / student / "lab_1_2" / "lab_1_2.html").read_text()
+
+
+def penalty(tiny: TinyClass) -> None:
+    with (tiny.path / "nbgrader_config.py").open("a") as config:
+        config.write("c.LateSubmissionPlugin.penalty_method = 'zero'\n")
+
+
+def add_question(tiny: TinyClass) -> None:
+    """A question of five points that only a person can grade."""
+    source = tiny.path / "source" / "lab_1_2" / "lab_1_2.ipynb"
+    notebook = nbformat.read(source, as_version=4)
+    marks = {"grade": True, "solution": True, "locked": False, "schema_version": 3, "task": False}
+    question = nbformat.v4.new_markdown_cell("Why?")
+    question.metadata["nbgrader"] = {**marks, "grade_id": "why", "points": 5}
+    notebook.cells.append(question)
+    nbformat.write(notebook, source)
+    release(ClassDirectory(tiny.path))
+
+
+def test_points_by_hand_and_extra_points_are_in_the_table(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada", 4, 7)
+    tiny.grade(feedback=True)
+    by_person(tiny, "ada", TALKER, 6, extra=2)
+    report = tiny.grade(feedback=True)
+    assert (report.executed, total(tiny, "ada"), nbgraders_total(tiny, "ada")) == (0, 15, 15)
+    talker = next(row for row in rows(tiny) if row["exercise"] == "lab_1_2.talker")
+    assert [talker[name] for name in ("score", "judge", "by_hand", "extra", "state")] == [
+        "8",
+        "4",
+        "6",
+        "2",
+        "failed",
+    ]
+    assert "15/20" in shown(report)
+    assert "8/10*" in shown(report)
+    assert "Score: 15.0 / 20.0" in page(tiny, "ada")
+
+
+def test_a_later_submission_keeps_the_points_by_hand_and_waits_for_a_person(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    tiny.submit("ada", 4, 7)
+    tiny.grade()
+    by_person(tiny, "ada", TALKER, 6)
+    tiny.submit("ada", 9, 7)
+    report = tiny.grade()
+    assert total(tiny, "ada") == nbgraders_total(tiny, "ada") == 13
+    assert [row["waits_for_a_person"] for row in rows(tiny)] == ["yes", ""]
+    assert "6/10?" in shown(report)
+    assert "waits for a person (1 in all)" in shown(report)
+
+
+def test_what_being_late_costs_is_in_every_total(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    penalty(tiny)
+    due(tiny, DUE)
+    tiny.submit("ada", 4, 7).with_name("timestamp.txt").write_text(LATE)
+    tiny.submit("ben", 4, 7).with_name("timestamp.txt").write_text(EARLY)
+    report = tiny.grade(feedback=True)
+    assert (total(tiny, "ada"), total(tiny, "ben")) == (0, 11)
+    assert (nbgraders_total(tiny, "ada"), nbgraders_total(tiny, "ben")) == (0, 11)
+    late = next(row for row in rows(tiny) if row["exercise"] == "late")
+    assert (late["score"], late["state"]) == ("-11", "late")
+    assert "due 2026-01-10 12:00 UTC" in late["reason"]
+    assert "-11" in shown(report)
+
+
+def test_a_time_that_becomes_known_later_counts_for_an_unchanged_notebook(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    penalty(tiny)
+    due(tiny, DUE)
+    stamp = tiny.submit("ada", 4, 7).with_name("timestamp.txt")
+    tiny.grade(feedback=True)
+    assert nbgraders_total(tiny, "ada") == 11
+    stamp.write_text(LATE)
+    report = tiny.grade(feedback=True)
+    assert report.executed == 0
+    assert nbgraders_total(tiny, "ada") == total(tiny, "ada") == 0
+    assert "Score: 0.0 / 20.0" in page(tiny, "ada")
+    assert (tiny.path / "autograded" / "ada" / "lab_1_2" / "timestamp.txt").read_text() == LATE
+    stamp.write_text(EARLY)
+    tiny.grade(feedback=True)
+    assert nbgraders_total(tiny, "ada") == total(tiny, "ada") == 11
+    assert "Score: 11.0 / 20.0" in page(tiny, "ada")
+
+
+def test_a_due_date_that_is_moved_counts_for_an_unchanged_notebook(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    penalty(tiny)
+    due(tiny, DUE)
+    tiny.submit("ada", 4, 7).with_name("timestamp.txt").write_text(LATE)
+    tiny.grade()
+    assert total(tiny, "ada") == 0
+    due(tiny, DUE + timedelta(days=2))
+    assert tiny.grade().executed == 0
+    assert total(tiny, "ada") == nbgraders_total(tiny, "ada") == 11
+    due(tiny, DUE)
+    tiny.grade()
+    assert total(tiny, "ada") == nbgraders_total(tiny, "ada") == 0
+
+
+def test_a_policy_of_percent_a_day_with_grace_and_cut_off_is_data(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    with (tiny.path / "nbgrader_config.py").open("a") as config:
+        config.write(
+            'c.AssignLatePenalties.plugin_class = "autograder.grading.table.late_policy.LatePolicy"\n'
+            "c.LatePolicy.percent_per_day = 10\nc.LatePolicy.grace_minutes = 15\nc.LatePolicy.cut_off_days = 3\n"
+        )
+    due(tiny, DUE)
+    hours = {"ada": -1, "ben": 0.2, "eve": 1, "jo": 30, "zoe": 80}
+    for student, late in hours.items():
+        stamp = tiny.submit(student, 10, 10).with_name("timestamp.txt")
+        stamp.write_text(f"{DUE + timedelta(hours=late):%Y-%m-%d %H:%M:%S.%f} UTC")
+    tiny.grade(feedback=True)
+    assert {student: total(tiny, student) for student in hours} == {
+        "ada": 20,
+        "ben": 20,
+        "eve": 18,
+        "jo": 16,
+        "zoe": 0,
+    }
+    assert all(nbgraders_total(tiny, student) == total(tiny, student) for student in hours)
+    with book(tiny) as gradebook:
+        gradebook.grant_extension("lab_1_2", "jo", days=1)
+    tiny.grade(feedback=True)
+    assert nbgraders_total(tiny, "jo") == total(tiny, "jo") == 18
+    assert "Score: 18.0 / 20.0" in page(tiny, "jo")
+
+
+def test_points_by_hand_for_late_work_are_taken_off_too(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    penalty(tiny)
+    due(tiny, DUE)
+    tiny.submit("ada", 4, 7).with_name("timestamp.txt").write_text(LATE)
+    tiny.grade()
+    by_person(tiny, "ada", TALKER, 10)
+    assert nbgraders_total(tiny, "ada") == 6, "nbgrader itself keeps the old deduction"
+    tiny.grade()
+    assert nbgraders_total(tiny, "ada") == total(tiny, "ada") == 0
+
+
+def test_a_time_that_cannot_be_is_refused_for_an_unchanged_notebook_too(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    stamp = tiny.submit("ada", 4, 7).with_name("timestamp.txt")
+    tiny.grade()
+    stamp.write_text("1999-01-01 00:00:00.000000 UTC")
+    report = tiny.grade()
+    assert report.exit_code == 2
+    assert total(tiny, "ada") == nbgraders_total(tiny, "ada") == 0
+    stamp.write_text(EARLY)
+    assert tiny.grade().executed == 0
+    assert total(tiny, "ada") == 11
+
+
+def test_a_question_that_a_person_has_to_grade_is_in_the_table(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+
+    add_question(tiny)
+    submission = tiny.released()
+    next(
+        c for c in submission.cells if c.metadata.get("nbgrader", {}).get("grade_id") == "why"
+    ).source = "So."
+    tiny.hand_in("ada", submission)
+    report = tiny.grade()
+    why = next(row for row in rows(tiny) if row["exercise"] == "why")
+    assert [why[name] for name in ("score", "max", "state", "waits_for_a_person")] == [
+        "0",
+        "5",
+        "waits",
+        "yes",
+    ]
+    assert "/25" in shown(report)
+    by_person(tiny, "ada", "why", 4)
+    tiny.grade()
+    why = next(row for row in rows(tiny) if row["exercise"] == "why")
+    assert [why[name] for name in ("score", "state", "waits_for_a_person")] == ["4", "by_hand", ""]
+    assert total(tiny, "ada") == nbgraders_total(tiny, "ada")
+
+
+def test_a_folder_that_was_removed_keeps_its_points_in_the_table(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    import shutil
+
+    tiny.submit("ada", 4, 7)
+    tiny.submit("ben", 1, 1)
+    tiny.grade()
+    shutil.rmtree(tiny.path / "submitted" / "ada")
+    report = tiny.grade()
+    assert total(tiny, "ada") == nbgraders_total(tiny, "ada") == 11
+    assert any("ada" in notice and "submitted" in notice for notice in report.notices)
+    assert report.exit_code == 0
+
+
+def test_who_is_in_the_gradebook_and_handed_in_nothing_has_zero_in_the_table(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    with book(tiny) as gradebook:
+        gradebook.add_student("zoe", first_name="Zoë", last_name="Zuse")
+    tiny.submit("ada", 4, 7)
+    tiny.grade()
+    of_zoe = [row for row in rows(tiny) if row["student"] == "zoe"]
+    assert [(row["score"], row["max"], row["state"], row["name"]) for row in of_zoe] == [
+        ("0", "10", "not_submitted", "Zoë Zuse")
+    ] * 2
+
+
+def test_excel_reads_the_names_right(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("José")
+    tiny.grade()
+    data = (tiny.path / "grades.csv").read_bytes()
+    assert data.startswith("\ufeffstudent,".encode())
+    assert "José" in data.decode()
+
+
+def test_a_class_in_which_nothing_is_unusual_has_no_marks(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada", 4, 7)
+    text = shown(tiny.grade())
+    assert "*" not in text
+    assert "?" not in text
+    assert [row["by_hand"] + row["extra"] + row["waits_for_a_person"] for row in rows(tiny)] == ["", ""]
+    assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
+
+
+def test_the_head_of_a_page_names_the_exercises(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    from autograder import exercises
+
+    tiny.submit("ada", 4, 7)
+    tiny.grade(feedback=True)
+    head = page(tiny, "ada").partition('id="toc"')[2].partition("</table>")[0]
+    assert "Test cell" not in head
+    for exercise in ("lab_1_2.talker", "lab_1_2.listener"):
+        assert exercises.get(exercise).title in head
+
+
+def test_the_exchange_gets_what_it_needs_to_return_a_page(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    path = tiny.submit("ada", 4, 7)
+    path.with_name("timestamp.txt").write_text(EARLY)
+    path.with_name("submission_secret.txt").write_text("ab12" * 32)
+    tiny.submit("eve").with_name("submission_secret.txt").write_text("<script>")
+    tiny.grade(feedback=True)
+    for step in ("autograded", "feedback"):
+        folder = tiny.path / step / "ada" / "lab_1_2"
+        assert (folder / "submission_secret.txt").read_text() == "ab12" * 32
+        assert (folder / "timestamp.txt").read_text() == EARLY
+        assert not (tiny.path / step / "eve" / "lab_1_2" / "submission_secret.txt").exists()

@@ -1,0 +1,119 @@
+"""Which cells are left out while a class is graded: those of the course, and what must never be among them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import nbformat
+import pytest
+
+from autograder import course
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.classes.new_class import release
+from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding.demonstrations import LEFT_OUT, demonstrations_of, is_demonstration
+from autograder.masters.layout import masters
+from autograder.masters.release import release_notebook
+from autograder.masters.source import source_notebook
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
+    from tiny_class import FakeEngine, TinyClass
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+
+
+def given(source: str, **marks: object) -> NotebookNode:
+    cell = nbformat.v4.new_code_cell(source)
+    cell.metadata["nbgrader"] = {"locked": True, "grade": False, "solution": False, **marks}
+    return cell
+
+
+@pytest.mark.parametrize(
+    "script",
+    [
+        "ros2 topic list -t 2>&1",
+        "source ros2_ws/install/setup.bash\nros2 launch ./x.launch.py > x.log 2>&1 &\nwait\ncat x.log",
+        'for try in {1..200}; do grep -q "I heard" x.log && break; kill -0 $! || break; sleep 0.1; done 2> /dev/null',
+        'timeout -s INT 20 ros2 topic pub -r 2 /t std_msgs/msg/String "{data: a; rm b}" > /dev/null 2>&1 &',
+        "until grep -q Hello hello.log || ! kill -0 $! 2> /dev/null; do sleep 0.1; done",
+    ],
+)
+def test_what_looks_is_left_out(script: str) -> None:
+    assert is_demonstration(given(f"%%bash --no-raise-error\n{script}"))
+
+
+@pytest.mark.parametrize(
+    "script",
+    [
+        "ros2 pkg create my_robot_pkg",
+        "cd ros2_ws\ncolcon build 2>&1",
+        "mkdir -p ros2_ws/src",
+        "ros2 topic list > topics.txt",
+        "echo hello > src/data.yaml",
+        "cat <<EOF > a.log\nx\nEOF\nsed -i s/a/b/ a.py",
+        "echo $(touch a)",
+        "ros2 topic list && rm -r build",
+        "find . -name a -delete",
+        "if true; then pip install x; fi",
+        "timeout 5 python3 make_it.py",
+    ],
+)
+def test_what_makes_something_is_run(script: str) -> None:
+    assert not is_demonstration(given(f"%%bash --no-raise-error\n{script}"))
+
+
+def test_only_the_masters_own_terminals_count() -> None:
+    script = "%%bash\nros2 topic list"
+    assert is_demonstration(given(script))
+    assert not is_demonstration(given(script, locked=False))
+    assert not is_demonstration(given(script, solution=True))
+    assert not is_demonstration(given(script, grade=True))
+    assert not is_demonstration(nbformat.v4.new_code_cell(script))
+    assert not is_demonstration(given("import rclpy\nrclpy.init()"))
+
+
+def test_below_the_last_check_no_file_is_written_and_nothing_is_built() -> None:
+    build, write = "%%bash\ncolcon build", "%%writefile a.py\nx = 1"
+    check, answer = given("check('a.b', C)", grade=True), given("x = []", solution=True, locked=False)
+    own = nbformat.v4.new_code_cell(build)
+    above = [given(build), given(write, solution=True, locked=False), check]
+    below = [given(build), given(write, solution=True, locked=False), answer, own, given("print(1)")]
+    notebook = nbformat.v4.new_notebook(cells=[*above, *below])
+    assert demonstrations_of(notebook) == {3, 4}
+    # A notebook without a check has nothing below one.
+    assert demonstrations_of(nbformat.v4.new_notebook(cells=below)) == set()
+
+
+def test_of_the_course_no_check_no_answer_and_no_build_is_left_out() -> None:
+    left_out = []
+    for master in masters(course.root()):
+        for cell in release_notebook(source_notebook(master)).cells:
+            if is_demonstration(cell):
+                left_out.append(cell.source)
+    assert len(left_out) > 20
+    for source in left_out:
+        assert source.startswith("%%bash")
+        assert not any(word in source for word in ("colcon build", "pkg create", "mkdir", "%%writefile"))
+
+
+@pytest.mark.parametrize("wanted", [False, True])
+def test_a_class_says_whether_its_demonstrations_are_run(
+    tiny: TinyClass, fake_engine: FakeEngine, wanted: bool
+) -> None:
+    source = tiny.path / "source" / "lab_1_2" / "lab_1_2.ipynb"
+    notebook = nodes.read(source.read_text())
+    notebook.cells.insert(1, given("%%bash\nros2 topic list", grade_id="given-list", schema_version=3))
+    source.write_text(nodes.text(notebook))
+    release(ClassDirectory(tiny.path))
+    if wanted:
+        with (tiny.path / "nbgrader_config.py").open("a") as config:
+            config.write("c.WireExecute.demonstrations = True\n")
+    tiny.submit("ada")
+    asked: list[str] = []
+    fake_engine.before = lambda task: asked.extend(cell.source for cell in task.cells)
+    tiny.grade(feedback=True)
+    assert ("%%bash\nros2 topic list" in asked) is wanted
+    page = (tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html").read_text()
+    assert (LEFT_OUT in page) is not wanted
+    assert "ros2 topic list" in page

@@ -1,0 +1,94 @@
+"""Nodes made without nbformat's validation are what nbformat would have made, or are refused."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import msgspec
+import nbformat
+import pytest
+
+from autograder.boxes.execution import Kind
+from autograder.boxes.outputs import Budget, OutputCollector
+from autograder.grading.rebuilding import nodes
+
+_new_output: Any = nbformat.v4.new_output
+_PICTURE = "iVBORw0KGgo="
+
+
+def collected() -> list[dict[str, Any]]:
+    """An output of each kind that a box hands over, made by what makes them there."""
+    collector = OutputCollector(10_000, Budget(10_000))
+    rich = {"data": {"text/plain": "1", "image/png": _PICTURE, "text/html": "<script>"}, "metadata": {"a": 1}}
+    collector.handle("stream", {"name": "stderr", "text": "é\nb\n"})
+    collector.handle("display_data", rich)
+    collector.handle("execute_result", {**rich, "execution_count": 3})
+    collector.handle("error", {"ename": "E", "evalue": "v", "traceback": ["\x1b[0ma", "b"]})
+    return list(collector.outputs())
+
+
+@pytest.mark.parametrize("fields", collected(), ids=lambda fields: fields["output_type"])
+def test_an_output_is_the_one_that_nbformat_makes(fields: dict[str, Any]) -> None:
+    made = nodes.output(**fields)
+    expected = _new_output(**fields)
+    assert made == expected
+    assert type(made) is type(expected)
+    assert type(made.get("data")) is type(expected.get("data"))
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"output_type": "other"},
+        {"output_type": None},
+        {"text": 5},
+        {"text": ["a", "b"]},
+        {"text": None},
+        {"more": "fields"},
+        {"output_type": "display_data"},
+        {"output_type": "display_data", "data": {"text/html": 5}, "metadata": {}},
+        {"output_type": "error", "ename": "E", "evalue": "", "traceback": "no list"},
+    ],
+)
+def test_what_is_no_output_is_refused(changed: dict[str, Any]) -> None:
+    right = {"output_type": "stream", "name": "stdout", "text": "a"}
+    assert nodes.output(**right)
+    kept = {} if "output_type" in changed and changed["output_type"] in ("display_data", "error") else right
+    with pytest.raises(msgspec.ValidationError):
+        nodes.output(**{**kept, **changed})
+
+
+def whole() -> Any:
+    cells = [nodes.cell(kind, f"{kind}\n\ntwo lines") for kind in Kind]
+    cells[0]["outputs"] = [nodes.output(**fields) for fields in collected()]
+    cells[1].metadata["nbgrader"] = {"grade_id": "a", "points": 1.0, "solution": False}
+    return nodes.notebook(cells, {"autograder": {"remarks": ["one", "two"]}})
+
+
+def test_what_was_written_is_read_as_nbformat_reads_it() -> None:
+    text = nodes.text(whole())  # this one validates
+    read = nodes.read_own(text.encode())
+    assert read == nodes.read(text) == whole() | {"cells": read.cells}
+    assert read.cells[0].outputs[0].text == "é\nb\n"
+    assert read.cells[1].metadata.nbgrader.grade_id == "a"
+    with pytest.raises(msgspec.DecodeError):
+        nodes.read_own(b"{")
+
+
+def test_a_copy_shares_nothing_that_can_be_changed() -> None:
+    original = whole()
+    before = json.dumps(original)
+    copy = nodes.copied(original)
+    assert copy == original
+    copy.cells[0].outputs[1].data["text/plain"] = "other"
+    copy.cells[0].outputs[3].traceback.append("other")
+    copy.cells[1].metadata.nbgrader.points = 5
+    copy.metadata.autograder.remarks.append("three")
+    copy.cells.pop()
+    assert json.dumps(original) == before
+
+
+def test_an_id_is_the_given_one_or_none_that_was_there_before() -> None:
+    assert nodes.cell(Kind.CODE, "", "own").id == "own"
+    assert len({nodes.cell(Kind.CODE, "").id for _ in range(100)}) == 100

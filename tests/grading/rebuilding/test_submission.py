@@ -1,0 +1,157 @@
+from __future__ import annotations
+
+import json
+import os
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from autograder.boxes.execution import Kind
+from autograder.grading.rebuilding import submission
+from autograder.grading.rebuilding.submission import SubmittedCell, UnreadableSubmission, parse, read_bytes
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def notebook(*cells: Any, **fields: Any) -> bytes:
+    return json.dumps(
+        {"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": list(cells), **fields}
+    ).encode()
+
+
+def code(source: Any, **fields: Any) -> dict[str, Any]:
+    return {"cell_type": "code", "source": source, "metadata": {}, "outputs": [], **fields}
+
+
+def test_takes_the_text_and_the_claimed_name_and_nothing_else() -> None:
+    tagged = code(
+        ["a = 1\n", "b = 2"],
+        metadata={"tags": ["skip-execution"], "nbgrader": {"grade_id": "Talker", "points": 1000}},
+        attachments={"x": {}},
+        id="x",
+    )
+    cells, left_out = parse(notebook(tagged))
+    assert cells == [SubmittedCell(Kind.CODE, "a = 1\nb = 2", "Talker")]
+    assert left_out == 0
+
+
+def test_leaves_out_what_is_no_cell() -> None:
+    cells, left_out = parse(
+        notebook(
+            code("1"),
+            3,
+            None,
+            {"cell_type": "shell", "source": ""},
+            {"cell_type": ["code"]},
+            code({"a": 1}),
+            code([1]),
+        )
+    )
+    assert [cell.source for cell in cells] == ["1"]
+    assert left_out == 6
+
+
+def test_metadata_of_any_form_is_no_name() -> None:
+    strange: list[Any] = [[], "x", {"nbgrader": 1}, {"nbgrader": {"grade_id": ["x"]}}, None]
+    for metadata in strange:
+        assert parse(notebook(code("1", metadata=metadata)))[0][0].grade_id == ""
+
+
+def test_reads_a_notebook_of_format_3() -> None:
+    old = {"nbformat": 3, "worksheets": [{"cells": [{"cell_type": "code", "input": ["x = 1"]}]}]}
+    assert parse(json.dumps(old).encode())[0] == [SubmittedCell(Kind.CODE, "x = 1")]
+
+
+def test_a_byte_order_mark_is_no_obstacle() -> None:
+    assert parse(b"\xef\xbb\xbf" + notebook(code("1")))[0][0].source == "1"
+
+
+def test_a_lone_surrogate_can_be_written_again() -> None:
+    data = notebook(code("x")).replace(b'"x"', b'"\\ud800"')
+    assert parse(data)[0][0].source.encode("utf-8")
+
+
+@pytest.mark.parametrize(
+    ("data", "says"),
+    [
+        (b"", "not JSON"),
+        (b"hello", "not JSON"),
+        (b"\xff\xfe\x00", "not UTF-8"),
+        (b"PK\x03\x04", "not JSON"),
+        (b"[]", "not a Jupyter notebook"),
+        (b'{"cells": []}', "not a Jupyter notebook"),
+        (b'{"nbformat": 4, "cells": {}}', "no notebook of format 4"),
+        (b'{"nbformat": 9, "cells": []}', "no notebook of format 4"),
+        (b"[" * 100_000, "nested too deeply"),
+    ],
+)
+def test_says_why_a_file_is_no_notebook(data: bytes, says: str) -> None:
+    with pytest.raises(UnreadableSubmission, match=says):
+        parse(data)
+
+
+def test_a_million_cells_are_too_many() -> None:
+    with pytest.raises(UnreadableSubmission, match="the limit is"):
+        parse(notebook(*[0] * (submission.MAX_CELLS + 1)))
+
+
+def test_names_what_was_found_in_place_of_the_notebook(tmp_path: Path) -> None:
+    (tmp_path / "lab_1_2 (1).ipynb").write_bytes(notebook())
+    with pytest.raises(UnreadableSubmission, match=r"no notebook named lab_1_2.ipynb .* lab_1_2 \(1\).ipynb"):
+        read_bytes(tmp_path / "lab_1_2.ipynb")
+
+
+def test_does_not_follow_a_link_to_a_neighbours_work(tmp_path: Path) -> None:
+    (tmp_path / "neighbour.ipynb").write_bytes(notebook(code("answer")))
+    (tmp_path / "mine.ipynb").symlink_to(tmp_path / "neighbour.ipynb")
+    with pytest.raises(UnreadableSubmission, match="is a link"):
+        read_bytes(tmp_path / "mine.ipynb")
+
+
+def a_notebook_with_two_names(tmp_path: Path, first: str, second: str) -> tuple[Path, Path]:
+    theirs, mine = tmp_path / "class" / first, tmp_path / "class" / second
+    for name in (theirs, mine):
+        name.parent.mkdir(parents=True, exist_ok=True)
+    theirs.write_text("{}")
+    mine.hardlink_to(theirs)
+    return theirs, mine
+
+
+def test_a_neighbours_work_under_a_second_name_is_refused_and_the_neighbours_is_not(tmp_path: Path) -> None:
+    theirs, mine = a_notebook_with_two_names(
+        tmp_path, "submitted/ada/lab/lab.ipynb", "submitted/eve/lab/lab.ipynb"
+    )
+    with pytest.raises(UnreadableSubmission, match="hard link"):
+        read_bytes(mine)
+    assert read_bytes(theirs) == b"{}"
+
+
+def test_the_master_under_a_second_name_is_refused(tmp_path: Path) -> None:
+    _, mine = a_notebook_with_two_names(tmp_path, "source/lab/lab.ipynb", "submitted/eve/lab/lab.ipynb")
+    with pytest.raises(UnreadableSubmission, match="hard link"):
+        read_bytes(mine)
+
+
+def test_the_second_name_that_a_backup_has_made_is_nobodys_business(tmp_path: Path) -> None:
+    mine, _ = a_notebook_with_two_names(tmp_path, "submitted/eve/lab/lab.ipynb", "../backup/lab.ipynb")
+    assert read_bytes(mine) == b"{}"
+
+
+def test_a_pipe_does_not_make_the_grader_wait(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "mine.ipynb")
+    with pytest.raises(UnreadableSubmission, match="is a pipe"):
+        read_bytes(tmp_path / "mine.ipynb")
+
+
+def test_a_folder_of_that_name_is_no_notebook(tmp_path: Path) -> None:
+    (tmp_path / "mine.ipynb").mkdir()
+    with pytest.raises(UnreadableSubmission):
+        read_bytes(tmp_path / "mine.ipynb")
+
+
+def test_a_file_that_is_too_large_is_not_read(tmp_path: Path) -> None:
+    with (tmp_path / "mine.ipynb").open("wb") as file:
+        file.truncate(submission.MAX_BYTES + 1)
+    with pytest.raises(UnreadableSubmission, match="the limit is 50 MB"):
+        read_bytes(tmp_path / "mine.ipynb")

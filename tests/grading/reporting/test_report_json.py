@@ -1,0 +1,46 @@
+"""What ``grade --json`` prints."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from autograder import grading
+from autograder.grading.running import sandboxing
+
+if TYPE_CHECKING:
+    from tiny_class import FakeEngine, TinyClass
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+
+
+def said(tiny: TinyClass, capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
+    grading.grade(tiny.path, as_json=True)
+    printed: dict[str, Any] = json.loads(capsys.readouterr().out)
+    return printed
+
+
+def test_it_is_one_object_with_submissions_and_totals(
+    tiny: TinyClass,
+    fake_engine: FakeEngine,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(sandboxing, "require", lambda _: None)
+    tiny.submit("ada", 10, 4)
+    tiny.submit("ben", "'die'")
+    first = said(tiny, capsys)
+    assert [(one["student"], one["score"], one["max_score"]) for one in first["submissions"]] == [
+        ("ada", 14.0, 20.0),
+        ("ben", 10.0, 20.0),
+    ]
+    exercise = first["submissions"][0]["exercises"][1]
+    assert (exercise["exercise"], exercise["score"], exercise["state"]) == ("lab_1_2.listener", 4.0, "failed")
+    assert first["exit_code"] == 2
+    assert len(first["problems"]) == 1
+    totals = first["totals"]
+    assert (totals["executed"], totals["reused"], totals["written"], totals["score"]) == (2, 0, 2, 24.0)
+    assert set(first["timings"]) >= {"boxes", "students", "judge", "gradebook", "feedback", "last_ended"}
+    assert said(tiny, capsys)["totals"]["reused"] == 1

@@ -1,0 +1,95 @@
+"""No cell of a table is a formula, whoever wrote it."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+from nbgrader.api import Gradebook
+
+from autograder.grading.reporting.report import Row, write_csv
+from autograder.grading.reporting.spreadsheet import csv_text, defused
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import FakeEngine, TinyClass
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+
+
+@pytest.mark.parametrize(
+    ("text", "written"),
+    [
+        ("=cmd|' /C calc'!A0", "'=cmd|' /C calc'!A0"),
+        ("+1", "'+1"),
+        ("-1", "'-1"),
+        ("@SUM(A1)", "'@SUM(A1)"),
+        ("\t=1", "' =1"),
+        ("\r=1", "' =1"),
+        ("\r\n\t =1", "'    =1"),
+        ("\u00a0=1", "' =1"),
+        ("\u3000=1", "' =1"),
+        ("＝1+1", "'＝1+1"),
+        ("＋1", "'＋1"),
+        ("－1", "'－1"),
+        ("＠SUM", "'＠SUM"),
+        ("﹦1", "'﹦1"),
+        ("−1", "'−1"),
+        ("\u202e=1", "'=1"),
+        ("\ufeff=1", "'=1"),
+        ("\u200b\u200d@a", "'@a"),
+        ("\0=1", "' =1"),
+        ("a;=1", "a;'=1"),
+        ("a|  @b", "a|  '@b"),
+        ("", ""),
+        ("   ", "   "),
+        ("'=1", "'=1"),
+        ('"=1"', '"=1"'),
+        ("1 = 1", "1 = 1"),
+        ("the topic /chatter has no publisher", "the topic /chatter has no publisher"),
+        ("Ада, O'Neill", "Ада, O'Neill"),
+    ],
+)
+def test_a_formula_becomes_text_and_text_stays(text: str, written: str) -> None:
+    assert defused(text) == written
+    assert defused(written) == written, "once is enough"
+
+
+def test_numbers_stay_numbers() -> None:
+    assert csv_text([("-1", -1.5, 10.0)]) == "'-1,-1.5,10\n"
+
+
+def test_every_column_of_the_grades_is_defused(tmp_path: Path) -> None:
+    row = Row("=s", "+a", "-e", 1.0, 2.0, "@st", "=d\ne", '=HYPERLINK("x"),\r\n=2', -1.0, name="=n")
+    write_csv(tmp_path / "grades.csv", [row])
+    _, *rows = csv.reader(io.StringIO((tmp_path / "grades.csv").read_text()))
+    assert rows == [
+        ["'=s", "'+a", "'-e", "1", "2", "'@st", "'=d e", '\'=HYPERLINK("x"),  =2', "-1", "", "", "", "'=n"]
+    ]
+
+
+def test_plain_nbgrader_export_is_defused_too(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("-ada", 4)
+    tiny.grade()
+    with Gradebook(f"sqlite:///{tiny.path / 'gradebook.db'}") as book:
+        book.update_or_create_student("-ada", last_name='=cmd,"\n+1', first_name="Ada", email="@x")
+        book.update_or_create_student("ben")
+    subprocess.run(
+        [sys.executable, "-W", "ignore", "-m", "nbgrader", "export"],
+        cwd=tiny.path,
+        env=os.environ | {"HOME": str(tiny.path)},
+        check=True,
+        capture_output=True,
+    )
+    rows = list(csv.DictReader(io.StringIO((tiny.path / "nbgrader_export.csv").read_text("utf-8-sig"))))
+    wanted = ("student_id", "last_name", "email", "score", "max_score")
+    assert {tuple(row[name] for name in wanted) for row in rows} == {
+        ("'-ada", "'=cmd,\" +1", "'@x", "14", "20"),
+        ("ben", "", "", "0", "20"),
+    }

@@ -1,0 +1,201 @@
+"""A page is the same whether its parts are remembered from other students' pages or made for it alone."""
+
+from __future__ import annotations
+
+import functools
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from tiny_class import TALKER, TinyClass
+
+from autograder.boxes.execution import Kind
+from autograder.grading.classes.class_directory import ClassDirectory, Submission
+from autograder.grading.entering import gradebook
+from autograder.grading.entering.gradebook import CellState, NotebookState
+from autograder.grading.pages import POLICY
+from autograder.grading.rebuilding import nodes
+from autograder.grading.returning import feedback
+from autograder.grading.returning.render_cache import Remembered
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from nbformat import NotebookNode
+
+_SCRIPT = "<script>document.title = 'taken'</script>"
+
+
+def marked(cell: NotebookNode, **marks: object) -> NotebookNode:
+    cell.metadata["nbgrader"] = {
+        "grade_id": TALKER,
+        "locked": True,
+        "solution": False,
+        "grade": False,
+        **marks,
+    }
+    return cell
+
+
+def one_of_each() -> list[NotebookNode]:
+    """A cell of each kind that a graded notebook can have."""
+    answer = marked(nodes.cell(Kind.CODE, "def talk():\n    return 10", "1"), solution=True, locked=False)
+    answer["outputs"] = [
+        nodes.output(output_type="stream", name="stdout", text="\x1b[31mred\x1b[0m <b>\n"),
+        nodes.output(
+            output_type="display_data",
+            data={"text/plain": "p", "text/html": _SCRIPT, "image/png": "iVBORw0KGgo="},
+            metadata={},
+        ),
+        nodes.output(output_type="error", ename="E", evalue="v", traceback=["line 1", "line 2"]),
+    ]
+    check = marked(nodes.cell(Kind.CODE, "check()", "2"), grade=True, points=1.0)
+    check["outputs"] = [
+        nodes.output(
+            output_type="display_data", data={"text/html": "<p>card</p>", "text/plain": "card"}, metadata={}
+        ),
+        nodes.output(
+            output_type="execute_result", data={"text/plain": "1"}, metadata={}, execution_count=None
+        ),
+    ]
+    return [
+        nodes.cell(Kind.MARKDOWN, "# Given\n\nwith *words*", "0"),
+        answer,
+        check,
+        marked(nodes.cell(Kind.CODE, "print(1)", "3")),
+        nodes.cell(Kind.RAW, "raw text", "4"),
+    ]
+
+
+def change_source(cells: list[NotebookNode]) -> None:
+    cells[0]["source"] = f"# Given\n\nwith {_SCRIPT} *words*"
+
+
+def change_output(cells: list[NotebookNode]) -> None:
+    cells[1].outputs[0]["text"] = "green\n"
+
+
+def change_card(cells: list[NotebookNode]) -> None:
+    cells[2].outputs[0].data["text/html"] = "<p>another card</p>"
+
+
+def change_count(cells: list[NotebookNode]) -> None:
+    cells[3]["execution_count"] = 7
+
+
+def change_lock(cells: list[NotebookNode]) -> None:
+    """The same text as the master's own and as a student's: only the second is cleaned."""
+    marked(cells[0])
+
+
+def change_output_type(cells: list[NotebookNode]) -> None:
+    cells[1].outputs[0]["name"] = "stderr"
+
+
+def change_id(cells: list[NotebookNode]) -> None:
+    cells[3]["id"] = "9"
+
+
+def drop(cells: list[NotebookNode]) -> None:
+    cells.pop(1)
+
+
+def keep(cells: list[NotebookNode]) -> None:
+    del cells
+
+
+CHANGES = [keep, change_source, change_output, change_card, change_count, change_lock, change_output_type]
+CHANGES += [change_id, drop]
+
+
+class Pages:
+    """Pages of one class, of notebooks that are put into ``autograded/`` by hand."""
+
+    def __init__(self, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.directory = ClassDirectory(path)
+        self.state = NotebookState({TALKER: CellState(1.0, 2.0)})
+        monkeypatch.setattr(gradebook, "states", lambda *_: {"lab_1_2": self.state})
+
+    def make(self, maker: feedback.FeedbackPages, change: Callable[[Any], None], **metadata: Any) -> str:
+        cells = one_of_each()
+        change(cells)
+        notebook = nodes.notebook(cells, {"language_info": {"name": "python", **metadata}})
+        submission = Submission("ada", "lab_1_2", self.directory.path / "submitted" / "ada" / "lab_1_2")
+        folder = self.directory.path / "autograded" / "ada" / "lab_1_2"
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "lab_1_2.ipynb").write_text(nodes.text(notebook))
+        maker.write(submission, ["lab_1_2"])
+        return (self.directory.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html").read_text()
+
+    def fresh(self, change: Callable[[Any], None], **metadata: Any) -> str:
+        """Made by somebody who remembers no other page."""
+        return self.make(self._forgetful, change, **metadata)
+
+    @functools.cached_property
+    def _forgetful(self) -> feedback.FeedbackPages:
+        maker = feedback.FeedbackPages(self.directory)
+        maker._exporter._parts = Remembered(0)
+        return maker
+
+
+@pytest.fixture
+def pages(tiny: TinyClass, monkeypatch: pytest.MonkeyPatch) -> Pages:
+    return Pages(tiny.path, monkeypatch)
+
+
+def test_no_page_has_a_part_of_another_one(pages: Pages) -> None:
+    expected = {change: pages.fresh(change) for change in CHANGES}
+    assert len(set(expected.values())) == len(CHANGES), "each of them shows on the page"
+    maker = feedback.FeedbackPages(pages.directory)
+    for change in [*CHANGES, *reversed(CHANGES)]:
+        assert pages.make(maker, change) == expected[change], change.__name__
+
+
+def test_points_comments_and_language_show_in_remembered_parts(pages: Pages) -> None:
+    states = [
+        NotebookState({TALKER: CellState(1.0, 2.0)}),
+        NotebookState({TALKER: CellState(1.0, 3.0)}),
+        NotebookState({TALKER: CellState(0.5, 2.0, comment="well done")}, late_penalty=0.25),
+        NotebookState({TALKER: CellState(0.5, 2.0, comment=f"well {_SCRIPT} done")}),
+    ]
+    kinds: list[dict[str, Any]] = [{}, {"pygments_lexer": "ipython3"}, {"name": "c"}]
+    maker = feedback.FeedbackPages(pages.directory)
+    seen = []
+    for _ in range(2):
+        for state in states:
+            for kind in kinds:
+                pages.state = state
+                seen.append(pages.make(maker, keep, **kind))
+                assert seen[-1] == pages.fresh(keep, **kind)
+    assert len(set(seen)) > len(states)
+    assert "well done" in seen[6]
+
+
+def test_no_page_runs_anything(pages: Pages) -> None:
+    maker = feedback.FeedbackPages(pages.directory)
+    for change in CHANGES * 2:
+        page = pages.make(maker, change)
+        assert page.startswith("<!DOCTYPE html>")
+        assert page.rstrip().endswith("</html>")
+        assert page.count(POLICY) == 1
+        assert "<script" not in page.lower()
+
+
+def test_what_the_chapter_gives_is_rendered_once(pages: Pages, monkeypatch: pytest.MonkeyPatch) -> None:
+    maker = feedback.FeedbackPages(pages.directory)
+    pages.make(maker, keep)
+    rendered = []
+    usual = feedback._PageExporter._part
+
+    def noting(self: Any, lexer: str, render: Callable[[], str], depends_on: Any) -> str:
+        def noted() -> str:
+            rendered.append(depends_on)
+            return render()
+
+        return usual(self, lexer, noted, depends_on)
+
+    monkeypatch.setattr(feedback._PageExporter, "_part", noting)
+    pages.make(maker, keep)
+    assert [cell.id for cell in rendered] == ["2"], "only the check: its card is this student's"
+    pages.make(maker, change_count)
+    assert [cell.id for cell in rendered[1:]] == ["2", "3"]

@@ -1,0 +1,94 @@
+"""The master's figures are on the pages of a submission, as often as in the master and no more."""
+
+from __future__ import annotations
+
+import base64
+import re
+from pathlib import Path
+
+import nbformat
+import pytest
+from nbconvert.exporters import HTMLExporter
+from nbformat import NotebookNode
+
+from autograder.boxes.execution import Kind
+from autograder.grading.pages import markdown_to_html
+from autograder.grading.rebuilding.rebuild import rebuild, rebuild_unreadable
+from autograder.grading.rebuilding.submission import SubmittedCell
+from autograder.grading.returning.sanitize import harmless_markdown, make_harmless
+
+CHAPTERS = Path(__file__).resolve().parents[3] / "chapters"
+PICTURE = 'src="data:image/png;base64,'
+SHOWS = "![a graph](attachment:graph.png)"
+DATA = base64.b64encode(b"a picture").decode()
+
+
+def page_of(notebook: NotebookNode) -> str:
+    """The page that formgrader makes; nbgrader's feedback has the same filter, and marks around it."""
+    exporter = HTMLExporter(filters={"markdown2html": markdown_to_html})
+    page, _ = exporter.from_notebook_node(make_harmless(notebook))
+    return str(page)
+
+
+@pytest.fixture
+def master() -> NotebookNode:
+    shown = nbformat.v4.new_markdown_cell(f"Look:\n\n{SHOWS}", attachments={"graph.png": {"image/png": DATA}})
+    return nbformat.v4.new_notebook(cells=[shown])
+
+
+def submitted(*texts: str) -> list[SubmittedCell]:
+    return [SubmittedCell(Kind.MARKDOWN, text) for text in texts]
+
+
+@pytest.mark.parametrize("chapter", sorted(CHAPTERS.glob("*/lab_*.ipynb")), ids=lambda path: path.stem)
+def test_a_page_shows_every_figure_of_the_chapter(chapter: Path) -> None:
+    notebook = nbformat.read(chapter, as_version=4)
+    figures = [data["image/png"] for cell in notebook.cells for data in cell.get("attachments", {}).values()]
+    cells = [
+        SubmittedCell(
+            Kind(cell.cell_type), cell.source, cell.metadata.get("nbgrader", {}).get("grade_id", "")
+        )
+        for cell in notebook.cells
+    ]
+    for rebuilt in (rebuild(notebook, cells), rebuild_unreadable(notebook, "It is a poem.")):
+        page = page_of(rebuilt.notebook)
+        assert page.count(PICTURE) == len(figures) > 0
+        assert all(figure in page for figure in figures)
+        assert "picture left out" not in page
+
+
+def test_a_copied_cell_shows_no_second_picture(master: NotebookNode) -> None:
+    rebuilt = rebuild(master, submitted(SHOWS, SHOWS, f"{SHOWS} {SHOWS}")).notebook
+    assert [set(cell.get("attachments", {})) for cell in rebuilt.cells] == [{"graph.png"}, set(), set()]
+    assert page_of(rebuilt).count(PICTURE) == 1
+
+
+def test_a_picture_that_is_repeated_in_a_cell_is_there_once(master: NotebookNode) -> None:
+    rebuilt = rebuild(master, submitted(SHOWS * 500)).notebook
+    page = page_of(rebuilt)
+    assert page.count(f"{PICTURE}{DATA}") == 1
+    assert page.count("picture left out") == 499
+
+
+def test_html_around_a_figure_leaves_it_there(master: NotebookNode) -> None:
+    text = f"<details><summary>more</summary>\n\n{SHOWS}\n\n</details><script>fired()</script>"
+    page = page_of(rebuild(master, submitted(text)).notebook)
+    assert f"{PICTURE}{DATA}" in page
+    assert "fired" not in re.sub(r"&lt;script.*", "", page)
+
+
+def test_a_picture_of_a_student_is_left_out(master: NotebookNode) -> None:
+    rebuilt = rebuild(master, submitted("![mine](attachment:mine.png) " + SHOWS)).notebook
+    assert set(rebuilt.cells[0].attachments) == {"graph.png"}
+    page = page_of(rebuilt)
+    assert "[picture left out: mine]" in page
+    assert page.count(PICTURE) == 1
+
+
+def test_nothing_but_a_png_stays_attached() -> None:
+    kinds = {"image/svg+xml": "<svg onload='fired()'/>", "text/html": "<b>"}
+    cell = nbformat.v4.new_markdown_cell(SHOWS, attachments={"graph.png": kinds})
+    cells = make_harmless(nbformat.v4.new_notebook(cells=[cell])).cells
+    assert "attachments" not in cells[0]
+    assert cells[0].source == harmless_markdown(SHOWS)
+    assert "attachment:" not in cells[0].source

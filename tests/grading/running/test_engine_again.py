@@ -1,0 +1,92 @@
+"""What could not be checked, or needs more memory than its share, is executed once more, when nobody else is."""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from autograder.boxes.execution import Execution
+from autograder.grading.running import engine
+from autograder.grading.task import Task
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+
+class WorkerProcesses:
+    """In place of processes with worker processes: an answer for each execution, and what was seen of them."""
+
+    def __init__(self, answer: Callable[[Task, int], Execution]) -> None:
+        self._answer = answer
+        self._lock = threading.Lock()
+        self._running = 0
+        self.seen: list[tuple[str, bool, int]] = []
+        """Of each execution: the student, whether it had its share of memory only, how many ran with it."""
+
+    def __call__(self, *_: object, **__: object) -> WorkerProcesses:
+        return self
+
+    stopping = False
+
+    def execute(self, task: Task) -> Execution:
+        with self._lock:
+            self._running += 1
+            times = sum(student == task.student for student, _, _ in self.seen)
+            self.seen.append((task.student, task.limits.beside, self._running))
+        time.sleep(0.05)
+        with self._lock:
+            self._running -= 1
+        return self._answer(task, times)
+
+    def stop(self) -> None: ...
+    def kill(self) -> None: ...
+    def end(self) -> None: ...
+
+
+@pytest.fixture
+def run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
+    def made(answer: Callable[[Task, int], Execution], students: str, workers: int = 3) -> Any:
+        processes = WorkerProcesses(answer)
+        monkeypatch.setattr(engine, "WorkerProcess", processes)
+        tasks = [Task(student, "lab", "lab", (), "0", "1") for student in students]
+        done = list(engine.execute_all(tasks, tmp_path / "scratch" / "x", workers))
+        return {d.task.student: d.execution for d in done}, processes.seen, done
+
+    return made
+
+
+def test_trouble_is_tried_again_alone_at_the_end(run: Any) -> None:
+    def short(task: Task, times: int) -> Execution:
+        return Execution((), trouble="no box" if task.student in "bd" and not times else "")
+
+    results, seen, done = run(short, "abcdef")
+    assert len(done) == 6
+    assert {e.trouble for e in results.values()} == {""}
+    assert sorted(student for student, _, _ in seen[6:]) == ["b", "d"]
+    assert [together for _, _, together in seen[6:]] == [1, 1]
+
+
+def test_trouble_that_stays_is_told_after_the_second_time(run: Any) -> None:
+    results, seen, _ = run(lambda task, times: Execution((), trouble="no box"), "a")
+    assert results["a"].trouble == "no box"
+    assert len(seen) == 2
+
+
+def test_who_needs_room_gets_all_of_it_alone(run: Any) -> None:
+    def large(task: Task, times: int) -> Execution:
+        return Execution((), needs_room=task.student == "b" and task.limits.beside)
+
+    results, seen, done = run(large, "abc")
+    assert not any(execution.needs_room for execution in results.values())
+    assert all(beside for _, beside, _ in seen[:3])
+    assert seen[3:] == [("b", False, 1)]
+    assert not any(d.task.limits.beside for d in done), "the task is the one that was given"
+
+
+def test_with_one_worker_everybody_has_all_the_memory_at_once(run: Any) -> None:
+    _, seen, _ = run(lambda task, times: Execution(()), "ab", 1)
+    assert seen == [("a", False, 1), ("b", False, 1)]

@@ -1,0 +1,71 @@
+"""No sandbox, no silent grading."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from click.testing import CliRunner
+
+from autograder import cli
+from autograder.boxes import sandbox
+from autograder.grading.running import sandboxing
+from autograder.grading.running.sandboxing import NOTE, SandboxMissing
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from tests.grading.tiny_class import TinyClass
+
+WHY = "bubblewrap is not installed: type this"
+
+
+@pytest.fixture
+def _no_sandbox(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.setattr(sandbox, "why_impossible", lambda: WHY)
+    yield
+    sandboxing._off.clear()
+
+
+@pytest.mark.usefixtures("_no_sandbox")
+def test_grading_stops_in_one_line_with_exit_code_2(tiny: TinyClass) -> None:
+    tiny.submit("ada", 10)
+    done = CliRunner().invoke(cli.cli, ["grade", str(tiny.path)])
+    assert done.exit_code == 2
+    assert WHY in done.output
+    assert "--unsafe-no-sandbox" in done.output
+    assert len(done.output.strip().splitlines()) == 1
+
+
+@pytest.mark.usefixtures("_no_sandbox")
+def test_what_was_typed_is_noted_in_the_report_and_in_the_feedback(
+    tiny: TinyClass, with_fake_judge: str
+) -> None:
+    tiny.submit("ada", 10, 7)
+    sandboxing.switch_off(tiny.path)
+    report = tiny.grade(judge=with_fake_judge, feedback=True)
+    assert tiny.scores("ada") == {"lab_1_2-talker": 10, "lab_1_2-listener": 7}
+    assert report.note == NOTE
+    page = (tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html").read_text()
+    assert NOTE in page
+
+
+def test_a_result_without_a_sandbox_never_stands_for_one_with(tiny: TinyClass, with_fake_judge: str) -> None:
+    tiny.submit("ada", 10)
+    sandboxing.switch_off(tiny.path)
+    assert tiny.grade(judge=with_fake_judge).executed == 1
+    assert tiny.grade(judge=with_fake_judge).executed == 0
+    sandboxing._off.clear()
+    report = tiny.grade(judge=with_fake_judge)
+    assert (report.executed, report.note) == (1, "")
+
+
+@pytest.mark.usefixtures("_no_sandbox")
+def test_the_configuration_can_say_so_too(tiny: TinyClass) -> None:
+    from autograder.grading.classes.class_directory import ClassDirectory
+
+    with pytest.raises(SandboxMissing, match="unsafe_no_sandbox"):
+        sandboxing.require(ClassDirectory(tiny.path))
+    config = tiny.path / "nbgrader_config.py"
+    config.write_text(config.read_text() + "\nc.WireExecute.unsafe_no_sandbox = True\n")
+    sandboxing.require(ClassDirectory(tiny.path))

@@ -1,0 +1,201 @@
+"""Real workers and kernels with a judge that needs no ROS."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import psutil
+import pytest
+from conftest import LISTENER, TALKER, FakeEngine, TinyClass
+from nbgrader.api import Gradebook
+from tiny_class import GRADE
+
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.running import engine
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+
+
+def leftovers(tiny: TinyClass) -> list[psutil.Process]:
+    """Workers of this class have its scratch folder in their command, and supervisors have mounted something there."""
+    scratch = str(ClassDirectory(tiny.path).scratch())
+    found = []
+    for process in psutil.process_iter(["cmdline", "status"]):
+        if process.info["status"] == psutil.STATUS_ZOMBIE:
+            continue
+        words = process.info["cmdline"] or []
+        if any(scratch in word for word in words) or scratch in mounts(process.pid):
+            found.append(process)
+    return found
+
+
+def mounts(pid: int) -> str:
+    """What a process sees mounted where."""
+    try:
+        return Path(f"/proc/{pid}/mountinfo").read_text()
+    except OSError:
+        return ""
+
+
+def test_points_come_from_the_judge_and_nothing_is_left(tiny: TinyClass, with_fake_judge: str) -> None:
+    tiny.submit("ada", 10, 6)
+    tiny.submit("ben", "1/0", 10)
+    report = tiny.grade(judge=with_fake_judge, jobs=2)
+    assert tiny.scores("ada") == {TALKER: 10, LISTENER: 6}
+    assert tiny.scores("ben") == {TALKER: 0, LISTENER: 10}
+    assert [row.diagnosis for row in report.rows if row.student == "ben"] == ["crashed", ""]
+    assert leftovers(tiny) == []
+    assert not ClassDirectory(tiny.path).scratch().exists()
+
+
+def test_a_submission_that_costs_the_worker_costs_nobody_else(tiny: TinyClass, with_fake_judge: str) -> None:
+    tiny.submit("ada", "'kill worker'")
+    tiny.submit("ben", 8)
+    tiny.submit("cleo", "'die'", 9)
+    report = tiny.grade(judge=with_fake_judge, jobs=1)
+    states = {row.student: row.state for row in report.rows if row.exercise == "lab_1_2.talker"}
+    assert states == {"ada": "not_checked", "ben": "failed", "cleo": "not_checked"}
+    assert tiny.scores("ada") == {TALKER: 0, LISTENER: 0}
+    assert tiny.scores("ben") == {TALKER: 8, LISTENER: 10}
+    assert tiny.scores("cleo") == {TALKER: 0, LISTENER: 9}
+    assert leftovers(tiny) == []
+
+
+def test_a_submission_cannot_see_the_class_or_another_one(tiny: TinyClass, with_fake_judge: str) -> None:
+    above = "(p / f for p in pathlib.Path('.').resolve().parents for f in ('gradebook.db', 'submitted'))"
+    tiny.submit("eve", f"10 if any(path.exists() for path in {above}) else 1")
+    tiny.grade(judge=with_fake_judge, jobs=1)
+    assert tiny.scores("eve")[TALKER] == 1
+
+
+@pytest.fixture
+def batch(
+    tiny: TinyClass, with_fake_judge: str, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[subprocess.Popen[str]]:
+    """A batch of four in a process of its own; one of them had full marks before."""
+    tiny.submit("ada", 10, 10)
+    with monkeypatch.context() as patch:
+        patch.setattr(engine, "execute_all", FakeEngine().execute_all)
+        tiny.grade()
+    assert tiny.scores("ada")[TALKER] == 10
+    for number, student in enumerate(("ada", "ben", "cleo", "dora")):
+        tiny.submit(student, number + 1, 9)
+    process = subprocess.Popen(
+        [sys.executable, "-W", "ignore", "-c", GRADE, str(tiny.path), with_fake_judge],
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    yield process
+    process.kill()
+    process.wait()
+    assert process.stderr
+    process.stderr.close()
+
+
+def graded(process: subprocess.Popen[str], count: int) -> None:
+    """Wait until the batch says that it has graded so many."""
+    assert process.stderr
+    for line in process.stderr:
+        if line.startswith(f"graded {count} of"):
+            return
+    raise AssertionError("the batch ended early")
+
+
+@pytest.mark.parametrize("after", [0, 2])
+def test_a_killed_batch_leaves_no_wrong_grade_and_no_process_and_the_next_one_goes_on(
+    tiny: TinyClass, with_fake_judge: str, batch: subprocess.Popen[str], after: int
+) -> None:
+    if after:
+        graded(batch, after)
+    else:
+        while not leftovers(tiny):  # the workers have started, so the old grades are taken back
+            assert batch.poll() is None
+            time.sleep(0.05)
+    orphans = psutil.Process(batch.pid).children(recursive=True)
+    batch.send_signal(signal.SIGKILL)
+    batch.wait()
+    _, alive = psutil.wait_procs(orphans, timeout=180)
+    assert alive == []
+    right = {"ada": 1, "ben": 2, "cleo": 3, "dora": 4}
+    with Gradebook(f"sqlite:///{tiny.path / 'gradebook.db'}") as book:
+        for submission in book.find_assignment("lab_1_2").submissions:
+            for grade in submission.notebooks[0].grades:
+                full = right[submission.student.id] if grade.name == TALKER else 9
+                assert grade.auto_score in (None, 0, full), submission.student.id
+    report = tiny.grade(judge=with_fake_judge, jobs=2)
+    assert {student: tiny.scores(student)[TALKER] for student in right} == right
+    assert report.executed <= 4 - after
+    assert report.exit_code == 0
+    assert leftovers(tiny) == []
+
+
+def test_a_killed_batch_does_not_wait_for_the_notebook_that_is_running(
+    tiny: TinyClass, with_fake_judge: str
+) -> None:
+    tiny.submit("ada", "__import__('time').sleep(3600)")
+    batch = subprocess.Popen([sys.executable, "-W", "ignore", "-c", GRADE, str(tiny.path), with_fake_judge])
+    while len(leftovers(tiny)) < 2:  # the worker and the supervisor of its boxes
+        assert batch.poll() is None
+        time.sleep(0.05)  # to look at every process of the machine keeps a core busy
+    orphans = psutil.Process(batch.pid).children(recursive=True)
+    batch.kill()
+    batch.wait()
+    _, alive = psutil.wait_procs(orphans, timeout=180)
+    assert alive == []
+
+
+def test_ctrl_c_stops_in_good_order(
+    tiny: TinyClass, with_fake_judge: str, batch: subprocess.Popen[str]
+) -> None:
+    graded(batch, 1)
+    batch.send_signal(signal.SIGINT)
+    batch.wait(timeout=180)
+    assert leftovers(tiny) == []
+    assert tiny.grade(judge=with_fake_judge, jobs=2).executed < 4
+
+
+def test_a_second_batch_in_another_process_says_so_and_stops(tiny: TinyClass, with_fake_judge: str) -> None:
+    tiny.submit("ada")
+    with ClassDirectory(tiny.path).lock():
+        second = subprocess.run(
+            [sys.executable, "-W", "ignore", "-c", GRADE, str(tiny.path), with_fake_judge],
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert second.returncode != 0
+    assert f"Another grading run is at work in {tiny.path} (process {os.getpid()}, since" in second.stderr
+
+
+def test_the_worker_says_why_it_could_not_begin(tiny: TinyClass, monkeypatch: pytest.MonkeyPatch) -> None:
+    tiny.submit("ada")
+    report = tiny.grade(judge="no_such_module:Judge", jobs=1)
+    assert "no_such_module" in report.rows[0].reason
+    assert report.rows[0].state == "not_checked"
+    assert tiny.scores("ada") == {TALKER: 0, LISTENER: 0}
+    assert Path(tiny.path / "grades.csv").exists()
+
+
+def test_fork_servers_that_die_are_started_anew(tiny: TinyClass, with_fake_judge: str) -> None:
+    tiny.submit("ada", "__import__('time').sleep(1) or 10", 9)
+    batch = subprocess.Popen(
+        [sys.executable, "-W", "ignore", "-c", GRADE, str(tiny.path), with_fake_judge], stderr=subprocess.PIPE
+    )
+    while len(leftovers(tiny)) < 2:
+        assert batch.poll() is None
+        time.sleep(0.05)  # to look at every process of the machine keeps a core busy
+    for process in psutil.Process(batch.pid).children():
+        if "autograder.boxes.fork_server" in process.cmdline():
+            process.kill()
+    _, said = batch.communicate(timeout=180)
+    assert batch.returncode == 0, said.decode()
+    assert tiny.scores("ada") == {TALKER: 10, LISTENER: 9}

@@ -1,0 +1,67 @@
+"""What is sent to a subject must not be lost because its own side does not know the judge's publisher yet."""
+
+from __future__ import annotations
+
+import sys
+from random import Random
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.judge.bench.bench import TestBench
+from autograder.judge.serving import domain
+from autograder.judge.subjects.command_subject import CommandSubject
+from autograder.kit.evidence import Evidence, Reference
+from autograder.kit.model import Look
+from autograder.kit.texts_said import is_said
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+pytestmark = pytest.mark.ros
+
+TOPIC, TYPE = "/chatter", "std_msgs/msg/String"
+TIMES = 5
+"""Without the wait about every second text was lost."""
+BEST_EFFORT_LISTENER = """
+import rclpy
+from rclpy.qos import qos_profile_sensor_data
+from std_msgs.msg import String
+
+rclpy.init()
+node = rclpy.create_node("listener")
+node.create_subscription(String, "chatter", lambda msg: print(msg.data, flush=True), qos_profile_sensor_data)
+rclpy.spin(node)
+"""
+
+
+def test_a_best_effort_listener_hears_the_first_text_of_a_publisher_it_meets_last(tmp_path: Path) -> None:
+    program = tmp_path / "listener.py"
+    program.write_text(BEST_EFFORT_LISTENER)
+    reference = Reference("a test", {"subscription": {TOPIC: TYPE}})
+    with domain.lease() as domain_id:
+        subject = CommandSubject([sys.executable, str(program)])
+        subject.begin(domain_id)
+        bench = TestBench(subject, domain_id, reference, Look.REAL_TIME, Random("a seed"))
+        try:
+            for turn in range(TIMES):
+                assert _is_heard(bench, f"text {turn}")
+        finally:
+            bench.close()
+
+
+def _is_heard(bench: TestBench, text: str) -> bool:
+    def said(evidence: Evidence) -> bool:
+        return is_said(text, evidence.main)
+
+    bench.part(text)
+    bench.start()
+    assert bench.await_endpoint("subscription", TOPIC)
+    # Made now, the publisher is matched with the subscription at once, and the subscription with it a moment later.
+    speaker = bench.speak(TOPIC, TYPE)
+    assert bench.await_endpoint("subscription", TOPIC)
+    bench.await_attention()
+    speaker.send(data=text)
+    heard = bench.wait_until(said, 10.0)
+    bench.stop()
+    return heard

@@ -1,0 +1,48 @@
+"""Whose nodes are the subject's, told from the names on a graph."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+from autograder.judge.bench.graph import NodeName, subject_nodes
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+KEEPER = "_check_keeper_00ff"
+
+
+class SeenBy:
+    def __init__(self, *names: str, space: str = "/") -> None:
+        self._names = [("judge_1", "/"), *((name, space) for name in names)]
+
+    def get_name(self) -> str:
+        return "judge_1"
+
+    def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
+        return self._names
+
+
+def names(judge: Any, keeper: str = KEEPER) -> list[str]:
+    return [node.full for node in subject_nodes(cast("Node", judge), keeper)]
+
+
+def test_one_keeper_is_nobody_s_work() -> None:
+    assert names(SeenBy(KEEPER, "talker")) == ["/talker"]
+
+
+def test_a_second_one_of_its_name_is_the_subject_s() -> None:
+    assert names(SeenBy(KEEPER, "talker", KEEPER)) == [f"/{KEEPER}", "/talker"]
+
+
+def test_a_name_that_is_only_like_it_hides_nobody() -> None:
+    assert names(SeenBy(KEEPER, "_check_keeper", f"{KEEPER}0")) == ["/_check_keeper", f"/{KEEPER}0"]
+    assert names(SeenBy(KEEPER, space="/robot")) == [f"/robot/{KEEPER}"]
+
+
+def test_where_no_keeper_is_expected_none_is_left_out() -> None:
+    assert names(SeenBy(KEEPER), keeper="") == [f"/{KEEPER}"]
+
+
+def test_nodes_without_a_name_yet_are_left_out_and_each_name_counts_once() -> None:
+    assert subject_nodes(cast("Node", SeenBy("_NODE_NAME_UNKNOWN_", "a", "a")), "") == [NodeName("a", "/")]

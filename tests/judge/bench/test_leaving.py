@@ -1,0 +1,68 @@
+"""A program that leaves the graph is on its way out: how it ends is seen, whenever it was looked at."""
+
+from __future__ import annotations
+
+import sys
+from random import Random
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.judge.bench.bench import TestBench
+from autograder.judge.serving import domain
+from autograder.judge.subjects.command_subject import CommandSubject
+from autograder.kit.evidence import Evidence, Reference
+from autograder.kit.model import Look
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+pytestmark = pytest.mark.ros
+
+TOPIC, TYPE = "/chatter", "std_msgs/msg/String"
+LEAVING_TALKER = """
+import os
+import sys
+import time
+
+import rclpy
+from std_msgs.msg import String
+
+rclpy.init()
+node = rclpy.create_node("talker")
+publisher = node.create_publisher(String, "chatter", 10)
+while not os.path.exists(sys.argv[1]):
+    time.sleep(0.01)
+node.destroy_node()
+rclpy.shutdown()
+time.sleep(0.5)
+print("last words", flush=True)
+"""
+"""Without the wait its last words were lost, and that it ends by itself."""
+
+
+def test_what_a_program_says_after_it_left_the_graph_is_heard(tmp_path: Path) -> None:
+    program = tmp_path / "talker.py"
+    program.write_text(LEAVING_TALKER)
+    reference = Reference("a test", {"publisher": {TOPIC: TYPE}})
+    with domain.lease() as domain_id:
+        subject = CommandSubject([sys.executable, str(program)])
+        subject.begin(domain_id)
+        bench = TestBench(subject, domain_id, reference, Look.REAL_TIME, Random("a seed"))
+        try:
+            bench.part("leaving")
+            bench.listen(TOPIC, TYPE)
+            bench.start(str(sign := tmp_path / "leave now"))
+            assert bench.await_endpoint("publisher", TOPIC)
+            sign.touch()
+            bench.watch_graph(_has_left, 10.0)  # or until it has ended
+            bench.stop()
+        finally:
+            bench.close()
+    (part,) = bench.parts
+    assert part.ending is not None
+    assert part.said() == ["last words"]
+
+
+def _has_left(evidence: Evidence) -> bool:
+    return not evidence.main.of("interface", "graph")[-1].data["publisher"]

@@ -1,0 +1,74 @@
+"""What the judge serves is recorded from the first request on: no ROS is started."""
+
+from __future__ import annotations
+
+import threading
+from types import SimpleNamespace
+from typing import Any
+
+from builtin_interfaces.msg import Time
+
+from autograder.judge.bench.action_server import ScriptedActionServer
+from autograder.judge.bench.recorder import Recorder
+from autograder.judge.bench.service_server import RecordedServer
+
+LONG_ENOUGH = 0.2
+"""Seconds in which a request would be answered that is not kept waiting."""
+
+
+class EagerNode:
+    """A node whose services are asked in the moment of their creation, before their maker has them."""
+
+    def __init__(self) -> None:
+        self.asked: list[threading.Thread] = []
+
+    def create_service(self, kind: Any, name: str, callback: Any) -> Any:
+        service = SimpleNamespace(send_response=lambda *_: None)
+
+        def ask() -> None:
+            response = callback(kind.Request(), kind.Response())
+            service.send_response(response, None)
+
+        thread = threading.Thread(target=ask, daemon=True)
+        self.asked.append(thread)
+        thread.start()
+        thread.join(LONG_ENOUGH)
+        return service
+
+    def create_publisher(self, *_: Any) -> Any:
+        return SimpleNamespace(publish=lambda _: None, get_subscription_count=lambda: 1)
+
+    def get_clock(self) -> Any:
+        return SimpleNamespace(now=lambda: SimpleNamespace(to_msg=Time))
+
+    def answered(self) -> bool:
+        for thread in self.asked:
+            thread.join(180.0)
+        return not any(thread.is_alive() for thread in self.asked)
+
+
+def test_who_asks_a_service_while_it_is_made_is_answered_on_record() -> None:
+    node, recorder = EagerNode(), Recorder()
+    wire: Any = SimpleNamespace(node=node)
+    RecordedServer(wire, recorder, "/light", "std_srvs/srv/SetBool", lambda _: {})
+    assert node.answered()
+    assert [event.kind for event in recorder.part().events] == ["request", "response"]
+
+
+def test_who_asks_an_action_while_it_is_made_is_answered_on_record() -> None:
+    node, recorder = EagerNode(), Recorder()
+    wire: Any = SimpleNamespace(node=node)
+    ScriptedActionServer(
+        wire,
+        recorder,
+        "/fibonacci",
+        "my_robot_interfaces/action/Fibonacci",
+        accept_goal=False,
+        accept_cancel=False,
+        goal_answer_takes=0.0,
+        cancel_answer_takes=0.0,
+        client_is_gone=lambda: False,
+    )
+    assert node.answered()
+    kinds = [event.kind for event in recorder.part().events]
+    assert {"goal_answered", "cancel_answered"} <= set(kinds)

@@ -1,0 +1,128 @@
+"""What the judge writes down, and how it waits for it."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+import pytest
+
+from autograder.judge.bench import patience, recorder
+from autograder.judge.bench.patience import SLOWEST, Patience
+from autograder.judge.bench.recorder import Recorder
+
+
+def test_events_keep_their_order_and_their_data_as_it_was() -> None:
+    book = Recorder()
+    book.begin("part", {"a": 1})
+    numbers = [1]
+    book.record("message", "/chatter", fields=numbers)
+    numbers.append(2)
+    book.record("log", "talker", text="hello")
+    part = book.part()
+    assert [event.kind for event in part.events] == ["message", "log"]
+    assert part.events[0].data["fields"] == [1]
+    assert part.inputs == {"a": 1}
+
+
+def test_a_new_part_forgets_the_one_before() -> None:
+    book = Recorder()
+    book.begin("one", {})
+    book.record("log", "x", text="old")
+    book.begin("two", {})
+    assert book.part().events == ()
+
+
+def test_waiting_ends_at_the_event_and_not_at_the_limit() -> None:
+    book = Recorder()
+    book.begin("part", {})
+    threading.Timer(0.02, lambda: book.record("goal", "/fibonacci")).start()
+    assert book.wait(lambda: bool(book.part().of("goal")), within=60.0, poll=60.0)
+
+
+def test_waiting_gives_up_at_its_limit() -> None:
+    book = Recorder()
+    book.begin("part", {})
+    assert not book.wait(lambda: False, within=0.01)
+
+
+def test_silence_ends_the_wait_and_every_event_puts_it_off() -> None:
+    book = Recorder()
+    book.begin("part", {})
+    asked: list[int] = []
+
+    def speak_at_first() -> bool:
+        asked.append(len(asked))
+        if len(asked) < 20:
+            book.record("log", "x", text="going on")
+        return False
+
+    assert not book.wait(speak_at_first, within=60.0, quiet=0.05)
+    assert len(asked) > 20
+
+
+@pytest.mark.parametrize(("wall", "slowness"), [(False, SLOWEST), (True, 1.0)])
+def test_a_crowded_machine_gives_more_time_and_the_judges_own_pace_stays(
+    monkeypatch: pytest.MonkeyPatch, wall: bool, slowness: float
+) -> None:
+    made: list[Patience] = []
+
+    def noted(seconds: float, **how: Any) -> Patience:
+        made.append(Patience(seconds, **how))
+        return made[-1]
+
+    monkeypatch.setattr(patience, "machine_slowness", lambda: SLOWEST)
+    monkeypatch.setattr(recorder, "Patience", noted)
+    Recorder().wait(lambda: True, within=5.0, quiet=1.0, wall=wall)
+    assert [one.slowness() for one in made] == [slowness, slowness]
+
+
+def test_a_flood_is_cut(monkeypatch: object) -> None:
+    book = Recorder()
+    book.begin("part", {})
+    for number in range(recorder.MAX_EVENTS + 5):
+        book.record("message", "/flood", number=number)
+    assert len(book.part().events) == recorder.MAX_EVENTS
+
+
+def test_of_long_speech_the_end_is_kept_and_all_else_too() -> None:
+    book = Recorder()
+    book.begin("part", {})
+    book.record("request", "/add_two_ints", fields={"a": 1, "b": 2})
+    book.record("output", "notebook", text="@workspace {}")
+    for number in range(300):
+        book.record("output", "notebook", text=f"{number} " + "x" * 10_000)
+    part = book.part()
+    assert part.first("request") is not None
+    assert [e for e in part.of("output") if e.data["text"].startswith("@workspace")]
+    assert part.of("output")[-1].data["text"].startswith("299 ")
+    assert sum(len(e.data["text"]) for e in part.of("output")) <= recorder.MAX_SAID
+
+
+def test_huge_messages_are_cut() -> None:
+    book = Recorder()
+    book.begin("part", {})
+    for _ in range(recorder.MAX_TEXTS // recorder.MAX_TEXT + 5):
+        book.record("message", "/chatter", fields={"data": "x" * 4_000_000, "list": [1] * 10**5})
+    texts = [e.data["fields"]["data"] for e in book.part().of("message")]
+    assert len(texts[0]) == recorder.MAX_TEXT + 1
+    assert len(texts[-1]) == recorder.BEGINNING + 1
+
+
+def test_what_is_no_text_can_be_written_down_all_the_same() -> None:
+    book = Recorder()
+    book.begin("part", {})
+    book.record("output", "notebook", text="Grüße \ud800")
+    (event,) = book.part().events
+    assert event.data["text"].encode() == "Grüße ?".encode()
+
+
+def test_what_a_run_said_is_not_taken_for_the_next_ones() -> None:
+    recorder = Recorder()
+    recorder.begin("first", {})
+    slow_reader = recorder.in_this_part()
+    slow_reader("output", "stdout", text="now")
+    assert [event.data["text"] for event in recorder.part().of("output")] == ["now"]
+    recorder.begin("second", {})
+    slow_reader("output", "stdout", text="late")
+    assert not recorder.part().events

@@ -1,0 +1,107 @@
+"""A solution as a notebook has it, judged in forks: a program that ends with ``check(…)``, and a judge beside it."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import tempfile
+import threading
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from autograder import exercises
+from autograder.authoring.warm_python import WarmPython
+from autograder.judge.serving import attached
+from autograder.judge.serving.process import JudgeDied, JudgeProcess
+from autograder.judge.settings import subject_environment
+from autograder.judge.subjects.command_subject import CommandSubject, kill_leftovers
+from autograder.verdict import Diagnosis, State, Verdict, not_checked, to_json
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.kit.model import Exercise
+
+NEVER_ASKED = "never_asked"
+"""The diagnosis where the program came to its end before its check."""
+SPARE = 10.0
+"""Seconds beyond an exercise's limit before a program that does not end is ended."""
+
+
+class _ForkedJudge:
+    """A judge in a fork of this process, which has imported what a judge needs."""
+
+    def __init__(self, listener: int, orders: int) -> None:
+        self.pid = os.fork()
+        if self.pid == 0:
+            with contextlib.suppress(BaseException):
+                os.setsid()
+                mine = {0, 1, 2, listener, orders}
+                for entry in Path("/proc/self/fd").iterdir():
+                    if int(entry.name) not in mine:
+                        with contextlib.suppress(OSError):
+                            os.close(int(entry.name))
+                attached.run({}, (listener, orders))
+            os._exit(0)
+
+    def end(self) -> None:
+        """End it with all that it has forked."""
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self.pid, signal.SIGKILL)
+        with contextlib.suppress(ChildProcessError):
+            os.waitpid(self.pid, 0)
+
+
+def verdict_in_notebook(exercise_id: str, file: Path, seed: str) -> bytes:
+    """Run a program that ends with its check; what the judge tells a grader of it, as JSON.
+
+    Must run in a fork without threads of a process that is warm.
+    """
+    exercise = exercises.get(exercise_id)
+    CommandSubject([])  # makes this process the one that gets the orphans
+    warm = WarmPython()
+    helpers = [warm.pid]
+
+    def start(listener: int, orders: int) -> _ForkedJudge:
+        forked = _ForkedJudge(listener, orders)
+        helpers.append(forked.pid)
+        return forked
+
+    with tempfile.TemporaryDirectory(prefix="notebook-") as folder:
+        try:
+            with JudgeProcess(Path(folder) / "judge", seed=seed, start=start) as judge:
+                judge.open(exercise.id)
+                _run(warm, file, judge.socket_path, exercise.limit + SPARE, helpers)
+                report = judge.close_report()
+        except JudgeDied as error:
+            return to_json(not_checked(exercise.id, exercise.title, exercise.points, str(error)))
+    if report.trouble:
+        return to_json(not_checked(exercise.id, exercise.title, exercise.points, report.trouble))
+    return to_json(report.verdict or _never_asked(exercise))
+
+
+def _run(warm: WarmPython, file: Path, socket: Path, limit: float, helpers: Sequence[int]) -> None:
+    environment = subject_environment(0) | {"AUTOGRADER_JUDGE_SOCKET": str(socket)}
+    program = warm.run([str(file)], environment, file.parent)
+    timer = threading.Timer(limit, program.send_signal, [signal.SIGKILL])
+    timer.start()
+    readers = [threading.Thread(target=stream.read) for stream in (program.stdout, program.stderr)]
+    for reader in readers:
+        reader.start()
+    program.wait()
+    timer.cancel()
+    kill_leftovers(spare=helpers)
+    for reader in readers:
+        reader.join()
+
+
+def _never_asked(exercise: Exercise) -> Verdict:
+    return Verdict(
+        exercise=exercise.id,
+        title=exercise.title,
+        state=State.FAILED,
+        score=0.0,
+        max_score=exercise.points,
+        diagnosis=Diagnosis(NEVER_ASKED, "The program ended before its check."),
+    )

@@ -1,0 +1,158 @@
+"""A controlled judge answers the check that was opened, once, and nothing else."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import socket
+from typing import TYPE_CHECKING, Any, cast
+
+import msgspec
+import pytest
+
+from autograder.judge.serving.fork import Outcome
+from autograder.judge.serving.process import JudgeDied, JudgeProcess, _Child
+from autograder.judge.serving.server import JudgeServer
+from autograder.messages.orders import Report
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from autograder.judge.serving.fork import Child
+
+pytestmark = pytest.mark.ros
+
+
+@pytest.fixture
+def judge(tmp_path: Path) -> Iterator[JudgeProcess]:
+    with JudgeProcess(tmp_path / "judge", seed="a seed") as process:
+        yield process
+
+
+class Kernel:
+    """Plays a notebook's part of the conversation."""
+
+    def __init__(self, judge: JudgeProcess) -> None:
+        self._socket = socket.socket(socket.AF_UNIX)
+        self._socket.connect(str(judge.socket_path))
+        self._lines = self._socket.makefile("rb")
+
+    def say(self, **words: Any) -> None:
+        self._socket.sendall(json.dumps(words).encode() + b"\n")
+
+    def hear(self) -> dict[str, Any]:
+        heard: dict[str, Any] = json.loads(self._lines.readline() or b'{"say": "gone"}')
+        return heard
+
+    def hang_up(self) -> None:
+        self._lines.close()
+        self._socket.close()
+
+    def fail_at_once(self, exercise: str) -> dict[str, Any]:
+        """Ask for a check whose subject raises whenever it is started; the last words of the judge."""
+        self.say(say="check", exercise=exercise)
+        while True:
+            words = self.hear()
+            if words["say"] == "begin":
+                self.say(say="ready")
+            elif words["say"] == "meet":
+                self.say(say="met", seen=True)
+            elif words["say"] == "start":
+                self.say(say="raised", run=words["run"], traceback="Traceback\nRuntimeError: no")
+            elif words["say"] == "stop":
+                self.say(say="stopped", run=words["run"])
+            elif words["say"] in ("verdict", "refused", "gone"):
+                return words
+
+
+def test_a_check_that_nobody_opened_is_refused(judge: JudgeProcess) -> None:
+    kernel = Kernel(judge)
+    kernel.say(say="check", exercise="lab_1_2.talker")
+    assert kernel.hear()["say"] == "refused"
+    assert judge.close() is None
+
+
+def test_an_opened_check_counts_and_a_second_one_does_not(judge: JudgeProcess) -> None:
+    judge.open("lab_1_2.talker")
+    told = Kernel(judge).fail_at_once("lab_1_2.talker")
+    assert Kernel(judge).fail_at_once("lab_1_2.talker")["say"] == "refused"
+    verdict = judge.close()
+    assert verdict is not None
+    assert verdict.score == 0
+    assert verdict.diagnosis is not None
+    assert verdict.diagnosis.key == "crashed"
+    assert verdict.seed
+    # The notebook hears it, and must not learn what the next check draws from.
+    assert "a seed" not in verdict.seed
+    assert told["verdict"]["score"] == 0
+
+
+def test_another_exercise_than_the_opened_one_is_refused(judge: JudgeProcess) -> None:
+    judge.open("lab_1_2.talker")
+    assert Kernel(judge).fail_at_once("lab_1_2.listener")["say"] == "refused"
+    assert judge.close() is None
+
+
+def test_a_cell_that_never_asked_has_no_verdict(judge: JudgeProcess) -> None:
+    judge.open("lab_1_2.talker")
+    assert judge.close() is None
+
+
+def test_garbage_brings_no_verdict_and_no_harm(judge: JudgeProcess) -> None:
+    judge.open("lab_1_2.talker")
+    kernel = Kernel(judge)
+    kernel._socket.sendall(b"\xff\xff garbage\n")
+    kernel.hang_up()
+    assert judge.close() is None
+    judge.open("lab_1_2.talker")
+    assert Kernel(judge).fail_at_once("lab_1_2.talker")["say"] == "verdict"
+    assert judge.close() is not None
+
+
+def test_a_kernel_that_goes_away_in_the_middle_gets_no_points(judge: JudgeProcess) -> None:
+    judge.open("lab_1_2.talker")
+    kernel = Kernel(judge)
+    kernel.say(say="check", exercise="lab_1_2.talker")
+    assert kernel.hear()["say"] == "begin"
+    kernel.hang_up()
+    verdict = judge.close()
+    assert verdict is None or verdict.score == 0
+
+
+def test_a_judge_that_dies_is_reported_and_never_a_verdict(judge: JudgeProcess) -> None:
+    judge.open("lab_1_2.talker")
+    assert isinstance(judge._process, _Child)
+    os.kill(judge._process.pid, signal.SIGKILL)
+    with pytest.raises(JudgeDied):
+        judge.close()
+
+
+class ChildThatSaid:
+    """A check's child that has come to its end with these bytes."""
+
+    def __init__(self, data: bytes) -> None:
+        self._data = data
+
+    def result(self, *, within: float) -> Outcome:
+        del within
+        return Outcome(self._data)
+
+
+@pytest.mark.parametrize("data", [b'{"verdict":null}\n{"verdict":null}', b'\n{"verdict":null}'])
+def test_a_child_that_says_more_than_one_line_has_no_verdict(data: bytes) -> None:
+    # The rest of it would be taken for the report of the next check.
+    with socket.socket(socket.AF_UNIX) as listener:
+        server = JudgeServer(listener, controlled=True)
+        server._child = cast("Child", ChildThatSaid(data))
+        line = server._close()
+    assert b"\n" not in line
+    assert msgspec.json.decode(line, type=Report).trouble
+
+
+def test_a_judge_that_says_no_report_has_died(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    process = JudgeProcess(tmp_path / "judge", seed="a seed")
+    monkeypatch.setattr(process, "_order", lambda _: b'{"verdict": 10}\n')
+    with pytest.raises(JudgeDied, match="else than a report"):
+        process.close_report()

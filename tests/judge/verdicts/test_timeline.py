@@ -1,0 +1,124 @@
+"""What the card's timeline is told of the evidence."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from autograder.judge.verdicts.timeline import MAX_MOMENTS, moments
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+
+if TYPE_CHECKING:
+    from autograder.verdict import Moment
+
+HELLO = {"data": "Hello, world! 0"}
+
+
+def told(
+    *events: Event, interface: dict[str, dict[str, str]] | None = None, **reference: Any
+) -> list[Moment]:
+    expected = Reference("an exercise", interface or {}, reference.get("parts", ()))
+    return list(moments(Evidence([Part("", {}, events)], expected)))
+
+
+def test_a_message_of_the_judges_own_is_told_once() -> None:
+    sent = Event(0.1, "sent", "/status", {"fields": {"data": "status 16836"}})
+    echo = Event(0.2, "message", "/status", {"fields": {"data": "status 16836"}})
+    again = Event(0.3, "message", "/status", {"fields": {"data": "status 16836"}})
+    assert [moment.direction for moment in told(sent, echo)] == ["to_subject"]
+    # Who says it once more has said it.
+    assert [moment.direction for moment in told(sent, echo, again)] == ["to_subject", "from_subject"]
+
+
+def test_of_a_message_in_messages_the_numbers_that_are_not_zero_are_told() -> None:
+    zeros = dict.fromkeys("xyz", 0.0)
+    straight = Event(
+        0.1, "message", "/cmd_vel", {"fields": {"linear": {**zeros, "x": 0.5}, "angular": zeros}}
+    )
+    still = Event(0.2, "message", "/cmd_vel", {"fields": {"linear": zeros}})
+    assert [moment.label for moment in told(straight, still)] == [
+        "linear.x=0.5",
+        "linear.x=0.0, linear.y=0.0, linear.z=0.0",
+    ]
+
+
+def test_what_arrived_late_stands_where_it_was_sent() -> None:
+    log = Event(0.10, "log", "talker", {"text": "Publishing", "sent": 1000.09, "arrived": 1000.10})
+    message = Event(0.30, "message", "/chatter", {"fields": HELLO, "sent": 1000.08, "arrived": 1000.30})
+    shown = told(log, message)
+    assert [moment.lane for moment in shown] == ["/chatter", "log"]
+    assert [moment.t for moment in shown] == [0.08, 0.09]
+
+
+def test_a_time_of_sending_that_cannot_be_is_not_believed() -> None:
+    forged = Event(0.5, "log", "talker", {"text": "x", "sent": 0.0, "arrived": 1000.0})
+    later = Event(0.6, "log", "talker", {"text": "y", "sent": 2000.0, "arrived": 1000.0})
+    assert [moment.t for moment in told(forged, later)] == [0.0, 0.6]
+
+
+def test_each_goal_has_a_lane_where_there_are_several() -> None:
+    shown = told(
+        Event(0.1, "goal_sent", "/fibonacci", {"goal": 0, "fields": {"order": 3}}),
+        Event(0.2, "goal_sent", "/fibonacci", {"goal": 1, "fields": {"order": 5}}),
+        Event(0.3, "cancel_sent", "/fibonacci", {"goal": 0}),
+        Event(0.4, "result_heard", "/fibonacci", {"goal": 0, "status": 5, "fields": {"sequence": [0, 1]}}),
+    )
+    assert [moment.lane[-6:] for moment in shown] == ["goal 1", "goal 2", "goal 1", "goal 1"]
+    assert shown[-1].label == "CANCELED [0, 1]"
+    assert all(moment.key for moment in shown)
+
+
+def test_goals_that_arrive_one_after_the_other_have_lanes_too() -> None:
+    shown = told(
+        Event(0.1, "goal", "/fibonacci", {"fields": {"order": 3}}),
+        Event(0.2, "result", "/fibonacci", {"status": "succeeded", "fields": {"sequence": [0]}}),
+        Event(0.3, "goal", "/fibonacci", {"fields": {"order": 4}}),
+        Event(0.4, "cancel", "/fibonacci", {"accepted": True, "known": True}),
+    )
+    assert [moment.lane[-6:] for moment in shown] == ["goal 1", "goal 1", "goal 2", "goal 2"]
+
+
+def test_a_single_goal_needs_no_number() -> None:
+    assert [moment.lane for moment in told(Event(0.1, "goal", "/fibonacci", {"fields": {}}))] == [
+        "/fibonacci"
+    ]
+
+
+def test_the_name_that_was_meant_and_the_wrong_one_are_both_told() -> None:
+    survey = Event(0.4, "interface", "graph", {"publisher": {"/chater": "std_msgs/msg/String"}})
+    shown = told(survey, survey, interface={"publisher": {"/chatter": "std_msgs/msg/String"}})
+    assert [(moment.lane, moment.stray) for moment in shown] == [("/chater", True), ("/chatter", False)]
+    assert [moment.label for moment in shown] == ["your publisher is here", "no publisher of yours"]
+
+
+def test_topics_beside_the_right_one_are_nobodys_business() -> None:
+    survey = Event(0.4, "interface", "graph", {"publisher": {"/chatter": "a", "/status": "b"}})
+    assert told(survey, interface={"publisher": {"/chatter": "a"}}) == []
+
+
+def test_a_cancel_request_is_told_after_any_flood() -> None:
+    flood = [Event(n / 100, "feedback", "/fibonacci", {"fields": {"sequence": [n]}}) for n in range(500)]
+    shown = told(*flood, Event(9.0, "cancel", "/fibonacci", {}))
+    assert shown[-1].label == "cancel request"
+    assert len(shown) == MAX_MOMENTS
+
+
+def test_a_flood_of_goals_has_an_end() -> None:
+    goals = [Event(n / 100, "goal", "/fibonacci", {"fields": {"order": 1}}) for n in range(5000)]
+    assert len(told(*goals)) < 200
+
+
+def test_the_first_text_that_nobody_expected_is_named() -> None:
+    reference = (Part("", {}, (Event(0.1, "message", "/chatter", {"fields": HELLO}),)),)
+    shown = told(
+        Event(0.1, "message", "/chatter", {"fields": HELLO}),
+        Event(0.2, "message", "/chatter", {"fields": {"data": "Hello world 1"}}),
+        Event(0.3, "message", "/chatter", {"fields": {"data": "Hello world 2"}}),
+        parts=reference,
+    )
+    assert [moment.key for moment in shown] == [False, True, False]
+
+
+def test_that_a_program_got_going_needs_no_words() -> None:
+    names = ("started", "constructed", "raised")
+    shown = told(*(Event(n / 10, "subject", name, {}) for n, name in enumerate(names)))
+    assert [moment.label for moment in shown] == ["raised"]

@@ -1,0 +1,82 @@
+"""A program repeats what the notebook has defined, and a master says so in one line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.masters.errors import MasterError
+from autograder.masters.release import release_notebook
+from autograder.masters.source import Points, source_notebook
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+MASTER = """\
+Text.
+
+```{code-cell} ipython3
+LIMIT = 3
+print(LIMIT)
+```
+
+```{code-cell} ipython3
+:tags: [solution]
+
+def double(number: int) -> int:
+    \"\"\"Twice the number.\"\"\"
+    ### BEGIN SOLUTION
+    # TODO: return twice the number.
+    return 2 * number
+    ### END SOLUTION
+```
+
+```{code-cell} ipython3
+:tags: [solution]
+:grade_id: double_py
+
+%%writefile double.py
+### COPY LIMIT
+
+
+### BEGIN SOLUTION
+# TODO: copy double to this place.
+### COPY double
+### END SOLUTION
+
+
+print(double(LIMIT))
+```
+"""
+
+
+def test_the_master_writes_the_whole_program(write_master: Callable[[str], Path], ten_points: Points) -> None:
+    source = source_notebook(write_master(MASTER), points=ten_points)
+    assert source.cells[3].source.split("\n") == [
+        "%%writefile double.py",
+        "LIMIT = 3",
+        "",
+        "",
+        "### BEGIN SOLUTION",
+        "# TODO: copy double to this place.",
+        "def double(number: int) -> int:",
+        '    """Twice the number."""',
+        "    return 2 * number",
+        "### END SOLUTION",
+        "",
+        "",
+        "print(double(LIMIT))",
+    ]
+    given = release_notebook(source).cells[3].source
+    assert "LIMIT = 3\n\n\n# TODO: copy double to this place.\n\n\nprint" in given
+
+
+def test_what_is_not_defined_above_cannot_be_copied(
+    write_master: Callable[[str], Path], ten_points: Points
+) -> None:
+    master = write_master(MASTER.replace("### COPY double", "### COPY triple"))
+    with pytest.raises(MasterError, match=r"'triple' is to be copied.*LIMIT, double") as refused:
+        source_notebook(master, points=ten_points)
+    assert master.read_text().splitlines()[(refused.value.line or 0) - 1] == "### COPY triple"

@@ -1,0 +1,123 @@
+"""What one process may say to another that does not trust it."""
+
+from __future__ import annotations
+
+import socket
+import threading
+from typing import get_args
+
+import msgspec
+import pytest
+
+from autograder.messages import checks, lines, workspaces
+from autograder.messages.lines import Hangup, Lines, NotUnderstood
+
+
+def _pair() -> tuple[socket.socket, Lines]:
+    here, there = socket.socketpair()
+    return here, Lines(there)
+
+
+def test_messages_come_one_by_one_however_they_are_cut() -> None:
+    wire, judge = _pair()
+    wire.sendall(b'{"say": "check", "exercise": "lab_1_2.talker"}\n{"say": "re')
+    assert judge.hear(checks.FromNotebook) == checks.Check("lab_1_2.talker")
+    wire.sendall(b'ady"}\n')
+    assert judge.hear(checks.FromNotebook) == checks.Ready()
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        pytest.param(b"hello\n", id="no JSON"),
+        pytest.param(b"[1, 2]\n", id="no object"),
+        pytest.param(b'{"exercise": "lab_1_2.talker"}\n', id="no word"),
+        pytest.param(b'{"say": 7}\n', id="a number for a word"),
+        pytest.param(b"\xff\xfe\n", id="no text"),
+        pytest.param(b"[" * 100_000 + b"\n", id="too deep"),
+        pytest.param(b"", id="nothing"),
+    ],
+)
+def test_what_is_no_message_ends_the_conversation(line: bytes) -> None:
+    wire, judge = _pair()
+    wire.sendall(line)
+    wire.close()
+    with pytest.raises(Hangup):
+        judge.hear(checks.FromNotebook)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        pytest.param(b'{"say": "open_all"}', id="an unknown word"),
+        pytest.param(b'{"say": "begin", "domain": 1, "keeper": ""}', id="a word of the other side"),
+        pytest.param(b'{"say": "returned"}', id="of no run"),
+        pytest.param(b'{"say": "returned", "run": "1"}', id="a text for a number"),
+        pytest.param(b'{"say": "output", "run": 1, "text": ["a"]}', id="a list for a text"),
+        pytest.param(b'{"say": "source", "path": "a", "data": "?"}', id="no base64"),
+        pytest.param(b'{"say": "source", "path": "a", "data": "\\ud800"}', id="half a character for base64"),
+    ],
+)
+def test_what_is_not_expected_is_not_understood_and_ends_nothing(line: bytes) -> None:
+    wire, judge = _pair()
+    wire.sendall(line + b'\n{"say": "ready"}\n')
+    with pytest.raises(NotUnderstood):
+        judge.hear(checks.FromNotebook)
+    assert judge.hear(checks.FromNotebook) == checks.Ready()
+
+
+class Stubborn(str):
+    """A text that a student has made, and that will not become another one."""
+
+    def __str__(self) -> str:
+        return self
+
+
+@pytest.mark.parametrize("text", ["Grüße", "\ud800 half a character", "\0", Stubborn("stubborn")])
+def test_any_text_of_a_subject_s_arrives(text: str) -> None:
+    wire, judge = _pair()
+    Lines(wire).say(checks.Output(1, text))
+    assert judge.hear(checks.FromNotebook) == checks.Output(1, text)
+
+
+def test_every_word_stands_for_one_message() -> None:
+    for union in (
+        checks.FromNotebook,
+        checks.FromJudge,
+        workspaces.ToService,
+        workspaces.FromService,
+        workspaces.BuildAnswer,
+    ):
+        words = [msgspec.inspect.type_info(kind).tag for kind in get_args(union)]  # type: ignore[attr-defined]
+        assert len(set(words)) == len(words)
+
+
+def test_an_endless_line_ends_the_conversation() -> None:
+    wire, judge = _pair()
+    flood = threading.Thread(target=_flood, args=(wire,), daemon=True)
+    flood.start()
+    with pytest.raises(Hangup, match="too long"):
+        judge.hear(checks.FromNotebook)
+    judge.close()
+    flood.join()
+
+
+def _flood(wire: socket.socket) -> None:
+    try:
+        for _ in range(10):
+            wire.sendall(b"x" * lines.MAX_LINE)
+    except OSError:
+        pass
+
+
+def test_talking_to_nobody_is_noticed() -> None:
+    wire, judge = _pair()
+    wire.close()
+    with pytest.raises(Hangup):
+        _talk_on(judge)
+
+
+def _talk_on(judge: Lines) -> None:
+    # The first message may still go into the kernel's buffer.
+    for _ in range(100):
+        judge.say(checks.Release(1))

@@ -1,0 +1,58 @@
+"""``python -m tests.mutation``: how many mutants of right answers the judge catches, and which survive."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+import msgspec
+
+from autograder.authoring.judging import warm_up
+from tests.mutation import equivalents
+from tests.mutation.report import text
+from tests.mutation.results import Fate, Result
+from tests.mutation.run import chosen, run
+
+
+def main() -> int:
+    """Judge mutants; 1 where one survives that is not entered as equivalent."""
+    parser = argparse.ArgumentParser(prog="python -m tests.mutation", description=__doc__)
+    parser.add_argument(
+        "only", nargs="*", help="parts of the ids of mutants, such as lab_1_2.talker or :number:"
+    )
+    parser.add_argument("--sample", type=int, metavar="N", help="only N mutants, of every exercise as many")
+    parser.add_argument("--seed", type=int, default=0, help="which mutants are in the sample")
+    parser.add_argument("--jobs", type=int, default=8, help="how many are judged at once")
+    parser.add_argument("--repeat", type=int, default=1, help="with how many different inputs each is judged")
+    parser.add_argument(
+        "--results", type=Path, metavar="FILE", help="keep results here, and go on with those it has"
+    )
+    parser.add_argument("--list", action="store_true", help="show the mutants, and judge nothing")
+    parser.add_argument("--json", action="store_true", help="print the report as JSON")
+    options = parser.parse_args()
+    if options.list:
+        for mutant in chosen(options.only, options.sample, options.seed)[1]:
+            print(mutant.id, equivalents.reason(mutant.id), mutant.difference(), "", sep="\n")
+        return 0
+    warm_up()
+
+    def told(result: Result) -> None:
+        if result.fate is not Fate.KILLED and not equivalents.reason(result.id):
+            print(f"{result.fate}: {result.id} ({result.seconds:.1f} s)", file=sys.stderr, flush=True)
+
+    found = run(
+        options.only,
+        size=options.sample,
+        seed=options.seed,
+        jobs=options.jobs,
+        repeat=options.repeat,
+        file=options.results,
+        told=told,
+    )
+    print(msgspec.json.encode(found).decode() if options.json else text(found))
+    return 1 if found.survivors or found.caught_equivalents else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

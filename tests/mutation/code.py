@@ -1,0 +1,245 @@
+"""A program's text with its syntax tree, and edits of it that leave everything else as it is written."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+SAYS = ("debug", "info", "warn", "warning", "error", "fatal", "print", "write")
+"""Calls that log or print."""
+_DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+
+
+@dataclass(frozen=True)
+class Edit:
+    """One piece of a text, and what stands there instead.
+
+    Attributes:
+        start: Offset of its first character.
+        end: Offset behind its last character.
+        text: The replacement.
+        where: What is around it, such as ``"TalkerNode.__init__"``; part of a mutant's id.
+    """
+
+    start: int
+    end: int
+    text: str
+    where: str = ""
+
+    def applied(self, text: str) -> str:
+        """The text with this piece replaced."""
+        return text[: self.start] + self.text + text[self.end :]
+
+
+class Code:
+    """A Python program.
+
+    Attributes:
+        text: As it is written.
+        tree: Its syntax tree.
+    """
+
+    def __init__(self, text: str, *, subject: str = "", logs: bool = True) -> None:
+        """Read a program.
+
+        Args:
+            text: As it is written.
+            subject: A class or function of the program: only what it needs is looked at. All of it where empty.
+            logs: Whether what it logs and prints may be changed.
+
+        Raises:
+            SyntaxError: It is no Python.
+        """
+        self.text = text
+        self.tree = ast.parse(text)
+        self._subject = subject
+        self._logs = logs
+        lines = text.splitlines(keepends=True)
+        self._lines = [0]
+        for line in lines:
+            self._lines.append(self._lines[-1] + len(line))
+        self._bytes = [line.encode() for line in lines]
+
+    @cached_property
+    def parents(self) -> dict[ast.AST, ast.AST]:
+        """The node around each node."""
+        return {child: node for node in ast.walk(self.tree) for child in ast.iter_child_nodes(node)}
+
+    @cached_property
+    def nodes(self) -> tuple[ast.AST, ...]:
+        """What may be changed, in the order of the text: no imports, docstrings, types or main guards."""
+        found: list[ast.AST] = []
+        for statement in self._wanted():
+            found += [node for node in _changeable(statement, self._logs) if self._is_placed(node)]
+        return tuple(
+            sorted(found, key=lambda node: (getattr(node, "lineno", 0), getattr(node, "col_offset", 0)))
+        )
+
+    def all(self, *kinds: type[ast.AST]) -> Iterator[Any]:
+        """The nodes of some kinds that may be changed."""
+        for node in self.nodes:
+            if isinstance(node, kinds):
+                yield node
+
+    def bodies(self) -> Iterator[list[ast.stmt]]:
+        """Each list of statements that follow each other, without docstrings and imports."""
+        allowed = set(self.nodes)
+        for node in (self.tree, *self.nodes):
+            for name in ("body", "orelse", "finalbody"):
+                body = getattr(node, name, None)
+                if isinstance(body, list):
+                    yield [statement for statement in body if statement in allowed]
+
+    def span(self, node: ast.AST) -> tuple[int, int]:
+        """Where a node begins and ends in the text."""
+        assert isinstance(node, (ast.expr, ast.stmt, ast.keyword, ast.arg))
+        assert node.end_lineno is not None
+        assert node.end_col_offset is not None
+        return self._offset(node.lineno, node.col_offset), self._offset(node.end_lineno, node.end_col_offset)
+
+    def source(self, node: ast.AST) -> str:
+        """A node as it is written."""
+        start, end = self.span(node)
+        return self.text[start:end]
+
+    def replaced(self, node: ast.AST, text: str) -> Edit:
+        """The edit that puts something else in the place of a node."""
+        return Edit(*self.span(node), text, self.where(node))
+
+    def wrapped(self, node: ast.AST, form: str) -> Edit:
+        """The edit that puts a node into a form such as ``"abs({})"``."""
+        return self.replaced(node, form.replace("{}", self.source(node)))
+
+    def indentation(self, statement: ast.stmt) -> str:
+        """The white space in front of a statement's first line."""
+        start = self._lines[statement.lineno - 1]
+        return self.text[start : self._offset(statement.lineno, statement.col_offset)]
+
+    def stands_alone(self, statement: ast.stmt) -> bool:
+        """Whether nothing but white space is in front of it on its line."""
+        return not self.indentation(statement).strip()
+
+    def line(self, offset: int) -> int:
+        """The number of the line of a place in the text, from 1."""
+        return self.text.count("\n", 0, offset) + 1
+
+    def where(self, node: ast.AST) -> str:
+        """The names of the definitions around a node."""
+        names = []
+        around: ast.AST | None = node
+        while around is not None:
+            if isinstance(around, _DEFINITIONS):
+                names.append(around.name)
+            around = self.parents.get(around)
+        return ".".join(reversed(names))
+
+    def ancestor(self, node: ast.AST, fits: Callable[[ast.AST], bool]) -> ast.AST | None:
+        """The nearest node around this one that fits."""
+        around = self.parents.get(node)
+        while around is not None and not fits(around):
+            around = self.parents.get(around)
+        return around
+
+    def _is_placed(self, node: ast.AST) -> bool:
+        """Whether the text at a node's place is the node: in some f-strings Python 3.11 is wrong about it."""
+        if not isinstance(node, ast.expr):
+            return True
+        if isinstance(node, ast.FormattedValue):
+            return False
+        if isinstance(getattr(node, "ctx", None), ast.Store):
+            return True
+        try:
+            there = ast.parse(f"({self.source(node)}\n)", mode="eval").body
+        except (SyntaxError, IndexError):
+            return isinstance(node, ast.Starred)
+        return ast.dump(there) == ast.dump(node)
+
+    def _offset(self, line: int, column: int) -> int:
+        return self._lines[line - 1] + len(self._bytes[line - 1][:column].decode())
+
+    def _wanted(self) -> list[ast.stmt]:
+        """The statements of the module that may be changed: all, or those that the subject needs."""
+        if not self._subject:
+            return self.tree.body
+        made = {name: statement for statement in self.tree.body for name in _made(statement)}
+        wanted: list[ast.stmt] = []
+        ahead = [self._subject]
+        while ahead:
+            statement = made.pop(ahead.pop(), None)
+            if statement is not None and statement not in wanted:
+                wanted.append(statement)
+                ahead += [node.id for node in ast.walk(statement) if isinstance(node, ast.Name)]
+        return sorted(wanted, key=lambda statement: statement.lineno)
+
+
+def _made(statement: ast.stmt) -> list[str]:
+    """The names that a statement of a module defines, imports left out."""
+    if isinstance(statement, _DEFINITIONS):
+        return [statement.name]
+    targets = statement.targets if isinstance(statement, ast.Assign) else []
+    return [target.id for target in targets if isinstance(target, ast.Name)]
+
+
+def _changeable(node: ast.AST, logs: bool) -> Iterator[ast.AST]:
+    if isinstance(node, (ast.Import, ast.ImportFrom)) or _is_docstring(node):
+        return
+    if not logs and isinstance(node, ast.Expr) and called(node.value) in SAYS:
+        return
+    yield node
+    for name, value in ast.iter_fields(node):
+        if name in ("annotation", "returns", "decorator_list", "bases") or (
+            name == "test" and _is_main_guard(node)
+        ):
+            continue
+        for child in value if isinstance(value, list) else [value]:
+            if isinstance(child, ast.AST):
+                yield from _changeable(child, logs)
+
+
+def _is_docstring(node: ast.AST) -> bool:
+    return (
+        isinstance(node, ast.Expr)
+        and isinstance(node.value, ast.Constant)
+        and isinstance(node.value.value, str)
+    )
+
+
+def _is_main_guard(node: ast.AST) -> bool:
+    return isinstance(node, ast.If) and "__name__" in {
+        inner.id for inner in ast.walk(node.test) if isinstance(inner, ast.Name)
+    }
+
+
+def called(node: ast.AST) -> str:
+    """The last name of what a call calls: ``"create_timer"`` of ``self.create_timer(…)``; empty where it is no call."""
+    if not isinstance(node, ast.Call):
+        return ""
+    function = node.func
+    return (
+        function.attr
+        if isinstance(function, ast.Attribute)
+        else function.id
+        if isinstance(function, ast.Name)
+        else ""
+    )
+
+
+def argument(call: ast.Call, place: int, keyword: str) -> ast.expr | None:
+    """An argument of a call, given by its place or by its name."""
+    for given in call.keywords:
+        if given.arg == keyword:
+            return given.value
+    plain = call.args[: place + 1]
+    if len(plain) <= place or any(isinstance(value, ast.Starred) for value in plain):
+        return None
+    return plain[place]
+
+
+def paced(code: Code) -> bool:
+    """Whether others can see at which pace a program works: it publishes, or serves an action."""
+    return any(called(call) in ("create_publisher", "ActionServer") for call in code.all(ast.Call))

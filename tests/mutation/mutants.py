@@ -1,0 +1,158 @@
+"""Mutants: right answers with one edit each, under ids that unrelated edits of the answer leave alone."""
+
+from __future__ import annotations
+
+import ast
+import difflib
+import hashlib
+from collections import Counter
+from dataclasses import dataclass
+from itertools import zip_longest
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+from tests.mutation.code import Code, Edit
+from tests.mutation.operators import LINES, PYTHON
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from tests.mutation.subjects import Subject
+
+LOGS_FREELY = ("lab_1_2.talker", "lab_1_3.server", "lab_1_4.server")
+"""Exercises in which nobody has to log anything, so that no mutant is made of a log line."""
+_HEADER = "=== "
+"""Begins a section of a bank workspace (``autograder/authoring/workspace_answers.py``)."""
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A right answer with one edit.
+
+    Attributes:
+        id: Such as ``"lab_1_2.talker/reference:number:1c9d02aa"``. Its last part is made of what is changed, not of
+            where in the file it stands.
+        subject: The right answer.
+        operator: The name of the operator.
+        line: The line of the answer that is changed, from 1.
+        text: The whole mutant.
+    """
+
+    id: str
+    subject: Subject
+    operator: str
+    line: int
+    text: str
+
+    @property
+    def name(self) -> str:
+        """Its id."""
+        return self.id
+
+    @property
+    def exercise(self) -> str:
+        """The exercise's id."""
+        return self.subject.exercise
+
+    @property
+    def digest(self) -> str:
+        """Changes with the text."""
+        return hashlib.sha256(self.text.encode()).hexdigest()[:16]
+
+    def difference(self) -> str:
+        """What is changed, as a unified diff without its head."""
+        before, after = self.subject.text.splitlines(), self.text.splitlines()
+        return "\n".join(list(difflib.unified_diff(before, after, lineterm="", n=1))[2:])
+
+    def verdict(self, seed: str, *, warm: bool) -> bytes:
+        """Judge it in this very process, a fork made for it; the verdict as JSON."""
+        listed = self.subject.listed
+        with TemporaryDirectory(prefix="mutant-") as folder:
+            file = Path(folder, "mutants", listed.file.name if listed else "solution.py")
+            file.parent.mkdir()
+            return self.subject.verdict(self.text, file, seed, warm=warm)
+
+
+def mutants(subject: Subject) -> list[Mutant]:
+    """All first-order mutants of an answer, in the order of its text; no two of them mean the same."""
+    seen = {_meaning(subject, subject.text)}
+    counts: Counter[str] = Counter()
+    found = []
+    for operator, edit in sorted(_edits(subject), key=lambda pair: pair[1].start):
+        text = edit.applied(subject.text)
+        meaning = _meaning(subject, text)
+        if meaning is None or meaning in seen:
+            continue
+        seen.add(meaning)
+        changed = (
+            f"{edit.where}\n{_lines(subject.text, edit)}\n{subject.text[edit.start : edit.end]}\n{edit.text}"
+        )
+        key = hashlib.sha256(changed.encode()).hexdigest()[:8]
+        counts[f"{operator}:{key}"] += 1
+        again = counts[f"{operator}:{key}"]
+        identity = f"{subject.name}:{operator}:{key}" + (f".{again}" if again > 1 else "")
+        line = subject.text.count("\n", 0, edit.start) + 1
+        found.append(Mutant(identity, subject, operator, line, text))
+    return found
+
+
+def _edits(subject: Subject) -> Iterator[tuple[str, Edit]]:
+    for start, text, is_python in _pieces(subject):
+        if is_python:
+            code = Code(text, subject=subject.root, logs=subject.exercise not in LOGS_FREELY)
+            found = [(operator.__name__, edit) for operator in PYTHON for edit in operator(code)]
+        else:
+            found = [(operator.__name__, edit) for operator in LINES for edit in operator(text)]
+        for name, edit in found:
+            yield name, Edit(edit.start + start, edit.end + start, edit.text, edit.where)
+
+
+def _pieces(subject: Subject) -> Iterator[tuple[int, str, bool]]:
+    """The files in an answer: where each begins in its text, the file, and whether it is Python."""
+    if subject.answer.endswith(".workspace"):
+        head, *sections = f"\n{subject.text}".split(f"\n{_HEADER}")
+        start = len(head)
+        for section in sections:
+            name, _, text = section.partition("\n")
+            start += len(_HEADER) + len(name) + 1
+            if " " not in name:  # a whole file, not one that is changed, moved or removed
+                yield start, text, name.endswith(".py")
+            start += len(text) + 1
+    else:
+        yield 0, subject.text, subject.answer.endswith(".py") or subject.listed is None
+
+
+def _lines(text: str, edit: Edit) -> str:
+    """The whole lines around an edit, without their indentation."""
+    start = text.rfind("\n", 0, edit.start) + 1
+    end = text.find("\n", edit.end)
+    return text[start : end if end >= 0 else None].strip()
+
+
+def _meaning(subject: Subject, text: str) -> str | None:
+    """What a text means to Python, whatever it looks like; None where it means nothing."""
+    if subject.listed is not None and not subject.answer.endswith(".py"):
+        return text
+    try:
+        return ast.dump(ast.parse(text))
+    except SyntaxError:
+        return None
+
+
+def sampled(found: list[Mutant], size: int, seed: int) -> list[Mutant]:
+    """A sample in which every exercise has its share, in the order of ``found``.
+
+    What is in it depends on ids alone, so a new answer or a new operator leaves most of a sample as it was.
+
+    Args:
+        found: All mutants.
+        size: How many are wanted; all of them where there are no more.
+        seed: Decides which.
+    """
+    ahead: dict[str, list[Mutant]] = {}
+    for mutant in sorted(found, key=lambda mutant: hashlib.sha256(f"{seed}:{mutant.id}".encode()).digest()):
+        ahead.setdefault(mutant.exercise, []).append(mutant)
+    turns = [mutant for turn in zip_longest(*ahead.values()) for mutant in turn if mutant is not None]
+    wanted = {mutant.id for mutant in turns[:size]}
+    return [mutant for mutant in found if mutant.id in wanted]

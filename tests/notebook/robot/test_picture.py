@@ -1,0 +1,57 @@
+"""The robot's picture: where it is drawn, and the same in words."""
+
+from __future__ import annotations
+
+import base64
+import math
+import re
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+
+from autograder.notebook.robot.motion import START, Pose, Velocity
+from autograder.notebook.robot.node import RobotState
+from autograder.notebook.robot.picture import RobotPicture
+
+
+def place(picture: RobotPicture) -> tuple[float, float, float]:
+    """Where the robot is drawn: pixels, and degrees clockwise."""
+    found = re.search(
+        r'class="robot" transform="translate\(([\d.]+), ([\d.]+)\) rotate\(([-\d.]+)\)', picture.svg()
+    )
+    assert found is not None
+    return tuple(map(float, found.groups()))  # type: ignore[return-value]
+
+
+def test_a_metre_ahead_is_to_the_right_and_a_metre_to_the_left_is_up() -> None:
+    here = place(RobotPicture(RobotState()))
+    ahead = place(RobotPicture(RobotState(Pose(START.x + 1, START.y, 0.0))))
+    left = place(RobotPicture(RobotState(Pose(START.x, START.y + 1, math.pi / 2))))
+    assert ahead[0] - here[0] == here[1] - left[1] > 0
+    assert (ahead[1], left[0]) == (here[1], here[0])
+    assert left[2] == -90.0
+
+
+def test_the_words_say_what_is_seen() -> None:
+    state = RobotState(Pose(5.0, 2.0, math.pi), Velocity(0.5), lamp=True)
+    words = repr(RobotPicture(state))
+    assert words == (
+        "The robot is in the right room, at x = 5.00 m, y = 2.00 m, heading 180°. "
+        "It moves at 0.50 m/s and turns at 0.00 rad/s. Its lamp is on."
+    )
+    html = RobotPicture(state)._repr_html_()
+    assert f'alt="{words}"' in html
+    assert "A wall is in its way." in repr(RobotPicture(replace(state, bumped=True)))
+    assert "It stands still." in repr(RobotPicture(RobotState()))
+
+
+def test_it_is_whole_xml_in_every_state() -> None:
+    for state in (RobotState(), RobotState(lamp=True, bumped=True, ranges=(1.0, 2.0, 3.0))):
+        picture = RobotPicture(state, (START.point, (2.0, 2.0)), START)
+        data = re.findall(r"base64,([^\"]+)", picture._repr_html_())[0]
+        assert ET.fromstring(base64.b64decode(data)).tag.endswith("svg")
+
+
+def test_it_glides_the_short_way_round() -> None:
+    picture = RobotPicture(RobotState(replace(START, heading=-3.1)), (), replace(START, heading=3.1))
+    turns = [float(turn) for turn in re.findall(r"rotate\(([-\d.]+)deg\)", picture.svg())]
+    assert abs(turns[1] - turns[0]) < 10

@@ -1,0 +1,75 @@
+"""The robot in a kernel: its picture follows it, and a second run of the cell takes the place of the first."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import nbformat
+import pytest
+from nbclient import NotebookClient
+
+START = """
+import time
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+from autograder.notebook import spin_in_background, start_robot, start_ros
+start_ros()
+def until(holds):
+    while not holds():
+        time.sleep(0.01)
+def drive(robot):
+    node = Node("driver")
+    publisher = node.create_publisher(Twist, "/cmd_vel", 10)
+    command = Twist()
+    command.linear.x = 0.5
+    node.create_timer(0.1, lambda: publisher.publish(command))
+    driving = spin_in_background(node, name="driver")
+    until(lambda: robot.state.pose.x > 1.2)
+    driving.stop()
+    until(lambda: robot.state.velocity.forward == 0)
+"""
+
+pytestmark = pytest.mark.ros
+
+
+@pytest.fixture(autouse=True)
+def _as_in_a_notebook(domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+    monkeypatch.delenv("PYTEST_CURRENT_TEST")
+
+
+def run(*sources: str) -> list[Any]:
+    cells = [
+        {"cell_type": "code", "source": source, "metadata": {}, "outputs": []} for source in (START, *sources)
+    ]
+    notebook = nbformat.from_dict({"nbformat": 4, "nbformat_minor": 4, "metadata": {}, "cells": cells})
+    NotebookClient(notebook, timeout=180, kernel_name="python3").execute()
+    return [cell.outputs for cell in notebook.cells[1:]]
+
+
+def words(outputs: Any) -> str:
+    """The one picture, in words."""
+    (shown,) = (output.data["text/plain"] for output in outputs if output.output_type == "display_data")
+    return str(shown)
+
+
+def test_the_picture_follows_the_robot_until_it_stops() -> None:
+    (outputs,) = run("robot = start_robot()\ndrive(robot)\nrobot.stop()")
+    assert "x = 1.00 m" not in words(outputs)
+    assert "It stands still." in words(outputs)
+
+
+def test_a_second_run_of_the_cell_begins_anew_and_says_nothing_of_the_first() -> None:
+    cell = "robots = [*globals().get('robots', ()), start_robot()]"
+    _, again, said = run(
+        cell, cell, "print(robots[0].running, robots[1].running, robots[0]); robots[1].stop()"
+    )
+    assert "x = 1.00 m" in words(again)
+    assert [output.output_type for output in again] == ["display_data"]
+    assert said[0].text == "False True The robot has stopped: run the cell again that started it.\n"
+
+
+def test_shown_again_the_picture_above_rests() -> None:
+    above, below, _ = run("robot = start_robot()", "robot.show(); drive(robot)", "robot.stop()")
+    assert "x = 1.00 m" in words(above)
+    assert "x = 1.00 m" not in words(below)

@@ -1,0 +1,121 @@
+"""Lines are added to a package's files once, whatever is there and however often it is asked for."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.notebook.package_files import add_definition, add_dependencies, add_entry_points
+from environment.ros2_command import pkg_templates
+from environment.ros2_command.pkg_templates import Package
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+INTERFACES = "my_robot_interfaces"
+HELLO = "simple_node = my_robot_pkg.simple_node:main"
+TALKER = "talker = my_robot_pkg.talker:main"
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Path:
+    package = tmp_path / "src" / "my_robot_pkg"
+    package.mkdir(parents=True)
+    who = ("TODO: what it is", "Apache-2.0", "me", "me@example.com")
+    made = Package("my_robot_pkg", "ament_python", 3, *who, ("rclpy", "std_msgs"), None)
+    (package / "setup.py").write_text(pkg_templates.setup_py(made))
+    (package / "package.xml").write_text(pkg_templates.package_xml(made))
+    interfaces = tmp_path / "src" / "my_robot_interfaces"
+    (interfaces / "action").mkdir(parents=True)
+    (interfaces / "CMakeLists.txt").write_text(
+        'project(x)\nrosidl_generate_interfaces(${PROJECT_NAME} "srv/AddTwoInts.srv")\nament_package()\n'
+    )
+    (interfaces / "package.xml").write_text("<package>\n  <export>\n  </export>\n</package>\n")
+    return tmp_path
+
+
+def executables(workspace: Path) -> list[str]:
+    tree = ast.parse((workspace / "src/my_robot_pkg/setup.py").read_text())
+    (keyword,) = (n for n in ast.walk(tree) if isinstance(n, ast.keyword) and n.arg == "entry_points")
+    found: dict[str, list[str]] = ast.literal_eval(keyword.value)
+    return found["console_scripts"]
+
+
+def test_entry_points_are_added_below_those_that_are_there(workspace: Path) -> None:
+    assert add_entry_points(workspace, []) == "my_robot_pkg has no executable yet."
+    assert HELLO in add_entry_points(workspace, [HELLO])
+    said = add_entry_points(workspace, [TALKER])
+    assert executables(workspace) == [HELLO, TALKER]
+    assert said.splitlines() == ["Executables of my_robot_pkg:", f"  {HELLO}", f"  {TALKER}"]
+
+
+def test_an_earlier_lab_takes_nothing_away(workspace: Path) -> None:
+    add_entry_points(workspace, [HELLO])
+    add_entry_points(workspace, [TALKER])
+    before = (workspace / "src/my_robot_pkg/setup.py").read_text()
+    add_entry_points(workspace, [HELLO])
+    assert (workspace / "src/my_robot_pkg/setup.py").read_text() == before
+
+
+def test_a_corrected_entry_point_replaces_the_wrong_one(workspace: Path) -> None:
+    add_entry_points(workspace, ["simple_node = simple_node:main", TALKER])
+    add_entry_points(workspace, ["simple_node=my_robot_pkg.simple_node:main"])
+    assert executables(workspace) == ["simple_node=my_robot_pkg.simple_node:main", TALKER]
+    add_entry_points(workspace, ["say = my_robot_pkg.talker:main"])
+    assert executables(workspace)[1:] == ["say = my_robot_pkg.talker:main"]
+
+
+@pytest.mark.parametrize("entry", ["simple_node", "simple_node: my_robot_pkg", "a b = c:d", "x = y", 3])
+def test_what_is_no_entry_point_changes_nothing(workspace: Path, entry: str) -> None:
+    before = (workspace / "src/my_robot_pkg/setup.py").read_text()
+    assert "is no entry point" in add_entry_points(workspace, [TALKER, entry])
+    assert (workspace / "src/my_robot_pkg/setup.py").read_text() == before
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [(None, "First make the package"), ("setup(", "cannot be read"), ("setup()", "has no list")],
+)
+def test_a_setup_that_cannot_be_used(workspace: Path, text: str | None, words: str) -> None:
+    setup = workspace / "src/my_robot_pkg/setup.py"
+    if text is None:
+        setup.unlink()
+    else:
+        setup.write_text(text)
+    assert words in add_entry_points(workspace, [TALKER])
+
+
+def test_letters_of_other_alphabets_do_not_shift_the_list(workspace: Path) -> None:
+    setup = workspace / "src/my_robot_pkg/setup.py"
+    setup.write_text("setup(description='für Zoë', entry_points={'console_scripts': []})\n")
+    add_entry_points(workspace, [TALKER])
+    assert executables(workspace) == [TALKER]
+    assert "für Zoë" in setup.read_text()
+
+
+def test_a_dependency_is_added_once(workspace: Path) -> None:
+    for _ in range(2):
+        said = add_dependencies(workspace, ["my_robot_interfaces", "std_msgs"])
+    assert said == "Dependencies of my_robot_pkg: rclpy, std_msgs, my_robot_interfaces"
+    text = (workspace / "src/my_robot_pkg/package.xml").read_text()
+    assert text.count("<depend>my_robot_interfaces</depend>") == 1
+    assert text.index("my_robot_interfaces") < text.index("<export>")
+    assert "First make" in add_dependencies(workspace, ["a"], package="nobody")
+
+
+def test_a_definition_is_generated_once_it_is_written(workspace: Path) -> None:
+    folder = workspace / "src/my_robot_interfaces"
+    action = "action/Fibonacci.action"
+    assert add_definition(workspace, INTERFACES, action) == f"{action} is not written yet."
+    (folder / action).write_text("# TODO\n")
+    assert "not written yet" in add_definition(workspace, INTERFACES, action)
+    (folder / action).write_text("int32 order\n---\nint32[] sequence\n---\nint32[] partial_sequence\n")
+    for _ in range(2):
+        said = add_definition(workspace, INTERFACES, action, ["action_msgs"])
+    assert "generates: srv/AddTwoInts.srv, action/Fibonacci.action" in said
+    assert (folder / "CMakeLists.txt").read_text().count("Fibonacci") == 1
+    assert (folder / "package.xml").read_text().count("<depend>action_msgs</depend>") == 1
+    (folder / "CMakeLists.txt").write_text("project(x)\n")
+    assert "generates nothing yet" in add_definition(workspace, INTERFACES, action)

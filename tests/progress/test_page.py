@@ -1,0 +1,77 @@
+"""The course page and its words for a terminal."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from click.testing import CliRunner
+
+from autograder import course, exercises, journal
+from autograder.cards.certificate import WORDS, certificate_svg
+from autograder.cli import cli
+from autograder.journal import Entry
+from autograder.progress.page import page_html, trouble_html
+from autograder.progress.standing import standing
+from autograder.progress.text import hours
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+ROOT = course.root()
+TALKER = Entry("check", "lab_1_2.talker", 1, 10, 10)
+
+
+def page(*entries: Entry) -> str:
+    return page_html(standing(ROOT, ROOT / course.CHAPTERS, entries), "/user/ann/", "token")
+
+
+def test_it_fetches_nothing_from_elsewhere_and_leads_below_the_servers_address() -> None:
+    html = page(TALKER)
+    assert not re.findall(r'(?:src|href|url)\s*[=(]\s*"?(?:https?:)?//', html)
+    assert 'href="/user/ann/lab/tree/01_ros2_fundamentals/lab_1_2.ipynb"' in html
+
+
+def test_what_a_chapter_is_called_is_text() -> None:
+    found = standing(ROOT, ROOT / course.CHAPTERS, ())
+    named = replace(found.chapters[0], title="<script>alert(1)</script>", finished=1.0)
+    html = page_html(replace(found, chapters=(named,)), "/", "token")
+    assert "<script>alert" not in html
+    assert "&lt;script&gt;alert" in html
+
+
+def test_a_course_that_cannot_be_read_still_has_a_way_to_the_notebooks() -> None:
+    html = trouble_html("chapter.toml: <what> is that?", "/user/ann/")
+    assert "&lt;what&gt; is that?" in html
+    assert 'href="/user/ann/lab"' in html
+
+
+def test_a_certificate_comes_with_the_last_point_and_says_what_it_is_worth() -> None:
+    everything = [Entry("check", exercise, 86_400, 10, 10) for exercise in exercises.all_ids()]
+    assert WORDS not in page(*everything[1:]).partition("</h2>")[2].partition("</section>")[0]
+    assert WORDS in page(*everything)
+    svg = certificate_svg("Nodes & <Topics>", 130, 86_400)
+    assert "Nodes &amp; &lt;Topics&gt;" in svg
+    assert ("All 130 points" in svg, "1970" in svg, "not a grade" in svg) == (True, True, True)
+
+
+def test_the_terminal_says_the_same(tmp_path: Path) -> None:
+    journal.note(TALKER, tmp_path / journal.NAME)
+    said = CliRunner().invoke(cli, ["progress", "--folder", str(tmp_path)])
+    assert said.exit_code == 0
+    assert re.search(r"\[~\] Lab 1\.2: A talker and a listener +45 min +10 of 20 points", said.output)
+    assert "Go on with Lab 1.2" in said.output
+    data = json.loads(CliRunner().invoke(cli, ["progress", "--json", "--folder", str(tmp_path)]).output)
+    lab = next(one for one in data["chapters"][0]["notebooks"] if one["name"] == "lab_1_2")
+    assert (data["next"], lab["state"], lab["points"]) == ("lab_1_2", "begun", 10)
+
+
+def test_nobody_is_told_minutes_that_nobody_has_measured() -> None:
+    assert [hours(minutes) for minutes in (40, 60, 95, 455)] == [
+        "40 minutes",
+        "1 hour",
+        "1½ hours",
+        "7½ hours",
+    ]

@@ -1,0 +1,66 @@
+"""The map of the course: its order, what is done, and where to go on."""
+
+from __future__ import annotations
+
+from autograder import course, exercises
+from autograder.journal import Entry
+from autograder.progress.standing import Standing, standing
+
+ROOT = course.root()
+FOLDER = ROOT / course.CHAPTERS
+
+
+def after(*entries: Entry) -> Standing:
+    return standing(ROOT, FOLDER, entries)
+
+
+def full(exercise: str, time: float = 1) -> Entry:
+    points = exercises.get(exercise).points
+    return Entry("check", exercise, time, points, points)
+
+
+def exercises_of(notebook: str) -> list[str]:
+    return [name for name in exercises.all_ids() if name.startswith(f"{notebook}.")]
+
+
+def test_it_has_the_notebooks_in_their_order_with_their_titles_and_minutes() -> None:
+    chapter = after().chapters[0]
+    assert [one.name for one in chapter.notebooks] == [lab.name for lab in course.chapters(ROOT)[0].labs]
+    assert all((FOLDER / one.path).is_file() and one.minutes for one in chapter.notebooks)
+    talker = next(one for one in chapter.notebooks if one.name == "lab_1_2")
+    assert talker.title == "Lab 1.2: A talker and a listener"
+    assert [one.id for one in talker.exercises] == ["lab_1_2.talker", "lab_1_2.listener"]
+
+
+def test_points_make_a_notebook_done_and_a_mark_one_that_is_only_read() -> None:
+    lines = [
+        full("lab_1_2.talker"),
+        Entry("check", "lab_1_2.listener", 2, 99, 10),
+        Entry("read", "summary", 3),
+    ]
+    states = {one.name: one for one in after(*lines).chapters[0].notebooks}
+    assert (states["lab_1_2"].state, states["lab_1_2"].points) == ("done", states["lab_1_2"].possible)
+    assert states["summary"].state == "done"
+    states = {one.name: one for one in after(lines[0], Entry("unread", "summary", 4)).chapters[0].notebooks}
+    assert (states["lab_1_2"].state, states["summary"].state) == ("begun", "new")
+
+
+def test_one_goes_on_where_one_was_and_then_with_what_was_left_out() -> None:
+    def following(*entries: Entry) -> str | None:
+        found = after(*entries).following
+        return found.name if found else None
+
+    names = [one.name for chapter in after().chapters for one in chapter.notebooks]
+    assert following() == names[0]
+    assert following(full("lab_1_2.talker")) == "lab_1_2"
+    assert following(full("lab_1_2.talker"), full("lab_1_2.listener")) == names[names.index("lab_1_2") + 1]
+    everything = [full(exercise) for exercise in exercises.all_ids()]
+    read = [Entry("read", name, 2) for name in names]
+    assert following(*everything, *read[1:]) == (None if exercises_of(names[0]) else names[0])
+    assert following(*everything, *read) is None
+
+
+def test_a_chapter_is_finished_with_its_last_point_and_not_before() -> None:
+    lines = [full(exercise, time) for time, exercise in enumerate(exercises.all_ids(), 1)]
+    assert after(*lines[:-1]).chapters[-1].finished is None
+    assert after(*lines).chapters[-1].finished == len(lines)

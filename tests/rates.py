@@ -1,0 +1,309 @@
+"""``python -m tests.rates``: how often the judge is right and how often it says the same, measured and published.
+
+Judges the bank, a sample of mutants, the bank in a soak, and a class again and again; keeps the figures in
+``docs/fairness.json`` and puts them into ``docs/fairness.md``. Each part runs as the command that stands in its row.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from autograder import course
+from autograder.authoring.answers import answers
+from autograder.verdict import from_json
+from benchmarks.machine import Machine, machine
+from benchmarks.results import replace_between
+from tests.mutation.report import Report, Tally
+from tests.soak import Soak
+from tests.steady_class import Steadiness
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from autograder.authoring.answers import Answer
+    from autograder.verdict import Verdict
+
+PAGE = course.root() / "docs" / "fairness.md"
+RESULTS = PAGE.with_suffix(".json")
+BEGIN, END = "<!-- rates: written by tests.rates -->", "<!-- end of rates -->"
+
+
+@dataclass(frozen=True)
+class Form:
+    """How much is measured.
+
+    Attributes:
+        name: ``"full"`` or ``"short"``.
+        bank: Parts of the names of answers that are judged once and in the soak; all where empty.
+        mutants: How many are judged.
+        judgements: Of the soak.
+        times: How often the class is graded.
+    """
+
+    name: str
+    bank: tuple[str, ...]
+    mutants: int
+    judgements: int
+    times: int
+
+
+FULL = Form("full", (), 300, 1_000, 30)
+SHORT = Form("short", ("lab_1_2.talker/right", "lab_1_3.client"), 26, 150, 2)
+
+
+@dataclass(frozen=True)
+class Bank:
+    """What came of judging every answer of the bank once.
+
+    Attributes:
+        right: Right answers.
+        accepted: Those of them with full marks.
+        wrong: Wrong answers.
+        rejected: Those of them without full marks.
+        diagnosed: Those of them with a diagnosis that is listed for them.
+        first: Those of them with the first one that is listed.
+        objections: What was not as expected.
+    """
+
+    right: int
+    accepted: int
+    wrong: int
+    rejected: int
+    diagnosed: int
+    first: int
+    objections: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Measured:
+    """How a part was measured.
+
+    Attributes:
+        form: ``"full"`` or ``"short"``.
+        when: The day.
+        minutes: Wall time.
+        command: What measures this part alone.
+    """
+
+    form: str
+    when: str
+    minutes: float
+    command: str
+
+
+@dataclass(frozen=True)
+class Rates:
+    """All parts, each with how it was measured; None where a part was never measured."""
+
+    machine: Machine
+    bank: tuple[Measured, Bank] | None = None
+    mutants: tuple[Measured, Report] | None = None
+    soak: tuple[Measured, Soak] | None = None
+    again: tuple[Measured, Steadiness] | None = None
+
+
+PARTS = ("bank", "mutants", "soak", "again")
+
+
+class NotMeasured(RuntimeError):
+    """A part could not be measured. The message has the last lines of what it said."""
+
+
+def measured(part: str, form: Form) -> Any:
+    """Measure a part; what stands in :class:`Rates` under its name.
+
+    Args:
+        part: One of :data:`PARTS`.
+        form: How much.
+
+    Raises:
+        NotMeasured: It could not be.
+    """
+    commands: dict[str, list[str]] = {
+        "bank": ["tests/judge/bank.py", "--lines", "--warm", "--jobs", "6", *form.bank],
+        "mutants": ["-m", "tests.mutation", "--sample", str(form.mutants), "--json"],
+        "soak": ["-m", "tests.soak", "--judgements", str(form.judgements), "--json", *form.bank],
+        "again": ["-m", "tests.steady_class", "--times", str(form.times), "--json"],
+    }
+    read: dict[str, Callable[[str], object]] = {
+        "bank": lambda said: bank_rates(dict(line.split(" ", 1) for line in said.splitlines())),
+        "mutants": lambda said: msgspec.json.decode(said, type=Report),
+        "soak": lambda said: msgspec.json.decode(said, type=Soak),
+        "again": lambda said: msgspec.json.decode(said, type=Steadiness),
+    }
+    command = commands[part]
+    print(f"{part}: python {' '.join(command)}", file=sys.stderr, flush=True)
+    began = time.monotonic()
+    done = subprocess.run(
+        [sys.executable, *command], cwd=course.root(), stdout=subprocess.PIPE, text=True, check=False
+    )
+    # 1 is for what is not as it should be, which is a figure; the bank's lines have it in them.
+    if done.returncode not in ((0,) if part == "bank" else (0, 1)) or not done.stdout:
+        raise NotMeasured(f"{part}: exit code {done.returncode}\n{done.stdout[-500:]}")
+    minutes = (time.monotonic() - began) / 60
+    told = " ".join(word for word in command if word not in ("--json", "--lines"))
+    today = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
+    return Measured(form.name, today, minutes, f"python {told}"), read[part](done.stdout)
+
+
+def bank_rates(lines: dict[str, str], listed: Iterable[Answer] | None = None) -> Bank:
+    """Count the verdicts on answers of the bank.
+
+    Args:
+        lines: Verdicts as JSON, by the answers' names.
+        listed: The answers; those of the bank by default.
+    """
+    judged = [
+        (answer, from_json(lines[answer.name])) for answer in listed or answers() if answer.name in lines
+    ]
+    right = [verdict for answer, verdict in judged if not answer.diagnoses]
+    wrong = [(answer, verdict) for answer, verdict in judged if answer.diagnoses]
+    objections = [f"{a.name}: {why}" for a, verdict in judged if (why := a.objection(verdict))]
+    return Bank(
+        right=len(right),
+        accepted=sum(verdict.passed for verdict in right),
+        wrong=len(wrong),
+        rejected=sum(verdict.state == "failed" for _, verdict in wrong),
+        diagnosed=sum(_key(verdict) in answer.diagnoses for answer, verdict in wrong),
+        first=sum(_key(verdict) == answer.diagnoses[0] for answer, verdict in wrong),
+        objections=tuple(objections),
+    )
+
+
+def _key(verdict: Verdict) -> str:
+    return verdict.diagnosis.key if verdict.diagnosis else ""
+
+
+def markdown(rates: Rates) -> str:
+    """The figures as a piece of Markdown."""
+    on = rates.machine
+    lines = [
+        f"Measured on {on.cores} cores with {on.memory_gib:g} GiB, {on.system}, CPython {on.python}, "
+        "by `python -m tests.rates`.",
+        "",
+        "| what | rate | how it was measured |",
+        "| --- | --- | --- |",
+    ]
+    details: list[str] = []
+    if rates.bank:
+        how, bank = rates.bank
+        lines += [
+            _row("right answers of the bank that are accepted", _of(bank.accepted, bank.right), how),
+            _row("wrong answers of the bank that are rejected", _of(bank.rejected, bank.wrong), how),
+            _row("wrong answers with a diagnosis that is right", _of(bank.diagnosed, bank.wrong), how),
+            _row("wrong answers with the most useful diagnosis", _of(bank.first, bank.wrong), how),
+        ]
+        details += [f"- bank: {objection}" for objection in bank.objections]
+    if rates.mutants:
+        how, found = rates.mutants
+        total = found.total
+        judged = total.killed + total.survived
+        sample = f"{how.command}: {judged + total.equivalent + total.not_checked} of {found.made}"
+        lines += [
+            _row(
+                "mutants of right answers that are rejected",
+                _of(total.killed, judged),
+                replace(how, command=sample),
+            ),
+            _row("rejected mutants with a specific diagnosis", _of(total.told, total.killed), how),
+        ]
+        details += [f"- mutant that survived: `{survivor.id}`" for survivor in found.survivors]
+    if rates.soak:
+        how, soak = rates.soak
+        same = soak.repeated - len(soak.changed)
+        beside = f"{how.command}: {soak.judgements} judgements, {soak.jobs} at a time beside {soak.busy} busy loops"
+        what = "answers with the same points and diagnosis each time, in random order under load"
+        lines.append(_row(what, _of(same, soak.repeated), replace(how, command=beside)))
+        details += [f"- changed in the soak: {name}: {_ends(ends)}" for name, ends in soak.changed.items()]
+    if rates.again:
+        how, again = rates.again
+        number = again.verdicts // again.times if again.times else 0
+        sizes = f"{how.command}: {again.students} students, {again.assignments} assignments"
+        what = f"verdicts that stay the same when a class is graded {again.times} times"
+        lines.append(_row(what, _of(number - len(again.changed), number), replace(how, command=sizes)))
+        details += [f"- changed in the class: {name}: {_ends(ends)}" for name, ends in again.changed.items()]
+    if rates.mutants:
+        lines += ["", *_by_exercise(rates.mutants[1].tallies)]
+    return "\n".join([*lines, *(["", *details] if details else [])]) + "\n"
+
+
+def _row(what: str, rate: str, how: Measured) -> str:
+    command, colon, more = how.command.partition(": ")
+    return f"| {what} | {rate} | `{command}`{colon}{more}; {how.form} form, {how.when}, {how.minutes:.0f} minutes |"
+
+
+def _of(some: int, all_: int) -> str:
+    return f"{some} of {all_} ({some / all_:.1%})" if all_ else "none was judged"
+
+
+def _ends(ends: dict[str, int]) -> str:
+    return "; ".join(f"{number} times {end}" for end, number in ends.items())
+
+
+def _by_exercise(tallies: dict[str, Tally]) -> list[str]:
+    rows = [
+        f"| {name} | {tally.killed} | {tally.told} | {tally.survived} | {tally.equivalent} | {tally.share:.1%} |"
+        for name, tally in tallies.items()
+    ]
+    return [
+        "| mutants of | rejected | specific diagnosis | survived | equivalent | share rejected |",
+        "| --- | --- | --- | --- | --- | --- |",
+        *rows,
+    ]
+
+
+def write(rates: Rates, path: Path) -> None:
+    """Keep the figures as JSON."""
+    path.write_bytes(msgspec.json.format(msgspec.json.encode(rates), indent=2) + b"\n")
+
+
+def read(path: Path) -> Rates:
+    """Read kept figures.
+
+    Raises:
+        OSError: They cannot be read.
+        msgspec.DecodeError: They are none.
+    """
+    return msgspec.json.decode(path.read_bytes(), type=Rates)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Measure, keep, put into the page; 1 where a part could not be measured."""
+    parser = argparse.ArgumentParser(prog="python -m tests.rates", description=__doc__)
+    parser.add_argument(
+        "parts", nargs="*", help=f"only these, the others as they are kept: {', '.join(PARTS)}"
+    )
+    parser.add_argument("--short", action="store_true", help="minutes instead of three quarters of an hour")
+    parser.add_argument("--output", type=Path, help="keep the figures here, and leave the page alone")
+    options = parser.parse_args(arguments)
+    if unknown := set(options.parts) - set(PARTS):
+        parser.error(f"no such part: {', '.join(sorted(unknown))}")
+    output: Path = options.output or RESULTS
+    rates = read(output) if output.exists() else Rates(machine())
+    rates = replace(rates, machine=machine())
+    failed = []
+    for part in options.parts or PARTS:
+        try:
+            rates = replace(rates, **{part: measured(part, SHORT if options.short else FULL)})
+        except NotMeasured as error:
+            failed.append(part)
+            print(error, file=sys.stderr)
+            continue
+        write(rates, output)
+        if output == RESULTS:
+            replace_between(PAGE, BEGIN, END, markdown(rates))
+    print(markdown(rates))
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

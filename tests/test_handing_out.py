@@ -1,0 +1,188 @@
+"""What students are handed: it checks their nodes, and nothing in it is a solution."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import zipfile
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder import exercises, masters
+from autograder.handing_out import CannotHandOut, hand_out
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+ROOT = Path(__file__).resolve().parents[1]
+SOLUTION = re.compile(r"### BEGIN SOLUTION\n(.*?)### END SOLUTION", re.DOTALL)
+
+
+@pytest.fixture(scope="module")
+def handed_out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("handed") / "course"
+    hand_out(place, ROOT)
+    return place
+
+
+def lines(text: str) -> list[str]:
+    return [line.strip() for line in text.splitlines() if line.strip()]
+
+
+def pairs(text: str) -> set[tuple[str, str]]:
+    """Each two lines that follow each other, without those that say nothing."""
+    told = [line for line in lines(text) if "TODO" not in line]  # what a stub keeps of its region
+    return {(a, b) for a, b in pairwise(told) if len(a + b) > 30}
+
+
+def solutions() -> dict[str, set[tuple[str, str]]]:
+    """By the lab."""
+    return {
+        masters.lab_name(master): set().union(
+            *map(pairs, SOLUTION.findall(master.read_text(encoding="utf-8")))
+        )
+        for master in masters.masters(ROOT)
+    }
+
+
+def texts(folder: Path) -> Iterator[tuple[Path, str]]:
+    for path in sorted(path for path in folder.rglob("*") if path.is_file()):
+        try:
+            text = path.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            continue
+        # A notebook's lines are JSON strings.
+        yield (
+            path,
+            re.sub(r'^\s*"|\\n",?$|",?$', "", text, flags=re.MULTILINE) if path.suffix == ".ipynb" else text,
+        )
+
+
+def test_no_two_lines_of_a_solution_are_in_it(handed_out: Path) -> None:
+    by_lab = solutions()
+    everything = set().union(*by_lab.values())
+    assert len(everything) > 60
+    # What one lab asks for is given in another one that builds on it, and an interface package comes with the course.
+    found = [
+        (path.name, pair)
+        for path, text in texts(handed_out)
+        if path.name != "package.xml"
+        for pair in pairs(text) & (by_lab[path.stem] if path.suffix == ".ipynb" else everything)
+    ]
+    assert not found
+
+
+def test_a_solution_that_slipped_in_would_be_found(tmp_path: Path) -> None:
+    region = SOLUTION.findall((ROOT / "solutions/01_ros2_fundamentals/lab_1_2/lab.md").read_text())[0]
+    (tmp_path / "talker.py").write_text(region)
+    assert any(pairs(text) & solutions()["lab_1_2"] for _, text in texts(tmp_path))
+
+
+def test_neither_masters_nor_answers_nor_the_grader_are_in_it(handed_out: Path) -> None:
+    names = {path.relative_to(handed_out).as_posix() for path in handed_out.rglob("*")}
+    assert not [
+        name for name in names if "solutions" in name.split("/") or name.endswith(("lab.md", ".answers"))
+    ]
+    assert not [
+        name for name in names if name.startswith(("tests", "autograder/grading", "autograder/masters"))
+    ]
+    assert "exercises/01_ros2_fundamentals/lab_1_2/talker.reference.json" in names
+    assert os.access(handed_out / "course", os.X_OK)
+
+
+def test_its_pages_lead_to_what_is_in_it(handed_out: Path) -> None:
+    for page in (handed_out / "README.md", handed_out / "docs/students-guide.md"):
+        for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text()):
+            assert (page.parent / target).exists(), f"{page.name}: {target}"
+
+
+def run(place: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    environ = os.environ | {"PYTHONPATH": str(place), "AUTOGRADER_COURSE": str(place)}
+    return subprocess.run(
+        [sys.executable, "-m", "autograder", *words],
+        env=environ,
+        cwd=place,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_it_lists_its_exercises_and_says_what_it_cannot_do(handed_out: Path) -> None:
+    listed = run(handed_out, "check")
+    assert [line.split()[0] for line in listed.stdout.splitlines()] == list(exercises.all_ids())
+    grading = run(handed_out, "grade", "class")
+    assert (grading.returncode, grading.stderr) == (
+        2,
+        "autograder: this is the students' part of the course: that command is not in it\n",
+    )
+    again = run(handed_out, "hand-out", "more")
+    assert again.returncode == 2
+    done = subprocess.run([handed_out / "course", "test"], capture_output=True, text=True, check=False)
+    assert (done.returncode, "no tests" in done.stderr) == (2, True)
+
+
+def test_it_knows_the_map_of_the_course_and_puts_a_notebook_back(handed_out: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(handed_out / "chapters", tmp_path / "chapters"))
+    said = run(handed_out, "progress", "--folder", str(folder))
+    here = run(ROOT, "progress", "--folder", str(folder))
+    assert (said.stdout, said.returncode) == (here.stdout, 0)
+    notebook = folder / "01_ros2_fundamentals/lab_1_2.ipynb"
+    released = notebook.read_bytes()
+    notebook.write_text("work")
+    done = run(handed_out, "reset", "lab_1_2", "--folder", str(folder))
+    assert (done.returncode, notebook.read_bytes()) == (0, released), done.stderr
+    assert [path.read_text() for path in notebook.parent.glob("* (your copy*")] == ["work"]
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+@pytest.mark.parametrize(("kind", "code"), [("right", 0), ("wrong", 1)])
+def test_it_checks_a_program(handed_out: Path, kind: str, code: int) -> None:
+    program = next(exercises.path("lab_1_2.talker").with_suffix(".answers").joinpath(kind).glob("*.py"))
+    checked = run(handed_out, "check", "lab_1_2.talker", "--", sys.executable, str(program))
+    assert checked.returncode == code, checked.stdout + checked.stderr
+
+
+def test_the_same_course_gives_the_same_zip(tmp_path: Path) -> None:
+    first, second = tmp_path / "a" / "course.zip", tmp_path / "b" / "course.zip"
+    for place in (first, second):
+        hand_out(place, ROOT, as_zip=True)
+    assert first.read_bytes() == second.read_bytes()
+    with zipfile.ZipFile(first) as packed:
+        assert packed.getinfo("course/course").external_attr >> 16 == 0o755
+
+
+def test_nothing_that_somebody_has_written_in_the_chapters_is_in_it(tmp_path: Path) -> None:
+    course = tmp_path / "course"
+    for name in ("chapters", "solutions"):
+        shutil.copytree(ROOT / name, course / name)
+    chapter = course / "chapters/01_ros2_fundamentals"
+    (chapter / "ros2_ws/src").mkdir(parents=True)
+    (chapter / "ros2_ws/src/talker.py").write_text("my own solution")
+    (chapter / "lab_1_2 (your copy, 2026-11-21).ipynb").write_text("my own solution")
+    hand_out(tmp_path / "handed", course)
+    given = tmp_path / "handed/chapters"
+    assert sorted(path.relative_to(given) for path in given.rglob("*.*")) == sorted(
+        path.relative_to(ROOT / "chapters")
+        for path in (ROOT / "chapters").glob("*/*.ipynb")
+        if "(your copy," not in path.name
+    )
+    notebook = chapter / "lab_1_2.ipynb"
+    notebook.write_text(notebook.read_text().replace("# TODO", "pass  # TODO"))
+    with pytest.raises(CannotHandOut, match=r"\./course reset lab_1_2"):
+        hand_out(tmp_path / "again", course)
+    assert not (tmp_path / "again").exists()
+
+
+def test_nothing_is_overwritten(tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").write_text("work")
+    with pytest.raises(CannotHandOut, match="is there already"):
+        hand_out(tmp_path, ROOT)
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]

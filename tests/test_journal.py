@@ -1,0 +1,92 @@
+"""The journal of a student's checks: what it keeps, and that nothing about it breaks a check."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder import journal
+from autograder.journal import Entry
+from autograder.verdict import State, Verdict, not_checked
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def verdict(score: float, exercise: str = "lab.talker") -> Verdict:
+    state = State.PASSED if score == 10 else State.FAILED
+    return Verdict(exercise, "The talker", state, score, 10.0)
+
+
+@pytest.fixture
+def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """This session's journal."""
+    file = tmp_path / "course" / journal.NAME
+    monkeypatch.setenv(journal.VARIABLE, str(file))
+    return file
+
+
+def test_a_check_is_a_line_and_the_best_one_counts(kept: Path) -> None:
+    for score in (4.0, 10.0, 6.0):
+        journal.note_check(verdict(score))
+    journal.note_check(not_checked("lab.talker", "The talker", 10.0, "no domain is free"))
+    lines = journal.entries(kept)
+    assert [(entry.name, entry.points, entry.possible) for entry in lines] == [
+        ("lab.talker", score, 10.0) for score in (4.0, 10.0, 6.0)
+    ]
+    assert journal.best(lines)["lab.talker"] == lines[1]
+
+
+def test_points_begin_anew_with_the_notebook(kept: Path) -> None:
+    lines = [Entry("check", "lab.talker", 1, 10, 10), Entry("check", "lab_2.server", 2, 5, 10)]
+    lines += [Entry("reset", "lab", 3), Entry("check", "lab.listener", 4, 3, 10)]
+    assert sorted(journal.best(lines)) == ["lab.listener", "lab_2.server"]
+
+
+def test_damaged_lines_are_left_out_and_the_next_one_is_kept(kept: Path) -> None:
+    journal.note_check(verdict(4))
+    good = kept.read_bytes()
+    damaged = [
+        b"\xff\xfe\x00",
+        b'{"kind":"check"}',
+        b'{"kind":"check","name":"lab.talker","time":1e300,"points":10,"possible":10}',
+        b'{"kind":"grade","name":"lab.talker","time":1}',
+        b"[" * 5000,
+        good.strip()[:-9],  # a machine that went off
+    ]
+    kept.write_bytes(good + b"\n".join(damaged))
+    journal.note_check(verdict(10))
+    assert [entry.points for entry in journal.entries(kept)] == [4, 10]
+
+
+@pytest.mark.parametrize("what", ["folder", "pipe", "no folder there"])
+def test_what_is_no_journal_keeps_nobody_waiting(kept: Path, what: str) -> None:
+    if what == "no folder there":
+        kept.parent.write_text("a file")
+    else:
+        kept.parent.mkdir()
+        (os.mkdir if what == "folder" else os.mkfifo)(kept)
+    journal.note_check(verdict(10))
+    assert not journal.note(Entry("read", "lab", 1))
+    assert journal.entries(kept) == []
+
+
+def test_where_no_file_may_be_made_it_is_in_the_home_one_for_each_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "home"))
+    assert journal.place(tmp_path) == tmp_path / journal.NAME
+    monkeypatch.setattr(os, "access", lambda path, mode: False)  # root may write everywhere
+    first, second = journal.place(tmp_path / "a"), journal.place(tmp_path / "b")
+    assert first.parent == second.parent == tmp_path / "home" / "ros2-course"
+    assert first != second
+    assert journal.note(Entry("read", "lab", 1), first)
+    assert len(journal.entries(first)) == 1
+
+
+def test_an_empty_name_means_no_journal(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(journal.VARIABLE, "")
+    assert journal.own_place() is None
+    assert not journal.note(Entry("read", "lab", 1))

@@ -1,0 +1,60 @@
+"""Packages as their files describe them, and the key of their sources."""
+
+from __future__ import annotations
+
+import shutil
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.workspaces.sources import packages
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def test_a_package_is_read_and_not_run(workspace: Path) -> None:
+    (package,) = packages.find_packages(workspace / "src")
+    assert (package.name, package.build_type) == ("tiny_pkg", "ament_python")
+    assert package.programs == ("hello = tiny_pkg.hello:main",)
+
+
+def test_an_ignored_package_is_none(workspace: Path) -> None:
+    ignored = workspace / "src" / "ignored_pkg"
+    shutil.copytree(workspace / "src" / "tiny_pkg", ignored)
+    (ignored / "COLCON_IGNORE").touch()
+    assert [package.name for package in packages.find_packages(workspace / "src")] == ["tiny_pkg"]
+
+
+def test_the_key_is_of_bytes_names_and_bits(workspace: Path) -> None:
+    src = workspace / "src"
+    module = src / "tiny_pkg" / "tiny_pkg" / "hello.py"
+    keys = [packages.key(src)]
+    module.write_text(module.read_text() + "\n")
+    keys.append(packages.key(src))
+    module.chmod(0o755)
+    keys.append(packages.key(src))
+    module.rename(module.with_name("hallo.py"))
+    keys.append(packages.key(src))
+    assert len(set(keys)) == 4
+
+
+def test_what_python_and_jupyter_leave_behind_is_no_source(workspace: Path) -> None:
+    src = workspace / "src"
+    before = packages.key(src)
+    for name in ("__pycache__", ".ipynb_checkpoints"):
+        (src / "tiny_pkg" / name).mkdir()
+        (src / "tiny_pkg" / name / "left.py").write_text("left")
+    assert packages.key(src) == before
+
+
+def test_the_toolchain_is_in_the_key(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = packages.key(workspace / "src")
+    monkeypatch.setenv("CXXFLAGS", "-O0")
+    assert packages.key(workspace / "src") != before
+
+
+def test_far_too_much_is_refused(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(packages, "MAX_BYTES", 100)
+    with pytest.raises(packages.BadPackage, match="is it a workspace"):
+        packages.key(workspace / "src")
