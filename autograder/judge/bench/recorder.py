@@ -31,6 +31,9 @@ class Recorder:
 
     Times are seconds since :meth:`begin`; ``began_at`` is that moment in seconds of Unix time. ``simulated_now`` is
     asked at each event, so that a message carries the simulated time at which it arrived.
+
+    Attributes:
+        take_in: Waits until all that was sent to the judge is written down; to be called before a subject's end is.
     """
 
     def __init__(self) -> None:
@@ -43,6 +46,7 @@ class Recorder:
         self._inputs: Mapping[str, Any] = {}
         self._start = time.monotonic()
         self._number = 0
+        self.take_in: Callable[[], object] = lambda: None
         self.simulated_now: float | None = None
         self.began_at = time.time()
 
@@ -96,6 +100,11 @@ class Recorder:
         old = {id(event) for event in words[: len(words) // 2 + 1]}
         self._events = [event for event in self._events if id(event) not in old]
         self._said = sum(len(event.data["text"]) for event in self._events if _is_speech(event))
+
+    @property
+    def count(self) -> int:
+        """How many events were written down so far, in all parts."""
+        return self._count
 
     def part(self) -> Part:
         """What has been seen so far in this part."""

@@ -4,17 +4,28 @@ from __future__ import annotations
 
 import secrets
 import threading
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 
+from autograder.judge.bench.patience import Patience
+from autograder.judge.bench.receiving_threads import await_turns
 from autograder.ros_participant import receivers_wait
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 InvalidHandle = rclpy_implementation.InvalidHandle
 """What rclpy raises about an entity that was destroyed meanwhile."""
+
+
+TAKEN_IN = 5.0
+"""Seconds in which the judge has taken in what was sent to it."""
+TURN = 0.05
+"""Seconds between two looks whether its thread still runs."""
 
 
 class JudgeFailed(RuntimeError):
@@ -59,6 +70,38 @@ class Wire:
             except BaseException as error:  # a callback of the judge's own: nothing after it can be trusted
                 self.failure = error
             return
+
+    def take_in(self, written_down: Callable[[], int]) -> bool:
+        """Wait until all that had been sent to the judge has been written down; whether it was, in time.
+
+        Not to be called from a callback of the judge's.
+
+        Args:
+            written_down: How much is written down by now.
+        """
+        patience = Patience(TAKEN_IN)
+        if not await_turns(patience):
+            return False
+        before = -1
+        while before != written_down():
+            before = written_down()
+            if not self._take_one_of_each(patience):
+                return False
+        return True
+
+    def _take_one_of_each(self, patience: Patience) -> bool:
+        """Let the executor take one message or call of each endpoint that has any; whether it did, in time.
+
+        An executor begins each of its rounds with its tasks and takes then what there is (rclpy/executors.py,
+        _wait_for_ready_callbacks), so a round lies between two tasks.
+        """
+        for _ in range(2):
+            done = threading.Event()
+            self.executor.create_task(done.set)
+            while not done.wait(TURN):
+                if patience.left <= 0 or not self._thread.is_alive():
+                    return False
+        return True
 
     def close(self) -> None:
         """Stop spinning, join the thread and leave the domain. An unjoined thread aborts the interpreter."""

@@ -135,7 +135,7 @@ class CommandSubject:
         except (OSError, ValueError) as error:
             raise CannotStart(f"cannot start {self._command[0]!r}: {error}") from error
         self._done, self._dying, self._last_words = threading.Event(), threading.Event(), []
-        follow = (recorder.in_this_part(), self._process, self._done)
+        follow = (recorder.in_this_part(), recorder.take_in, self._process, self._done)
         threading.Thread(target=self._follow, args=follow, daemon=True).start()
 
     def _spawn(self, command: Sequence[str], environment: Mapping[str, str]) -> Process:
@@ -187,6 +187,7 @@ class CommandSubject:
         """SIGINT to its process group, then SIGKILL to whatever is left of it."""
         if self._process is None:
             return
+        self._dying.set()
         if self._process.poll() is None:
             _signal_group(self._process.pid, signal.SIGINT)
             self._done.wait(POLITE)
@@ -200,7 +201,9 @@ class CommandSubject:
         """Children of this process that are no part of the subject."""
         return ()
 
-    def _follow(self, record: Record, process: Process, done: threading.Event) -> None:
+    def _follow(
+        self, record: Record, take_in: Callable[[], object], process: Process, done: threading.Event
+    ) -> None:
         budget = _Budget(MAX_OUTPUT)
         readers = [
             threading.Thread(target=self._read, args=(record, stream, name, budget), daemon=True)
@@ -213,6 +216,8 @@ class CommandSubject:
             # All that it printed must be read before its end is known. A grandchild may hold the pipe open,
             # though.
             reader.join(timeout=READ_LIMIT)
+        if not self._dying.is_set():
+            take_in()  # so must all that it sent
         # What the judge has ended did not end by itself.
         record("subject", "aborted" if self._dying.is_set() else "exited", code=code)
         done.set()

@@ -157,6 +157,9 @@ class RemoteSubject:
 
     def _take_of_run(self, message: checks.RunMessage, recorder: Recorder) -> None:
         record = recorder.record
+        if isinstance(message, checks.Exited | checks.Returned | checks.Raised):
+            recorder.take_in()  # all that it sent, before its end is known
+            self._ended = True
         match message:
             case checks.Stopped():
                 self._stopped.set()
@@ -179,14 +182,11 @@ class RemoteSubject:
                 self._marker = marker[:MAX_MARKER]
                 record("subject", "constructed")
             case checks.Exited(code=code):
-                self._ended = True
                 record("subject", "exited", code=code)
             case checks.Returned(value=value):
-                self._ended = True
                 shown = None if value is None else value[:MAX_TEXT]
                 record("subject", "returned", value=shown, traceback="")
             case checks.Raised(traceback=traceback):
-                self._ended = True
                 record("subject", "raised", value=None, traceback=traceback[:MAX_TEXT])
 
 

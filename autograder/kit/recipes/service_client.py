@@ -128,21 +128,20 @@ def meets_service(bench: Bench, run: Run, calls: int, patience: float, *, latene
         run: What is asked and answered.
         calls: How many calls a subject that has done its work has made.
         patience: Seconds that a function is told to wait.
-        lateness: Seconds after its client at which the service comes; 0 where it is there from the start.
+        lateness: Seconds after its client at which the service comes.
     """
     service, type_name = bench.reference.only("client")
-    answer = answering(run.answers)
-    if not lateness:
-        server = bench.serve(service, type_name, answer, hold=run.held)
     bench.start(*run.numbers, patience_sec=patience, spare=lateness if bench.look is Look.FAST else 0.0)
+    # The service comes when the judge has met its client. Where it was there before, the client may know it first, and
+    # a call of one that ends at once would reach the judge or not, as it happens.
+    # Where it has another client it waits for something else. One that has none may be slow to show it.
+    if not bench.await_endpoint("client", service) and (
+        bench.await_end(0.0) or bench.seen().endpoints("client")
+    ):
+        return bench.await_end(0.0)
     if lateness:
-        # Where it has another client it waits for something else. One that has none may be slow to show it.
-        if not bench.await_endpoint("client", service) and (
-            bench.await_end(0.0) or bench.seen().endpoints("client")
-        ):
-            return bench.await_end(0.0)
         bench.let_wait(lateness)
-        server = bench.serve(service, type_name, answer, hold=run.held)
+    server = bench.serve(service, type_name, answering(run.answers), hold=run.held)
     if run.held and bench.wait_until(
         lambda seen: len(requests(seen.main)) >= run.held, CALL_LIMIT, quiet=HANGS_AFTER
     ):

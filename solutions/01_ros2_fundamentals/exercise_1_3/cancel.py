@@ -148,24 +148,19 @@ def serve_goal(bench: Bench, name: str, *, accept: bool, pause: float, late: flo
         name: Of the part.
         accept: Whether a request to cancel is accepted.
         pause: Seconds to let pass after the first feedback message of a fast look.
-        late: Seconds after its client at which the server comes; 0 for one that is there before.
+        late: Seconds after its client at which the server comes.
         held: Seconds that the answers to goal and cancel are held back.
     """
     action, type_name = bench.reference.only("action_client")
-
-    def serve() -> ActionCounterpart:
-        return bench.serve_action(
-            action, type_name, accept_cancel=accept, goal_answer_takes=held, cancel_answer_takes=held
-        )
-
-    server = None if late else serve()
     bench.start(spare=late)
     there = bench.await_endpoint("action_client", action)
     bench.release()
-    if server is None:
-        if there:
-            bench.let_wait(late)
-        server = serve()
+    if there and late:
+        bench.let_wait(late)
+    # Not before the judge has met its client: the goal of one that ends at once would reach the judge or not.
+    server = bench.serve_action(
+        action, type_name, accept_cancel=accept, goal_answer_takes=held, cancel_answer_takes=held
+    )
     if not server.await_goal(GOAL_LIMIT):
         return
     sequence = [0, 1]

@@ -115,13 +115,27 @@ def meets_late_server(bench: Bench, inputs: Mapping[str, Any], lateness: float, 
     return works_on_a_goal(bench, server, "succeeded", FEEDBACKS)
 
 
+def meets_server(bench: Bench, inputs: Mapping[str, Any], *, accept: bool = True) -> ActionCounterpart:
+    """Start the subject and serve as soon as the judge has met it.
+
+    Where the server was there before, a client may know it first, and the goal of one that ends at once would reach the
+    judge or not, as it happens.
+
+    Args:
+        bench: Where it happens.
+        inputs: What the subject is started with.
+        accept: Whether goals are accepted.
+    """
+    action, type_name = bench.reference.only("action_client")
+    start(bench, inputs)
+    bench.await_endpoint("action_client", action)
+    return bench.serve_action(action, type_name, accept_goal=accept)
+
+
 def aborted(bench: Bench) -> None:
     """One run with a goal that is aborted."""
-    action, type_name = bench.reference.only("action_client")
     inputs = begin(bench, ABORTED)
-    server = bench.serve_action(action, type_name)
-    start(bench, inputs)
-    works_on_a_goal(bench, server, "aborted", 1)
+    works_on_a_goal(bench, meets_server(bench, inputs), "aborted", 1)
     bench.stop()
 
 
@@ -158,11 +172,8 @@ def is_done(evidence: Evidence) -> bool:
 
 def refused(bench: Bench) -> None:
     """One run with a server that refuses every goal."""
-    action, type_name = bench.reference.only("action_client")
     inputs = begin(bench, REFUSED)
-    server = bench.serve_action(action, type_name, accept_goal=False)
-    start(bench, inputs)
-    if server.await_goal(GOAL_LIMIT):
+    if meets_server(bench, inputs, accept=False).await_goal(GOAL_LIMIT):
         bench.await_end(END_LIMIT[bench.look])
     bench.stop()
 

@@ -1,0 +1,70 @@
+"""The middleware's threads: when they have handed over what had arrived.
+
+A program's end comes through a pipe and its messages through the middleware, so the end may be known first, while the
+thread that received a message still waits for a processor. What is sent wakes the receiver at once (futex(7), udp(7)):
+whoever sleeps has nothing left to do, and whoever has gone to sleep since has done it.
+"""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from autograder.judge.bench.patience import Patience
+
+PAUSE = 0.001
+"""Seconds between two looks at a thread."""
+TURNS = 2
+"""A thread that sleeps may be waiting for another one of them, which is through with its work after its own turn."""
+
+
+@dataclass(frozen=True)
+class _Thread:
+    """What the kernel tells of a thread (proc_pid_status(5)).
+
+    Attributes:
+        awake: It runs, or waits for a processor.
+        slept: How often it has gone to sleep.
+    """
+
+    awake: bool
+    slept: int
+
+
+def await_turns(patience: Patience) -> bool:
+    """Wait until each thread that is awake has gone to sleep; whether they have, before the patience was used up."""
+    return all(_await_turn(patience) for _ in range(TURNS))
+
+
+def _await_turn(patience: Patience) -> bool:
+    pause = threading.Event()
+    python = {thread.native_id for thread in threading.enumerate()}
+    tasks = (int(task.name) for task in Path("/proc/self/task").iterdir())
+    awake = {task: thread for task, thread in _look(set(tasks) - python).items() if thread.awake}
+    while awake and patience.left > 0:
+        pause.wait(PAUSE)
+        now = _look(awake)
+        awake = {
+            task: thread
+            for task, thread in awake.items()
+            if task in now and now[task].awake and now[task].slept == thread.slept
+        }
+    return not awake
+
+
+def _look(tasks: Iterable[int]) -> dict[int, _Thread]:
+    """The threads that are still there."""
+    found: dict[int, _Thread] = {}
+    for task in tasks:
+        try:
+            lines = Path(f"/proc/self/task/{task}/status").read_text().splitlines()
+        except OSError:  # it has ended meanwhile
+            continue
+        told = dict(line.split(":", 1) for line in lines)
+        found[task] = _Thread(told["State"].split()[0] in "RD", int(told.get("voluntary_ctxt_switches", 0)))
+    return found
