@@ -5,12 +5,14 @@ from __future__ import annotations
 from random import Random
 from types import SimpleNamespace
 from typing import Any
+from unittest.mock import MagicMock
 
 import pytest
 from exercise_1_2 import three_ints as exercise_1_2_three_ints
 from lab_1_3 import client as lab_1_3_client
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.model import Look
 from autograder.kit.numbers_said import mentions
 from autograder.kit.recipes import service_client
 from autograder.kit.recipes.service_client import Run, answering, has_spoken, is_done
@@ -159,3 +161,14 @@ def _reported(*after: Event) -> Part:
 )
 def test_one_wrong_report_beside_a_right_one_is_wrong(after: list[Event], right: bool) -> None:
     assert reports(_reported(*after)) is right
+
+
+@pytest.mark.parametrize("lateness", [0.0, 1.5])
+def test_the_service_comes_when_its_client_is_known_so_that_no_call_gets_lost(lateness: float) -> None:
+    bench = MagicMock(look=Look.FAST)
+    bench.reference.only.return_value = ("/add_two_ints", "my_robot_interfaces/srv/AddTwoInts")
+    service_client.meets_service(bench, Run(BIASED, (1, 2)), 1, 1.0, lateness=lateness)
+    order = [
+        name for name, *_ in bench.mock_calls if name in ("start", "await_endpoint", "let_wait", "serve")
+    ]
+    assert order == ["start", "await_endpoint", *(["let_wait"] if lateness else []), "serve"]

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from rcl_interfaces.srv import GetParameters
+from std_msgs.msg import String
 
 from autograder.judge.bench.wire import Wire
 from autograder.judge.serving import domain
@@ -43,3 +44,47 @@ def test_an_error_of_a_callback_is_the_judges_failure() -> None:
         assert raised.wait(10.0)
         wire._thread.join(timeout=180)
         assert isinstance(wire.failure, ValueError)
+
+
+MESSAGES = 5
+
+
+def test_all_that_was_sent_is_taken_in_also_by_a_judge_that_was_busy_meanwhile() -> None:
+    with domain.lease() as domain_id, Wire(domain_id) as theirs, Wire(domain_id) as wire:
+        heard: list[str] = []
+        met, held, free = threading.Event(), threading.Event(), threading.Event()
+
+        def hear(message: String) -> None:
+            met.set()
+            heard.append(message.data)
+
+        def hold_up() -> None:
+            held.set()
+            free.wait(180)
+
+        wire.node.create_subscription(String, "chatter", hear, 10)
+        publisher = theirs.node.create_publisher(String, "chatter", 10)
+        greeting = theirs.node.create_timer(0.05, lambda: publisher.publish(String(data="hello")))
+        assert met.wait(180)
+        theirs.node.destroy_timer(greeting)
+        # Its executor is held up, and the messages wait.
+        wire.executor.create_task(hold_up)
+        assert held.wait(180)
+        before = len(heard)
+        for number in range(MESSAGES):
+            publisher.publish(String(data=str(number)))
+        taken: list[bool] = []
+        taking = threading.Thread(target=lambda: taken.append(wire.take_in(lambda: len(heard))), daemon=True)
+        taking.start()
+        assert len(heard) == before
+        free.set()
+        taking.join(180)
+        assert taken == [True]
+        assert heard[-MESSAGES:] == [str(number) for number in range(MESSAGES)]
+
+
+def test_a_judge_that_has_failed_takes_nothing_in() -> None:
+    with domain.lease() as domain_id, Wire(domain_id) as wire:
+        wire.executor.create_task(lambda: 1 / 0)
+        wire._thread.join(timeout=180)
+        assert not wire.take_in(lambda: 0)

@@ -22,12 +22,16 @@ if TYPE_CHECKING:
 
 
 def _part(work: Callable[[CommandSubject, Recorder], None], program: str) -> Part:
-    """Run a program as a subject in a process of its own, as the judge does: it kills all its children."""
+    """Run a program as a subject in a process of its own, as the judge does: it kills all its children.
+
+    What the program has sent is taken in when its end is known, and not before.
+    """
     queue: multiprocessing.SimpleQueue[Part] = multiprocessing.get_context("fork").SimpleQueue()
 
     def judge() -> None:
         recorder = Recorder()
         recorder.begin("part", {})
+        recorder.take_in = lambda: recorder.record("message", "/sent")
         subject = CommandSubject([sys.executable, "-u", "-c", program])
         subject.begin(1)
         subject.start(recorder, (), {})
@@ -57,6 +61,7 @@ def test_all_that_it_printed_is_there_before_its_end() -> None:
     assert sorted(part.said()) == ["err", "out"]
     assert part.ending is not None
     assert part.events[-1] == part.ending
+    assert part.events[-2].kind == "message"  # what it sent is there, too
     assert part.ending.data["code"] == 3
 
 
