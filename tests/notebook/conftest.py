@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import rclpy
 from jupyter_client.manager import KernelManager
+from nbclient import NotebookClient
+from nbformat.v4 import new_code_cell, new_notebook
 from rclpy.node import Node
 from std_msgs.msg import String
 
@@ -154,6 +156,26 @@ def run_script(domain: int) -> Callable[..., subprocess.CompletedProcess[str]]:
             timeout=180,
             check=False,
         )
+
+    return run
+
+
+@pytest.fixture
+def as_in_a_notebook(domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Kernels that the test starts are on the tests' domain, and leave nothing out of their cells."""
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+    # With it, ipykernel leaves the output of compiled code, such as rclpy's log lines, out of the cells.
+    monkeypatch.delenv("PYTEST_CURRENT_TEST")
+
+
+@pytest.fixture
+def run_cells(as_in_a_notebook: None) -> Callable[..., list[Any]]:
+    """Run cells in a kernel of their own, with nbclient: what each shows in the end, after all updates of displays."""
+
+    def run(*sources: str, allow_errors: bool = False) -> list[Any]:
+        notebook = new_notebook(cells=[new_code_cell(source) for source in sources])
+        NotebookClient(notebook, timeout=LIMIT, allow_errors=allow_errors, kernel_name="python3").execute()
+        return [cell.outputs for cell in notebook.cells]
 
     return run
 

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import nbformat
 import pytest
-from nbclient import NotebookClient
+from nbformat.v4 import new_code_cell, new_notebook
 from nbgrader.validator import Validator
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
 # A judge whose verdicts are known: the next of `scores`, after what `meanwhile` does.
@@ -37,26 +38,13 @@ class Talker:
 """
 
 
-@pytest.fixture(autouse=True)
-def _as_in_a_notebook(domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
-    monkeypatch.delenv("PYTEST_CURRENT_TEST")
+@pytest.fixture
+def run(run_cells: Callable[..., list[Any]]) -> Callable[..., list[Any]]:
+    """Run cells below JUDGE; what each shows in the end."""
+    return lambda *sources: run_cells(JUDGE, *sources)[1:]
 
 
-def notebook_of(*sources: str) -> Any:
-    cells = [
-        {"cell_type": "code", "source": source, "metadata": {}, "outputs": []} for source in (JUDGE, *sources)
-    ]
-    return nbformat.from_dict({"nbformat": 4, "nbformat_minor": 4, "metadata": {}, "cells": cells})
-
-
-def run(*sources: str) -> list[Any]:
-    notebook = notebook_of(*sources)
-    NotebookClient(notebook, timeout=180, kernel_name="python3").execute()
-    return [cell.outputs for cell in notebook.cells[1:]]
-
-
-def test_the_value_of_a_check_is_for_nbgrader_and_shows_nothing() -> None:
+def test_the_value_of_a_check_is_for_nbgrader_and_shows_nothing(run: Callable[..., list[Any]]) -> None:
     (outputs,) = run("scores[:] = [7.5]; check('lab', Talker)")
     card, value = outputs
     assert value.data["text/plain"] == "7.5"
@@ -64,13 +52,15 @@ def test_the_value_of_a_check_is_for_nbgrader_and_shows_nothing() -> None:
     assert "7.5 of 10 points" in card.data["text/plain"]
 
 
-def test_another_try_tells_the_points_of_the_one_before() -> None:
+def test_another_try_tells_the_points_of_the_one_before(run: Callable[..., list[Any]]) -> None:
     _, (card, _) = run("scores[:] = [5.0, 8.0]; check('lab', Talker)", "check('lab', Talker)")
     assert "8 of 10 points, 5 before" in card.data["text/plain"]
     assert "5 → <strong>8</strong>" in card.data["text/html"]
 
 
-def test_while_a_check_goes_on_the_card_of_the_one_before_keeps_its_place_and_says_so() -> None:
+def test_while_a_check_goes_on_the_card_of_the_one_before_keeps_its_place_and_says_so(
+    run: Callable[..., list[Any]],
+) -> None:
     """What stood there meanwhile is taken from the display itself, at the moment at which the check was going on."""
     watched = """
 shown = []
@@ -101,22 +91,22 @@ check("lab", Talker)
     assert "5 of 10 points" in meanwhile, "the earlier card is still there"
 
 
-def test_a_card_is_dimmed_when_its_class_is_defined_anew() -> None:
+def test_a_card_is_dimmed_when_its_class_is_defined_anew(run: Callable[..., list[Any]]) -> None:
     (card, _), _, _ = run("scores[:] = [5.0]; check('lab', Talker)", "x = 1", "class Talker:\n    pass")
     assert "agc-dated" in card.data["text/html"].partition("<style>")[0]
     assert "Talker has changed since this check" in card.data["text/plain"]
 
 
-def test_a_card_stays_as_it_is_while_its_class_is_the_same() -> None:
+def test_a_card_stays_as_it_is_while_its_class_is_the_same(run: Callable[..., list[Any]]) -> None:
     (card, _), _ = run("scores[:] = [5.0]; check('lab', Talker)", "x = Talker()")
     assert "agc-dated" not in card.data["text/html"].partition("<style>")[0]
     assert "has changed" not in card.data["text/plain"]
 
 
+@pytest.mark.usefixtures("as_in_a_notebook")
 def test_validate_says_what_the_card_says(tmp_path: Path) -> None:
-    notebook = notebook_of(
-        "scores[:] = [0.0, 10.0]\ncheck('lab_1_2.talker', Talker)", "check('lab_1_2.listener', Talker)"
-    )
+    checks = ("scores[:] = [0.0, 10.0]\ncheck('lab_1_2.talker', Talker)", "check('lab_1_2.listener', Talker)")
+    notebook = new_notebook(cells=[new_code_cell(source) for source in (JUDGE, *checks)])
     for cell, name in zip(notebook.cells[1:], ("talker", "listener"), strict=True):
         cell.metadata["nbgrader"] = {
             "grade": True, "grade_id": name, "locked": False, "points": 10, "schema_version": 3,

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import base64
 import re
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import nbformat
 import pytest
-from nbclient import NotebookClient
 
 from autograder.notebook.graph_watch import watch_graph
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 START = """
 import threading, time
@@ -35,19 +36,10 @@ def await_picture(good):
 pytestmark = pytest.mark.ros
 
 
-@pytest.fixture(autouse=True)
-def _as_in_a_notebook(domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
-    monkeypatch.delenv("PYTEST_CURRENT_TEST")
-
-
-def run(*sources: str) -> list[Any]:
-    cells = [
-        {"cell_type": "code", "source": source, "metadata": {}, "outputs": []} for source in (START, *sources)
-    ]
-    notebook = nbformat.from_dict({"nbformat": 4, "nbformat_minor": 4, "metadata": {}, "cells": cells})
-    NotebookClient(notebook, timeout=180, kernel_name="python3").execute()
-    return [cell.outputs for cell in notebook.cells[1:]]
+@pytest.fixture
+def run(run_cells: Callable[..., list[Any]]) -> Callable[..., list[Any]]:
+    """Run cells below START; what each shows in the end."""
+    return lambda *sources: run_cells(START, *sources)[1:]
 
 
 def svg(output: Any) -> str:
@@ -55,7 +47,7 @@ def svg(output: Any) -> str:
     return base64.b64decode(data).decode()
 
 
-def test_nodes_come_and_go_in_the_picture() -> None:
+def test_nodes_come_and_go_in_the_picture(run: Callable[..., list[Any]]) -> None:
     source = """
 watch = watch_graph()
 node = Node("newcomer")
@@ -77,7 +69,9 @@ print(watch.running)
     assert said.text == "False\n"
 
 
-def test_a_topic_with_traffic_has_a_rate_and_its_lines_flow_until_the_watch_ends() -> None:
+def test_a_topic_with_traffic_has_a_rate_and_its_lines_flow_until_the_watch_ends(
+    run: Callable[..., list[Any]],
+) -> None:
     source = """
 watch = watch_graph()
 node = Node("talker")
@@ -97,7 +91,7 @@ watch.stop()
     assert "flows" not in svg(shown).partition("</style>")[2], "a picture at rest"
 
 
-def test_it_ends_with_ros_and_when_everything_is_stopped() -> None:
+def test_it_ends_with_ros_and_when_everything_is_stopped(run: Callable[..., list[Any]]) -> None:
     *_, said = run(
         "watch = watch_graph()",
         "from autograder.notebook.executors import stop_all; stop_all(); watch._thread.join(); print(watch.running)",
@@ -107,7 +101,7 @@ def test_it_ends_with_ros_and_when_everything_is_stopped() -> None:
     assert said[0].text == "False\n"
 
 
-def test_a_second_run_of_the_cell_takes_the_place_of_the_first() -> None:
+def test_a_second_run_of_the_cell_takes_the_place_of_the_first(run: Callable[..., list[Any]]) -> None:
     cell = "watches = [*globals().get('watches', ()), watch_graph()]"
     *_, said = run(cell, cell, "watches[0]._thread.join(); print(watches[0].running, watches[1].running)")
     assert said[0].text == "False True\n"

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import nbformat
 import pytest
-from nbclient import NotebookClient
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from .conftest import Notebook
 
 pytestmark = pytest.mark.ros
@@ -235,18 +235,7 @@ def test_a_wrong_argument_shows_the_students_line_only(notebook: Notebook) -> No
     assert "----> " in output.traceback
 
 
-def run_with_nbclient(domain: int, monkeypatch: pytest.MonkeyPatch, *sources: str) -> list[Any]:
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
-    monkeypatch.delenv("PYTEST_CURRENT_TEST")
-    cells = [{"cell_type": "code", "source": source, "metadata": {}, "outputs": []} for source in sources]
-    notebook = nbformat.from_dict({"nbformat": 4, "nbformat_minor": 4, "metadata": {}, "cells": cells})
-    NotebookClient(notebook, timeout=180, allow_errors=True, kernel_name="python3").execute()
-    return [cell.outputs for cell in notebook.cells]
-
-
-def test_a_notebook_in_ci_stops_at_the_cell_whose_callbacks_fail(
-    domain: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_notebook_in_ci_stops_at_the_cell_whose_callbacks_fail(run_cells: Callable[..., list[Any]]) -> None:
     set_up = (
         "import threading, time\nfrom rclpy.node import Node\nfrom autograder.notebook.executors import *"
     )
@@ -262,7 +251,7 @@ with spinning(node):
     ticked.wait(20)
 """
     last = 'spin_in_background(Node("left_spinning"))'
-    _, outputs, left = run_with_nbclient(domain, monkeypatch, set_up, broken, last)
+    _, outputs, left = run_cells(set_up, broken, last, allow_errors=True)
     kinds = [(output.output_type, output.get("name")) for output in outputs]
     assert kinds == [("stream", "stdout"), ("error", None)]
     assert "Traceback" in outputs[0].text

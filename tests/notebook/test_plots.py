@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import re
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import nbformat
 import pytest
 from geometry_msgs.msg import Twist
-from nbclient import NotebookClient
 from std_msgs.msg import Float64MultiArray, String
 
 from autograder.notebook.plots import WINDOW, PlotPicture, number_in, plot
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 def test_finds_a_number_by_its_way_through_the_message() -> None:
@@ -58,9 +59,7 @@ def test_any_values_can_be_drawn(points: tuple[tuple[float, float], ...]) -> Non
 
 
 @pytest.mark.ros
-def test_a_plot_follows_its_topic(domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
-    monkeypatch.delenv("PYTEST_CURRENT_TEST")
+def test_a_plot_follows_its_topic(run_cells: Callable[..., list[Any]]) -> None:
     source = """
 import time
 from rclpy.node import Node
@@ -82,10 +81,7 @@ driving.stop()
 numbers = [value for _, value in curve._pictures._points]
 print(all(b == a + 1 for a, b in zip(numbers, numbers[1:])))
 """
-    cell = {"cell_type": "code", "source": source, "metadata": {}, "outputs": []}
-    notebook = nbformat.from_dict({"nbformat": 4, "nbformat_minor": 4, "metadata": {}, "cells": [cell]})
-    NotebookClient(notebook, timeout=180, kernel_name="python3").execute()
-    outputs = notebook.cells[0].outputs
+    (outputs,) = run_cells(source)
     (said,) = (output.text for output in outputs if output.output_type == "stream")
     (shown,) = (output.data["text/plain"] for output in outputs if output.output_type == "display_data")
     assert said == "True\n"

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import nbformat
 import pytest
-from nbclient import NotebookClient
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 START = """
 import time
@@ -32,19 +33,10 @@ def drive(robot):
 pytestmark = pytest.mark.ros
 
 
-@pytest.fixture(autouse=True)
-def _as_in_a_notebook(domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
-    monkeypatch.delenv("PYTEST_CURRENT_TEST")
-
-
-def run(*sources: str) -> list[Any]:
-    cells = [
-        {"cell_type": "code", "source": source, "metadata": {}, "outputs": []} for source in (START, *sources)
-    ]
-    notebook = nbformat.from_dict({"nbformat": 4, "nbformat_minor": 4, "metadata": {}, "cells": cells})
-    NotebookClient(notebook, timeout=180, kernel_name="python3").execute()
-    return [cell.outputs for cell in notebook.cells[1:]]
+@pytest.fixture
+def run(run_cells: Callable[..., list[Any]]) -> Callable[..., list[Any]]:
+    """Run cells below START; what each shows in the end."""
+    return lambda *sources: run_cells(START, *sources)[1:]
 
 
 def words(outputs: Any) -> str:
@@ -53,13 +45,15 @@ def words(outputs: Any) -> str:
     return str(shown)
 
 
-def test_the_picture_follows_the_robot_until_it_stops() -> None:
+def test_the_picture_follows_the_robot_until_it_stops(run: Callable[..., list[Any]]) -> None:
     (outputs,) = run("robot = start_robot()\ndrive(robot)\nrobot.stop()")
     assert "x = 1.00 m" not in words(outputs)
     assert "It stands still." in words(outputs)
 
 
-def test_a_second_run_of_the_cell_begins_anew_and_says_nothing_of_the_first() -> None:
+def test_a_second_run_of_the_cell_begins_anew_and_says_nothing_of_the_first(
+    run: Callable[..., list[Any]],
+) -> None:
     cell = "robots = [*globals().get('robots', ()), start_robot()]"
     _, again, said = run(
         cell, cell, "print(robots[0].running, robots[1].running, robots[0]); robots[1].stop()"
@@ -69,7 +63,7 @@ def test_a_second_run_of_the_cell_begins_anew_and_says_nothing_of_the_first() ->
     assert said[0].text == "False True The robot has stopped: run the cell again that started it.\n"
 
 
-def test_shown_again_the_picture_above_rests() -> None:
+def test_shown_again_the_picture_above_rests(run: Callable[..., list[Any]]) -> None:
     above, below, _ = run("robot = start_robot()", "robot.show(); drive(robot)", "robot.stop()")
     assert "x = 1.00 m" in words(above)
     assert "x = 1.00 m" not in words(below)
