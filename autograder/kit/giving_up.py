@@ -156,7 +156,8 @@ def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool])
     if served[0] in ended and any(asked(part) for part in served):
         return True
     told = _parting_words(absent)
-    return bool(absent.ending and told) and any(_parting_words(part) == told for part in ended)
+    # In each of them: a sum that the subject has added up itself may happen to be one of the run's own numbers.
+    return bool(absent.ending and told and ended) and all(_parting_words(part) == told for part in ended)
 
 
 def _parting_words(part: Part) -> set[str]:

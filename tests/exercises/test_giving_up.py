@@ -46,6 +46,11 @@ def test_it_says_the_same_where_the_server_is_as_where_it_is_not(
     assert gave_up(parts, run(absent, [7, 8]), has_asked) is expected
 
 
+def test_a_sum_that_happens_to_be_an_own_number_is_not_what_it_says_of_a_missing_server() -> None:
+    parts = [run("the sum is 18614", [18614, 0]), run("the sum is 22", [10, 12])]
+    assert not gave_up(parts, run("the sum is 42953", [42953, 0]), has_asked)
+
+
 def test_it_asked_once_it_had_met_the_server() -> None:
     late, usual = run("nobody", [1, 2]), run("3", [1, 2], asked=True)
     assert gave_up([late, usual], run("something else", [1, 2]), has_asked)
