@@ -439,6 +439,26 @@ def report(folder: Path, without_names: bool, output: Path | None) -> None:
 
 @cli.command()
 @click.argument("folder", type=click.Path(path_type=Path))
+@click.argument("assignment", required=False, default="")
+@click.option(
+    "--output", type=click.Path(path_type=Path), help="The page; FOLDER/similar.html where not given."
+)
+def similar(folder: Path, assignment: str, output: Path | None) -> None:
+    """Find pairs of submissions in the class FOLDER that are closer than the task explains.
+
+    A pair is a hint, not a proof. Only ASSIGNMENT is looked at where it is named.
+
+    Exit code 0: all was compared; 2: the lines say what was not, and why.
+    """
+    from autograder import grading
+
+    with grading_errors():
+        found = grading.similar(folder, assignment, to=output)
+    sys.exit(found.exit_code)
+
+
+@cli.command()
+@click.argument("folder", type=click.Path(path_type=Path))
 @click.argument("before", required=False, default="")
 @click.argument("after", required=False, default="")
 def compare(folder: Path, before: str, after: str) -> None:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from autograder.grading.classes.new_class import NewClass
     from autograder.grading.collecting.collect import CollectReport
     from autograder.grading.reporting.report import GradeReport
+    from autograder.grading.similarity.finding import Similar
 
 
 def new_class(path: Path, course_root: Path, *, assignments: Sequence[str] = ()) -> NewClass:
@@ -179,6 +180,36 @@ def write_report(path: Path, *, names: bool = True, to: Path | None = None) -> P
     from autograder.grading.overview.page import write_report as write
 
     return write(path, names=names, to=to)
+
+
+def similar(
+    path: Path, assignment: str = "", *, to: Path | None = None, console: Console | None = None
+) -> Similar:
+    """Print the pairs of submissions that are closer than the task explains, and write the page that shows them.
+
+    Args:
+        path: The class directory.
+        assignment: Only this one; all by default.
+        to: Where to write the page; ``similar.html`` in the class by default.
+        console: Where the result is printed; standard output by default.
+
+    Raises:
+        GradingError: Nothing was handed in, or the class cannot be read; the message says what to do.
+    """
+    from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.entering.journal import write_whole
+    from autograder.grading.errors import clear_disk_errors
+    from autograder.grading.similarity.finding import find_similar
+    from autograder.grading.similarity.page import NAME, page
+    from autograder.grading.similarity.showing import show
+
+    directory = ClassDirectory(path)
+    to = (to or directory.path / NAME).absolute()
+    with clear_disk_errors(directory.path):
+        found = find_similar(directory, assignment)
+        write_whole(to, page(found).encode())
+    show(found, to, console)
+    return found
 
 
 def compare(path: Path, before: str = "", after: str = "") -> list[str]:

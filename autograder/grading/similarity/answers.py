@@ -1,0 +1,122 @@
+"""What students wrote themselves in a notebook, and what they had been given, read from a class."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from autograder.boxes.execution import Kind
+from autograder.grading.classes.class_directory import SUFFIX
+from autograder.grading.errors import MasterUnusable
+from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding.rebuild import grade_id, is_answer
+from autograder.grading.rebuilding.submission import NotAFile, UnreadableSubmission, parse, read_bytes
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
+
+    from autograder.grading.classes.class_directory import ClassDirectory, Submission
+
+OWN_CELLS = "own cells"
+"""What stands for a cell's name where students have added cells of their own."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What one student wrote into one solution cell, or into all cells of their own.
+
+    Attributes:
+        student: The student's id.
+        assignment: The assignment's name.
+        notebook: The notebook's name.
+        cell: The cell's name.
+        text: What stands there.
+    """
+
+    student: str
+    assignment: str
+    notebook: str
+    cell: str
+    text: str
+
+
+@dataclass
+class HandedIn:
+    """The answers to one notebook.
+
+    Attributes:
+        answers: In the order of students and cells.
+        students: Whose notebook could be read.
+        troubles: A line for each submission of which something could not be read.
+    """
+
+    answers: list[Answer] = field(default_factory=list)
+    students: list[str] = field(default_factory=list)
+    troubles: list[str] = field(default_factory=list)
+
+
+def given_texts(directory: ClassDirectory) -> list[str]:
+    """All code of the class's sources and of what was handed out: what students are given, and every solution.
+
+    Raises:
+        MasterUnusable: A source is no notebook.
+    """
+    return [
+        cell.source
+        for folder in ("source", "release")
+        for path in sorted((directory.path / folder).glob(f"*/*{SUFFIX}"))
+        for cell in _cells(directory, path.relative_to(directory.path).as_posix())
+        if cell.cell_type == Kind.CODE
+    ]
+
+
+def read_answers(
+    directory: ClassDirectory, assignment: str, notebook: str, submissions: list[Submission]
+) -> HandedIn:
+    """What was handed in for one notebook.
+
+    Raises:
+        MasterUnusable: The source is no notebook.
+    """
+    named = {
+        name: cell
+        for cell in _cells(directory, f"source/{assignment}/{notebook}{SUFFIX}")
+        if (name := grade_id(cell))
+    }
+    answers = [name for name, cell in named.items() if is_answer(cell) and cell.cell_type == Kind.CODE]
+    found = HandedIn()
+    for submission in submissions:
+        who = f"{submission.student}/{assignment}"
+        try:
+            cells, left_out = parse(read_bytes(submission.folder / f"{notebook}{SUFFIX}"))
+        except NotAFile:
+            continue  # it is among what the class refuses
+        except UnreadableSubmission as error:
+            found.troubles.append(f"unreadable   {who}: {error}")
+            continue
+        if left_out:
+            found.troubles.append(
+                f"left out     {who}: {left_out} cell(s) had not the form of a cell, or were too long; "
+                "the others are compared"
+            )
+        found.students.append(submission.student)
+        written: dict[str, list[str]] = {}
+        for cell in cells:
+            if cell.kind == Kind.CODE and (cell.grade_id in answers or cell.grade_id not in named):
+                name = cell.grade_id if cell.grade_id in answers else OWN_CELLS
+                written.setdefault(name, []).append(cell.source)
+        for name in (*answers, OWN_CELLS):
+            if name in written:
+                text = "\n\n".join(written[name])
+                found.answers.append(Answer(submission.student, assignment, notebook, name, text))
+    return found
+
+
+def _cells(directory: ClassDirectory, place: str) -> list[NotebookNode]:
+    path = directory.path / place
+    try:
+        return list(nodes.read(path.read_text(encoding="utf-8")).cells)
+    except Exception as error:  # nbformat raises what its JSON and schema libraries raise
+        raise MasterUnusable(
+            f"{path} is not a notebook: {error}. Make it anew or put back a copy."
+        ) from error

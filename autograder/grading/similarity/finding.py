@@ -1,0 +1,113 @@
+"""The close pairs of a class, and what could not be compared."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from autograder.grading.errors import GradingError
+from autograder.grading.similarity.answers import given_texts, read_answers
+from autograder.grading.similarity.own_code import LONGEST, Given, compared
+from autograder.grading.similarity.pairs import Pair, close_pairs, closest_first
+from autograder.grading.table.roster import read_roster
+from autograder.grading.work import check_known
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from autograder.grading.classes.class_directory import ClassDirectory, Refused
+
+MOST = 100
+"""Pairs that are shown: nobody reads more, and they are the closest."""
+
+
+@dataclass(frozen=True)
+class Similar:
+    """What was found in a class.
+
+    Attributes:
+        path: The class.
+        pairs: The close pairs, the closest first.
+        more: How many further pairs are not shown.
+        names: How the students are called, by id.
+        compared: How many students' notebooks were compared.
+        notes: What is worth knowing, a line each.
+        troubles: A line for all that could not be compared, or only in part.
+    """
+
+    path: Path
+    pairs: tuple[Pair, ...]
+    more: int
+    names: Mapping[str, str]
+    compared: int
+    notes: tuple[str, ...]
+    troubles: tuple[str, ...]
+
+    @property
+    def exit_code(self) -> int:
+        """2 where something could not be compared, 0 otherwise: a pair is a hint and no failure."""
+        return 2 if self.troubles else 0
+
+
+def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
+    """Compare what was handed in.
+
+    Args:
+        directory: The class.
+        assignment: Only this one; all by default.
+
+    Raises:
+        GradingError: Nothing was handed in, or there is no assignment of that name, or a source cannot be used.
+    """
+    known = directory.assignments()
+    check_known([assignment] if assignment else [], known, "assignment")
+    submissions, refused = directory.submissions()
+    submissions = [one for one in submissions if assignment in ("", one.assignment)]
+    troubles = [
+        f"refused      {one.path}: {one.reason}" for one in refused if _concerns(directory, one, assignment)
+    ]
+    if not submissions and not troubles:
+        raise GradingError(
+            f"Nothing was handed in yet{f' for {assignment}' if assignment else ''}, so there is nothing to compare."
+        )
+    given = Given(given_texts(directory))
+    pairs: list[Pair] = []
+    notes = []
+    read = 0
+    for name in [assignment] if assignment else known:
+        for notebook in directory.notebooks(name):
+            handed_in = read_answers(
+                directory, name, notebook, [one for one in submissions if one.assignment == name]
+            )
+            read += len(handed_in.students)
+            troubles += handed_in.troubles
+            if len(handed_in.students) == 1:
+                notes.append(
+                    f"{notebook}: one student has handed it in, so there is nothing to compare it with"
+                )
+            answers = compared(handed_in.answers, given, len(handed_in.students))
+            troubles += [
+                f"left out     {one.answer.student}/{name}: {one.answer.cell} is too long; its first "
+                f"{LONGEST} words are compared"
+                for one in answers
+                if one.is_cut
+            ]
+            pairs += close_pairs(answers)
+    pairs = closest_first(pairs)
+    students = read_roster(directory).students
+    return Similar(
+        directory.path,
+        tuple(pairs[:MOST]),
+        len(pairs[MOST:]),
+        {id_: student.name for id_, student in students.items() if student.name},
+        read,
+        tuple(notes),
+        tuple(troubles),
+    )
+
+
+def _concerns(directory: ClassDirectory, refused: Refused, assignment: str) -> bool:
+    """Whether it may have to do with an assignment: of what has no place, that is not known."""
+    parts = refused.path.relative_to(directory.path / "submitted").parts
+    return not assignment or len(parts) < 2 or parts[1] == assignment

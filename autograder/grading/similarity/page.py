@@ -1,0 +1,91 @@
+"""The page: each pair side by side, in one file without script, readable in black and white."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from autograder.cards.readable import one_line
+from autograder.grading.pages import POLICY
+from autograder.grading.similarity.pairs import LEAST_SHARE, SHORTEST
+from autograder.grading.similarity.passages import own_words
+from autograder.grading.similarity.side import Line, lines, stretches
+from autograder.grading.similarity.wording import HINT, nothing_found, percent, place
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from autograder.grading.similarity.finding import Similar
+    from autograder.grading.similarity.pairs import Pair
+
+NAME = "similar.html"
+_LONGEST_NAME = 200
+
+
+@dataclass(frozen=True)
+class _Side:
+    """An answer of a pair, as the page shows it."""
+
+    student: str
+    cell: str
+    length: int
+    lines: list[Line]
+
+
+@dataclass(frozen=True)
+class _Shown:
+    """A pair, as the page shows it."""
+
+    place: str
+    percent: str
+    shared: int
+    sides: tuple[_Side, _Side]
+
+
+def page(found: Similar) -> str:
+    """The page about the close pairs of a class."""
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template("similar.html.j2").render(
+        policy=POLICY,
+        title=found.path.name,
+        hint=HINT,
+        nothing=nothing_found(found.compared),
+        compared=found.compared,
+        shortest=SHORTEST,
+        least=f"{100 * LEAST_SHARE:g}\N{NO-BREAK SPACE}%",
+        pairs=[_shown(pair, found.names) for pair in found.pairs],
+        more=found.more,
+        lines=[one_line(line, 1000) for line in (*found.notes, *found.troubles)],
+    )
+
+
+def _shown(pair: Pair, names: Mapping[str, str]) -> _Shown:
+    counted = [own_words(pair.one, pair.other, passage) for passage in pair.passages]
+    starts = (
+        (pair.one, [passage.first for passage in pair.passages]),
+        (pair.other, [passage.second for passage in pair.passages]),
+    )
+    left, right = (
+        _Side(
+            _called(side.answer.student, names),
+            side.answer.cell,
+            side.length,
+            lines(side.answer.text, stretches(side, zip(firsts, counted, strict=True))),
+        )
+        for side, firsts in starts
+    )
+    return _Shown(place(pair), percent(pair), pair.shared, (left, right))
+
+
+def _called(student: str, names: Mapping[str, str]) -> str:
+    name = names.get(student)
+    return one_line(f"{name} ({student})" if name else student, _LONGEST_NAME)

@@ -1,0 +1,63 @@
+"""The close pairs in a terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from autograder.grading.reporting.report_table import printable
+from autograder.grading.similarity.wording import HINT, nothing_found, percent, place
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from autograder.grading.similarity.finding import Similar
+
+
+def show(found: Similar, page: Path, console: Console | None = None) -> None:
+    """Print the pairs, what could not be compared, and where the page is.
+
+    Args:
+        found: What was found.
+        page: The page with the pairs side by side.
+        console: Standard output by default.
+    """
+    console = console or Console()
+
+    def line(text: str, style: str = "") -> None:
+        console.print(printable(text), style=style, markup=False, highlight=False, soft_wrap=True)
+
+    if found.pairs:
+        console.print(_table(found))
+        line(HINT)
+    else:
+        line(nothing_found(found.compared))
+    if found.more:
+        line(
+            f"note         {found.more} more pairs are less close and not shown; name an assignment to see fewer"
+        )
+    for note in found.notes:
+        line(f"note         {note}")
+    for trouble in found.troubles:
+        line(trouble, "yellow")
+    line(f"page       {page}")
+
+
+def _table(found: Similar) -> Table:
+    shown = Table(header_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
+    shown.add_column("students", overflow="fold")
+    shown.add_column("notebook, cell", overflow="fold")
+    shown.add_column("shared", justify="right", no_wrap=True)
+    shown.add_column("own words", justify="right", no_wrap=True)
+    for pair in found.pairs:
+        shown.add_row(
+            Text(printable(f"{pair.one.answer.student}, {pair.other.answer.student}")),
+            Text(printable(place(pair))),
+            percent(pair),
+            f"{pair.shared} of {pair.one.length} and {pair.other.length}",
+        )
+    return shown

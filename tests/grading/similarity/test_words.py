@@ -1,0 +1,49 @@
+"""What counts of an answer, and what its writer may choose."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.grading.similarity.words import chosen_names, neutral, words
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("a = b % two  # a comment", ["a", "=", "b", "%", "two"]),
+        ("a = b %two", ["a", "=", "b", "%", "two"]),
+        ("%%writefile a.py\nx += 1", ["x", "+=", "1"]),
+        ('"""A docstring\nof two lines."""\nreturn rb"\\"" != 0x1f', ["return", 'rb"\\""', "!=", "0x1f"]),
+        ("s = 'not # a comment'", ["s", "=", "'not # a comment'"]),
+        ("größe = 'ä", ["größe", "=", "'", "ä"]),
+        ("", []),
+    ],
+)
+def test_words(text: str, expected: list[str]) -> None:
+    found = list(words(text))
+    assert [word.text for word in found] == expected
+    assert [text[word.start : word.end] for word in found] == expected
+
+
+def test_names_that_somebody_has_chosen() -> None:
+    text = """
+class Mine(Node):
+    def work(self, first, second: int = 3, *rest, **options):
+        self.total = call(first, keyword=1)
+        self.typed: int = 3
+        x, y = 4, 5
+        with Event() as event:
+            for number, name in enumerate(rest):
+                if (found := look(name)) == other:
+                    return library.function(found)
+"""
+    assert chosen_names(list(words(text))) == {
+        *("Mine", "work", "first", "second", "rest", "options"),
+        *("total", "event", "number", "name", "found", "typed", "x", "y"),
+    }
+
+
+def test_other_names_and_texts_are_the_same_answer() -> None:
+    one, other = list(words("a = say('x', 'task')")), list(words("bb = say('yy', 'task')"))
+    assert neutral(one, {"a"}, {"'task'"}) == neutral(other, {"bb"}, {"'task'"})
+    assert neutral(one, {"a"}, {"'x'", "'task'"}) != neutral(other, {"bb"}, {"'task'"})
