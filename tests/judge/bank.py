@@ -26,7 +26,7 @@ def main(words: list[str]) -> int:
     parser.add_argument("--print", action="store_true", help="print the programs, judge none")
     parser.add_argument("--repeat", type=int, default=1)
     parser.add_argument("--busy", type=int, default=0, help="busy loops beside it")
-    parser.add_argument("--jobs", type=int, default=8)
+    parser.add_argument("--jobs", type=int, default=14)
     parser.add_argument(
         "--warm",
         action="store_true",

@@ -17,7 +17,7 @@ from autograder.verdict import Verdict, from_json
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-JOBS = 8
+JOBS = 14
 """Answers that are judged at once while other tests run: most of them wait most of the time."""
 
 
