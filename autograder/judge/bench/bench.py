@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import time
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from autograder.judge.bench import clock, graph, own_endpoints, type_hashes
@@ -91,7 +92,7 @@ class TestBench:
             # One reader for all parts of a participant: a new one would be told the log of the parts before.
             self._log = LogReader(self._wire, self._recorder)
             self._subject.renew()
-            self._recorder.take_in = self._take_in
+            self._recorder.take_in = partial(self._wire.take_in, lambda: self._recorder.count)
         self._on_graph = Presence(self._wire.node, self._recorder, self._subject, SETTLED[self.look])
 
     def again(self) -> None:
@@ -242,7 +243,7 @@ class TestBench:
 
     def serve(self, service: str, type_name: str, answer: Answer, *, hold: int = 0) -> RecordedServer:
         """Serve until the part ends; the answer to the request of the number ``hold`` waits for its release."""
-        self._take_in()  # who is there: a request of a client that the judge does not know yet would be dropped
+        self._take_in_who_is_there()
         server = RecordedServer(self.wire, self._recorder, service, type_name, answer, hold=hold)
         self._open.callback(server.close)
         self._announce(server.services)
@@ -275,7 +276,7 @@ class TestBench:
         cancel_answer_takes: float = 0.0,
     ) -> ScriptedActionServer:
         """Serve an action whose every step the scenario decides, until the part ends."""
-        self._take_in()
+        self._take_in_who_is_there()
         server = ScriptedActionServer(
             self.wire,
             self._recorder,
@@ -291,8 +292,9 @@ class TestBench:
         self._announce(server.services)
         return server
 
-    def _take_in(self) -> None:
-        self.wire.take_in(lambda: self._recorder.count)
+    def _take_in_who_is_there(self) -> None:
+        """Before a server can be met: a request of a client that the judge does not know yet would be dropped."""
+        self._recorder.take_in()
 
     def _announce(self, services: Iterable[str]) -> None:
         # The judge's own participant, too, may still see what was taken away.

@@ -33,7 +33,7 @@ class Recorder:
     asked at each event, so that a message carries the simulated time at which it arrived.
 
     Attributes:
-        take_in: Waits until all that was sent to the judge is written down; to be called before a subject's end is.
+        take_in: Waits until all that was sent to the judge by now is written down.
     """
 
     def __init__(self) -> None:
@@ -74,11 +74,30 @@ class Recorder:
 
         return record
 
+    def end_of_this_part(self) -> Callable[..., None]:
+        """Writes down how the subject has just ended, in the part that goes on now, behind all that it sent before.
+
+        Its arguments are the kind of end, such as ``"exited"``; what is called when that is written down, before
+        anybody who waits can look; and what is known of the end.
+        """
+        number = self._number
+
+        def end(name: str, known: Callable[[], object], **data: Any) -> None:
+            moment = time.monotonic()
+            self.take_in()
+            with self._changed:
+                self._record("subject", name, data, number, moment)
+                known()
+
+        return end
+
     def record(self, kind: str, name: str, **data: Any) -> None:
         """Write down one event and wake everyone who waits for it."""
         self._record(kind, name, data, None)
 
-    def _record(self, kind: str, name: str, data: Mapping[str, Any], part: int | None) -> None:
+    def _record(
+        self, kind: str, name: str, data: Mapping[str, Any], part: int | None, moment: float | None = None
+    ) -> None:
         kept, size = _kept(data, MAX_TEXT if self._size < MAX_TEXTS else BEGINNING)
         with self._changed:
             if part is not None and part != self._number:
@@ -90,7 +109,7 @@ class Recorder:
                 if self._said > MAX_SAID or len(self._events) >= MAX_EVENTS:
                     self._forget_old_words()
             if len(self._events) < MAX_EVENTS:
-                t = time.monotonic() - self._start
+                t = (time.monotonic() if moment is None else moment) - self._start
                 self._events.append(Event(t, kind, name[:MAX_NAME], kept, self.simulated_now))
             self._changed.notify_all()
 

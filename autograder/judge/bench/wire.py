@@ -56,6 +56,7 @@ class Wire:
         self.executor = SingleThreadedExecutor(context=self.context)
         self.executor.add_node(self.node)
         self.failure: BaseException | None = None
+        self._closing, self._closed = threading.Lock(), False
         self._thread = threading.Thread(target=self._spin, name="judge wire", daemon=True)
         self._thread.start()
 
@@ -97,7 +98,10 @@ class Wire:
         """
         for _ in range(2):
             done = threading.Event()
-            self.executor.create_task(done.set)
+            with self._closing:
+                if self._closed:
+                    return False
+                self.executor.create_task(done.set)
             while not done.wait(TURN):
                 if patience.left <= 0 or not self._thread.is_alive():
                     return False
@@ -105,6 +109,8 @@ class Wire:
 
     def close(self) -> None:
         """Stop spinning, join the thread and leave the domain. An unjoined thread aborts the interpreter."""
+        with self._closing:  # a subject's last messages may be taken in just now
+            self._closed = True
         self.executor.shutdown(timeout_sec=1.0)
         self._thread.join(timeout=2.0)
         self.node.destroy_node()

@@ -135,7 +135,7 @@ class CommandSubject:
         except (OSError, ValueError) as error:
             raise CannotStart(f"cannot start {self._command[0]!r}: {error}") from error
         self._done, self._dying, self._last_words = threading.Event(), threading.Event(), []
-        follow = (recorder.in_this_part(), recorder.take_in, self._process, self._done)
+        follow = (recorder.in_this_part(), recorder.end_of_this_part(), self._process, self._done)
         threading.Thread(target=self._follow, args=follow, daemon=True).start()
 
     def _spawn(self, command: Sequence[str], environment: Mapping[str, str]) -> Process:
@@ -201,9 +201,7 @@ class CommandSubject:
         """Children of this process that are no part of the subject."""
         return ()
 
-    def _follow(
-        self, record: Record, take_in: Callable[[], object], process: Process, done: threading.Event
-    ) -> None:
+    def _follow(self, record: Record, end: Record, process: Process, done: threading.Event) -> None:
         budget = _Budget(MAX_OUTPUT)
         readers = [
             threading.Thread(target=self._read, args=(record, stream, name, budget), daemon=True)
@@ -216,11 +214,11 @@ class CommandSubject:
             # All that it printed must be read before its end is known. A grandchild may hold the pipe open,
             # though.
             reader.join(timeout=READ_LIMIT)
-        if not self._dying.is_set():
-            take_in()  # so must all that it sent
-        # What the judge has ended did not end by itself.
-        record("subject", "aborted" if self._dying.is_set() else "exited", code=code)
-        done.set()
+        if self._dying.is_set():
+            record("subject", "aborted", code=code)  # what the judge has ended did not end by itself
+            done.set()
+        else:
+            end("exited", done.set, code=code)
 
     def _read(self, record: Record, stream: IO[bytes] | None, name: str, budget: _Budget) -> None:
         assert stream is not None

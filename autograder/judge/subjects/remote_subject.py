@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import secrets
 import threading
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from autograder.messages import checks
@@ -12,6 +13,8 @@ from autograder.messages.lines import Hangup, Lines, NotUnderstood
 from autograder.messages.workspaces import Source
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from autograder.judge.bench.own_endpoints import Endpoint
     from autograder.judge.bench.recorder import Recorder
 
@@ -52,6 +55,7 @@ class RemoteSubject:
         self._fresh = True
         self._marker: str | None = None
         self._ended = False
+        self._end: Callable[..., None] = lambda *_, **__: None
         self._ready = threading.Event()
         self._stopped = threading.Event()
         self._answered = threading.Event()
@@ -85,6 +89,7 @@ class RemoteSubject:
         """Let the notebook make the node (a class) or call the function."""
         self._run += 1
         self._recorder = recorder
+        self._end = recorder.end_of_this_part()
         self._marker, self._ended = None, False
         self._stopped.clear()
         fresh, self._fresh = self._fresh, False
@@ -156,10 +161,7 @@ class RemoteSubject:
                 self._take_of_run(message, self._recorder)
 
     def _take_of_run(self, message: checks.RunMessage, recorder: Recorder) -> None:
-        record = recorder.record
-        if isinstance(message, checks.Exited | checks.Returned | checks.Raised):
-            recorder.take_in()  # all that it sent, before its end is known
-            self._ended = True
+        record, ended = recorder.record, partial(self._note_end, message.run)
         match message:
             case checks.Stopped():
                 self._stopped.set()
@@ -182,12 +184,16 @@ class RemoteSubject:
                 self._marker = marker[:MAX_MARKER]
                 record("subject", "constructed")
             case checks.Exited(code=code):
-                record("subject", "exited", code=code)
+                self._end("exited", ended, code=code)
             case checks.Returned(value=value):
                 shown = None if value is None else value[:MAX_TEXT]
-                record("subject", "returned", value=shown, traceback="")
+                self._end("returned", ended, value=shown, traceback="")
             case checks.Raised(traceback=traceback):
-                record("subject", "raised", value=None, traceback=traceback[:MAX_TEXT])
+                self._end("raised", ended, value=None, traceback=traceback[:MAX_TEXT])
+
+    def _note_end(self, run: int) -> None:
+        if run == self._run:
+            self._ended = True
 
 
 def _bounded(seconds: float) -> float:

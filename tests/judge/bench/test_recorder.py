@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from typing import Any
 
 import pytest
@@ -126,3 +127,29 @@ def test_what_a_run_said_is_not_taken_for_the_next_ones() -> None:
     recorder.begin("second", {})
     slow_reader("output", "stdout", text="late")
     assert not recorder.part().events
+
+
+def test_an_end_is_behind_all_that_was_sent_before_and_keeps_its_moment() -> None:
+    book, ended = Recorder(), threading.Event()
+    book.begin("part", {})
+
+    def take_in() -> None:
+        time.sleep(0.01)
+        book.record("request", "/sent")
+
+    book.take_in = take_in
+    book.end_of_this_part()("exited", ended.set, code=0)
+    request, end = book.part().events
+    assert (request.kind, end.kind, end.name, end.data) == ("request", "subject", "exited", {"code": 0})
+    assert end.t < request.t
+    assert ended.is_set()
+
+
+def test_the_end_of_a_run_is_not_one_of_the_next() -> None:
+    book, ended = Recorder(), threading.Event()
+    book.begin("part", {})
+    end = book.end_of_this_part()
+    book.begin("the next part", {})
+    end("exited", ended.set, code=0)
+    assert book.part().events == ()
+    assert ended.is_set()

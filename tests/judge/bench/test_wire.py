@@ -88,3 +88,9 @@ def test_a_judge_that_has_failed_takes_nothing_in() -> None:
         wire.executor.create_task(lambda: 1 / 0)
         wire._thread.join(timeout=180)
         assert not wire.take_in(lambda: 0)
+
+
+def test_a_wire_that_was_closed_takes_nothing_in() -> None:
+    with domain.lease() as domain_id, Wire(domain_id) as wire:
+        pass
+    assert not wire.take_in(lambda: 0)
