@@ -86,7 +86,8 @@ class Wire:
         before = -1
         while before != written_down():
             before = written_down()
-            if not self._take_one_of_each(patience):
+            # What a subject left behind may go on sending for ever.
+            if patience.left <= 0 or not self._take_one_of_each(patience):
                 return False
         return True
 

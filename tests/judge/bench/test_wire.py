@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import threading
 from typing import Any
 
@@ -9,6 +10,7 @@ import pytest
 from rcl_interfaces.srv import GetParameters
 from std_msgs.msg import String
 
+from autograder.judge.bench import wire as wire_module
 from autograder.judge.bench.wire import Wire
 from autograder.judge.serving import domain
 
@@ -94,3 +96,9 @@ def test_a_wire_that_was_closed_takes_nothing_in() -> None:
     with domain.lease() as domain_id, Wire(domain_id) as wire:
         pass
     assert not wire.take_in(lambda: 0)
+
+
+def test_a_flood_is_not_taken_in_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(wire_module, "TAKEN_IN", 0.2)
+    with domain.lease() as domain_id, Wire(domain_id) as wire:
+        assert not wire.take_in(itertools.count().__next__)
