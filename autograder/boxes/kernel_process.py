@@ -45,6 +45,7 @@ _PRELOADED = (
     "rclpy.task",
     "autograder.notebook",
     "autograder.notebook.check",
+    "autograder.notebook.robot.starting",
     "autograder.boxes.processes",
     "autograder.cards.bundle",
 )
@@ -53,10 +54,14 @@ _PREPARED = ("autograder.cards.bundle",)
 _INTERFACES = (
     "action_msgs.msg",
     "action_msgs.srv",
+    "geometry_msgs.msg",
+    "nav_msgs.msg",
     "rcl_interfaces.msg",
     "rcl_interfaces.srv",
     "rosgraph_msgs.msg",
+    "sensor_msgs.msg",
     "std_msgs.msg",
+    "std_srvs.srv",
     "type_description_interfaces.msg",
 )
 _MIDDLEWARE = "librmw_fastrtps_cpp.so"
