@@ -129,7 +129,7 @@ def measured(part: str, form: Form) -> Any:
         NotMeasured: It could not be.
     """
     commands: dict[str, list[str]] = {
-        "bank": ["tests/judge/bank.py", "--lines", "--warm", "--jobs", "6", *form.bank],
+        "bank": ["tests/judge/bank.py", "--lines", "--warm", "--jobs", "14", *form.bank],
         "mutants": ["-m", "tests.mutation", "--sample", str(form.mutants), "--json"],
         "soak": ["-m", "tests.soak", "--judgements", str(form.judgements), "--json", *form.bank],
         "again": ["-m", "tests.steady_class", "--times", str(form.times), "--json"],

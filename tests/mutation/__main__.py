@@ -23,7 +23,7 @@ def main() -> int:
     )
     parser.add_argument("--sample", type=int, metavar="N", help="only N mutants, of every exercise as many")
     parser.add_argument("--seed", type=int, default=0, help="which mutants are in the sample")
-    parser.add_argument("--jobs", type=int, default=8, help="how many are judged at once")
+    parser.add_argument("--jobs", type=int, default=14, help="how many are judged at once")
     parser.add_argument("--repeat", type=int, default=1, help="with how many different inputs each is judged")
     parser.add_argument(
         "--results", type=Path, metavar="FILE", help="keep results here, and go on with those it has"
