@@ -43,16 +43,11 @@ def trouble_html(message: str, base: str) -> str:
 
 @cache
 def _environment() -> Environment:
-    from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
 
-    environment = Environment(
-        loader=PackageLoader("autograder.progress", ""),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    from autograder.page_templates import page_templates
+
+    environment = page_templates("autograder.progress")
 
     def own_file(name: str) -> Markup:
         return Markup(files("autograder.progress").joinpath(name).read_text(encoding="utf-8"))

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import statistics
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import quote
-
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
@@ -18,8 +15,11 @@ from autograder.grading.overview import statistics as figures
 from autograder.grading.pages import POLICY
 from autograder.grading.reporting.report import LATE, NOT_SUBMITTED
 from autograder.grading.table.class_table import ClassTable, by_exercise, read_table
+from autograder.page_templates import page_templates
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from autograder.grading.reporting.report import Row
 
 NAME = "report.html"
@@ -63,13 +63,7 @@ def write_report(path: Path, *, names: bool = True, to: Path | None = None) -> P
 
 
 def _page(directory: ClassDirectory, table: ClassTable, *, names: bool, folder: Path) -> str:
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    environment = page_templates("autograder.grading.overview")
     people = _people(directory, table, names=names, folder=folder)
     there = figures.handed_in(table)
     totals = figures.totals(table)

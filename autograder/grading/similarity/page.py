@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
-
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from autograder.cards.readable import one_line
 from autograder.grading.pages import POLICY
@@ -14,6 +11,7 @@ from autograder.grading.similarity.pairs import LEAST_SHARE, SHORTEST
 from autograder.grading.similarity.passages import own_words
 from autograder.grading.similarity.side import Line, lines, stretches
 from autograder.grading.similarity.wording import HINT, nothing_found, percent, place
+from autograder.page_templates import page_templates
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -47,13 +45,7 @@ class _Shown:
 
 def page(found: Similar) -> str:
     """The page about the close pairs of a class."""
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    environment = page_templates("autograder.grading.similarity")
     return environment.get_template("similar.html.j2").render(
         policy=POLICY,
         title=found.path.name,
