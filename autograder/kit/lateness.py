@@ -23,6 +23,8 @@ ANSWERS_LATE, ANSWERS_SOON = 0.5, 0.12
 """Seconds that an answer is held back; fewer where a person waits, and for a client that has just missed one."""
 PATIENT_WITH_AN_ANSWER = 0.9
 """Seconds after which a client that has given up on an answer was patient: on a busy machine it may have missed it."""
+TRIES = 3
+"""How often at most such a client is started again: an answer that comes soon is missed only where the machine is slow."""
 PATIENT = 1.2
 """Seconds after which a client that has given up was patient: it may have missed the server by a moment."""
 

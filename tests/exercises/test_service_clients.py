@@ -172,3 +172,22 @@ def test_the_service_comes_when_its_client_is_known_so_that_no_call_gets_lost(la
         name for name, *_ in bench.mock_calls if name in ("start", "await_endpoint", "let_wait", "serve")
     ]
     assert order == ["start", "await_endpoint", *(["let_wait"] if lateness else []), "serve"]
+
+
+@pytest.mark.parametrize(("missed", "runs"), [(0, 1), (1, 2), (2, 3), (99, 4)])
+def test_who_waited_long_and_missed_an_answer_is_started_again_and_not_for_ever(
+    missed: int, runs: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    held: list[int] = []
+
+    def meets_service(_: Any, run: Run, *__: Any, **___: Any) -> bool:
+        held.append(run.held)
+        return True
+
+    monkeypatch.setattr(service_client, "meets_service", meets_service)
+    monkeypatch.setattr(service_client, "reports", lambda _: len(held) > missed)
+    monkeypatch.setattr(service_client, "was_patient_with_an_answer", lambda *_: True)
+    bench = MagicMock(look=Look.FAST, random=Random(0))
+    assert service_client.called(bench, Run(BIASED, (1, 2), held=1), 1)
+    assert held == [1, *[0] * (runs - 1)]
+    assert bench.again.call_count == runs - 1

@@ -19,7 +19,7 @@ from autograder.kit import service_calls as calls_seen
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.giving_up import GIVE_UP_LIMIT, LATENESS
 from autograder.kit.hangs import HANGS
-from autograder.kit.lateness import SOON, was_patient, was_patient_with_an_answer
+from autograder.kit.lateness import SOON, TRIES, was_patient, was_patient_with_an_answer
 from autograder.kit.meant_errors import OTHER_SLIPS
 from autograder.kit.model import Advice, Bench, Finding, Look, Mistake
 from autograder.kit.service_calls import (
@@ -108,12 +108,10 @@ def called(bench: Bench, run: Run, calls: int) -> bool:
         if done and not requests(bench.seen()) and was_patient(bench.seen()):
             bench.again()
             done = meets_service(bench, run, calls, patience, lateness=SOON)
-    if (
-        run.held
-        and done
-        and not reports(bench.seen())
-        and was_patient_with_an_answer(bench.seen(), ["request"])
-    ):
+    for _ in range(TRIES if run.held else 0):
+        seen = bench.seen()
+        if not done or reports(seen) or not was_patient_with_an_answer(seen, ["request"]):
+            break
         bench.again()
         done = meets_service(bench, replace(run, held=0), calls, patience)
     bench.stop()

@@ -49,6 +49,7 @@ from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import (
     ANSWERS_SOON,
     SOON,
+    TRIES,
     answers_late,
     hold_back,
     was_patient,
@@ -131,8 +132,10 @@ def run(bench: Bench, name: str, *, accept: bool, pause: float = 0.0) -> Request
         bench.again()
         late = SOON
         serve_goal(bench, name, accept=accept, pause=pause, late=late, held=held)
-    seen = bench.seen()
-    if held and not seen.of("result_request") and was_patient_with_an_answer(seen, ["goal", "cancel"]):
+    for _ in range(TRIES if held else 0):
+        seen = bench.seen()
+        if seen.of("result_request") or not was_patient_with_an_answer(seen, ["goal", "cancel"]):
+            break
         bench.again()
         serve_goal(bench, name, accept=accept, pause=pause, late=late, held=ANSWERS_SOON)
     request = request_of(bench.seen())

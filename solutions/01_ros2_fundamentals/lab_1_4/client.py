@@ -32,6 +32,7 @@ from autograder.kit.goal_reports import (
 from autograder.kit.lateness import (
     ANSWERS_SOON,
     SOON,
+    TRIES,
     answers_late,
     hold_back,
     was_patient,
@@ -89,8 +90,10 @@ def late(bench: Bench) -> bool:
     if done and not asked_for(bench.seen()) and was_patient(bench.seen()):
         bench.again()
         done = meets_late_server(bench, inputs, SOON, held)
-    seen = bench.seen()
-    if done and not seen.of("result_request") and was_patient_with_an_answer(seen, ["goal"]):
+    for _ in range(TRIES):
+        seen = bench.seen()
+        if not done or seen.of("result_request") or not was_patient_with_an_answer(seen, ["goal"]):
+            break
         bench.again()
         done = meets_late_server(bench, inputs, SOON, ANSWERS_SOON)
     bench.stop()
