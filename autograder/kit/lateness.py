@@ -24,7 +24,7 @@ ANSWERS_LATE, ANSWERS_SOON = 0.5, 0.12
 PATIENT_WITH_AN_ANSWER = 0.9
 """Seconds after which a client that has given up on an answer was patient: on a busy machine it may have missed it."""
 TRIES = 3
-"""How often at most such a client is started again: an answer that comes soon is missed only where the machine is slow."""
+"""How often at most such a client is started again: it misses an answer that comes soon where the machine is slow."""
 PATIENT = 1.2
 """Seconds after which a client that has given up was patient: it may have missed the server by a moment."""
 
