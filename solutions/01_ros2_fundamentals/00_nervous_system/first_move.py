@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder.kit.draft import Draft
@@ -9,7 +10,7 @@ from autograder.kit.model import Advice, Finding
 from autograder.kit.recipes.publisher import Hears, Publisher
 
 if TYPE_CHECKING:
-    from autograder.kit.evidence import Event
+    from autograder.kit.evidence import Event, Evidence
 
 heard = Hears(messages=8, long_run=20)
 first_move = Draft(
@@ -57,7 +58,21 @@ def velocity(seen: Publisher, expected: Publisher) -> Finding:
     return Finding(seen.went_on and not odd, words(wanted), found)
 
 
-first_move.asks("rate", 4, "Keeps telling it", heard.keeps_rate)
+@heard.whole_course
+def goes_on(seen: Publisher, _: Publisher) -> Finding:
+    """The commands do not stop: without one the robot stands still after a second."""
+    came = len(seen.messages)
+    return Finding(came >= seen.enough, "commands that go on", f"{came} commands, and no more")
+
+
+def keeps_telling(evidence: Evidence) -> Finding:
+    """The commands come at the reference's rate, and go on."""
+    rate = heard.keeps_rate(evidence)
+    on_and_on = goes_on(heard.seen(evidence), heard.expected(evidence))
+    return rate if on_and_on.passed or not rate.passed else replace(on_and_on, expected=rate.expected)
+
+
+first_move.asks("rate", 4, "Keeps telling it", keeps_telling)
 
 
 @first_move.mistake(
