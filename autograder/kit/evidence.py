@@ -124,7 +124,10 @@ _PREFIX = re2.compile(r"^\[\w+\] \[[\d.]+\] \[(?P<logger>[^\]]*)\]: ")
 
 _LIBRARIES = re2.compile(r"\.action_(client|server)$|^(rcl|rclpy|rcutils|rmw\w*)(\.|$)")
 """Loggers that speak for ROS itself, such as "Ignoring unexpected result response" (rclpy/action/client.py)."""
-_MIDDLEWARE = re2.compile(r"^\S*\d{4}-\d\d-\d\d [\d:.]+ .*\[\w+ (Error|Warning)\]")
+_COLOURS = r"(?:\x1b\[[\d;]*m)*"
+_MIDDLEWARE = re2.compile(
+    rf"^{_COLOURS}\d{{4}}-\d\d-\d\d [\d:.]+ .*\[{_COLOURS}\w+{_COLOURS} (Error|Warning)\]"
+)
 """How a line of Fast DDS begins; on a busy machine it may complain beside the best of programs."""
 
 

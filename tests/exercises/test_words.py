@@ -26,6 +26,14 @@ def output(text: str) -> Event:
             output("\x1b[37;1m2026-11-20 10:41:00.123 \x1b[31;1m[RTPS_HISTORY Error] \x1b[0mChange is full"),
             [],
         ),
+        (
+            output(
+                "\x1b[37;1m2026-11-21 07:12:22.318 \x1b[31;1m[\x1b[37;1mRTPS_TRANSPORT_SHM\x1b[31;1m Error] "
+                "\x1b[37mFailed init_port fastrtps_port7008: open_and_lock_file failed\x1b[34;1m -> Function "
+                "\x1b[36mopen_port_internal\x1b[m"
+            ),
+            [],
+        ),
         (output("@process left"), []),
     ],
 )
