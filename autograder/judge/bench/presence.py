@@ -130,12 +130,6 @@ class Presence:
         self.note_interface(interface)
         return interface
 
-    def _subject_nodes(self) -> list[graph.NodeName]:
-        return graph.subject_nodes(self._node, self._subject.keeper)
-
-    def _survey(self) -> graph.Interface:
-        return graph.survey(self._node)
-
     # --- writing down --------------------------------------------------------------------------------------
 
     def note_interface(self, interface: graph.Interface | None = None) -> None:

@@ -59,6 +59,7 @@ class PathSubject:
         self._path = ""
         self._run = 0
         self._recorder: Recorder | None = None
+        self._end: Callable[..., None] = lambda *_, **__: None
         self._ended = threading.Event()
         self._stopped = threading.Event()
         self._ready = threading.Event()
@@ -104,6 +105,7 @@ class PathSubject:
         del arguments, options
         self._run += 1
         self._recorder = recorder
+        self._end = recorder.end_of_this_part()
         self._ended.clear()
         self._stopped.clear()
         self._built.clear()
@@ -199,8 +201,7 @@ class PathSubject:
             case workspaces.Output(text=text):
                 record("output", "stdout", text=as_words(text))
             case workspaces.Exited(code=code):
-                self._ended.set()
-                record("subject", "exited", code=code)
+                self._end("exited", self._ended.set, code=code)
 
     def _fail(self, why: str) -> None:
         self.trouble = self.trouble or why

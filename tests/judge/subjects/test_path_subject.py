@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from autograder.judge.subjects.path_subject import as_words
+from autograder.judge.bench.recorder import Recorder
+from autograder.judge.subjects.path_subject import PathSubject, as_words
 from autograder.kit.evidence import REPORTS
 from autograder.messages.checks import Check, Collect, Constructed, Judged, Output, Sources
 from autograder.messages.lines import Lines
-from autograder.messages.workspaces import Source
+from autograder.messages.workspaces import Exited, Source
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "workspaces"))
 from graded import graders_judge, judged
@@ -115,3 +116,15 @@ def test_a_grader_s_side_that_is_gone_is_no_verdict(judge: JudgeProcess) -> None
 def test_a_program_s_words_are_never_a_report(mark: str) -> None:
     assert not as_words(f"{mark}[]").startswith(REPORTS)
     assert as_words("hello") == "hello"
+
+
+def test_the_end_of_a_run_is_known_behind_all_that_was_sent_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(PathSubject, "_say", lambda *_: None)
+    nobody: Any = None
+    subject, recorder = PathSubject(nobody, "lab_1_1.hello", ""), Recorder()
+    recorder.begin("part", {})
+    recorder.take_in = lambda: recorder.record("log", "/rosout", text="hello")
+    subject.start(recorder, (), {})
+    subject._take(Exited(run=1, code=0))
+    assert [event.kind for event in recorder.part().events] == ["log", "subject"]
+    assert subject.ended
