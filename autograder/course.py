@@ -27,6 +27,10 @@ COPY = "(your copy,"
 """In the name of each notebook that `./course reset` has kept."""
 LAB = "lab.md"
 """The master in a lab's folder, from which its notebook is derived."""
+WHY = ".why.md"
+"""How the file beside an exercise ends that says why its reference solution is written so."""
+SOLUTION = ".solution.json"
+"""How the one ends that is derived from that and from the master: what a student with full marks may read."""
 
 
 class NoCourse(LookupError):

@@ -80,13 +80,15 @@ class HandOut:
     size: int
 
 
-def hand_out(place: Path, root: Path, *, as_zip: bool = False) -> HandOut:
+def hand_out(place: Path, root: Path, *, as_zip: bool = False, with_solutions: bool = False) -> HandOut:
     """Make what a class is handed.
 
     Args:
         place: A folder that is not there yet or is empty; with ``as_zip``, the zip file.
         root: The whole course.
         as_zip: Pack it.
+        with_solutions: Also what a card offers with full marks: the reference solutions, and why they are so. Whoever
+            looks into the folder ``exercises`` can read them earlier.
 
     Raises:
         CannotHandOut: There is something in that place, somebody has worked in a notebook of the chapters, or this
@@ -97,7 +99,7 @@ def hand_out(place: Path, root: Path, *, as_zip: bool = False) -> HandOut:
         raise CannotHandOut(f"{root} was handed out itself: make a hand-out from the course with its masters")
     if place.is_file() or (place.is_dir() and (as_zip or any(place.iterdir()))):
         raise CannotHandOut(f"{place} is there already, and nothing is overwritten: name another place")
-    files = dict(_files(root))
+    files = dict(_files(root, with_solutions=with_solutions))
     files["README.md"] = README.format(title=course.chapters(root)[0].title).encode()
     write = _pack if as_zip else _copy
     write(place, files)
@@ -107,14 +109,14 @@ def hand_out(place: Path, root: Path, *, as_zip: bool = False) -> HandOut:
     return HandOut(place, len(files), sum(sizes))
 
 
-def _files(root: Path) -> Iterator[tuple[str, Path | bytes]]:
+def _files(root: Path, *, with_solutions: bool) -> Iterator[tuple[str, Path | bytes]]:
     """The files by the names that they get."""
     for name in WHOLE:
         yield from ((path.relative_to(root).as_posix(), path) for path in _below(root / name, root))
     yield from ((f"docs/{name}", root / "docs" / name) for name in PAGES if (root / "docs" / name).is_file())
     yield from ((path.relative_to(root).as_posix(), path) for path in _below(root / "docs" / "images", root))
     for chapter in course.chapters(root):
-        for path in [chapter.folder / course.CHAPTER, *_judges_part(chapter)]:
+        for path in [chapter.folder / course.CHAPTER, *_judges_part(chapter, with_solutions=with_solutions)]:
             if path.is_file():
                 yield f"{HANDED_OUT}/{path.relative_to(chapter.folder.parent).as_posix()}", path
         for lab in chapter.labs:
@@ -134,10 +136,12 @@ def _notebook(root: Path, chapter: course.Chapter, lab: Path) -> Iterator[tuple[
     yield f"{HANDED_OUT}/{course.released(lab).relative_to(chapter.folder.parent).as_posix()}", notebook
 
 
-def _judges_part(chapter: course.Chapter) -> Iterator[Path]:
+def _judges_part(chapter: course.Chapter, *, with_solutions: bool) -> Iterator[Path]:
     for lab in chapter.labs:
         yield from sorted(lab.glob("*.py"))
         yield from sorted(lab.glob(f"*{REFERENCE}"))
+        if with_solutions:
+            yield from sorted(lab.glob(f"*{course.SOLUTION}"))
     yield from _below(chapter.folder / course.INTERFACES, chapter.folder)
 
 

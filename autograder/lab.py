@@ -7,6 +7,7 @@ files in ``lab_config/`` say what that is; Jupyter reads them because their fold
 from __future__ import annotations
 
 import os
+import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,11 +18,14 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 SETTINGS = Path(__file__).with_name("lab_config")
-"""No *Create Assignment*, formgrader and lists of courses: those are for whoever grades."""
+"""No *Create Assignment*, formgrader and lists of courses: those are for whoever grades. *Validate* gives a cell ten
+minutes instead of half of one, because a check may have to build a workspace."""
 PANEL = Path(__file__).parent / "progress" / "labextensions"
 """The side panel with the course page: an extension of JupyterLab's, ready to be loaded."""
 COURSE_PAGE = "course"
 """Where the server has the course page, below its base address."""
+NOTHING_TO_SAVE = "--ServerApp.contents_manager_class=autograder.opened_notebooks.OpenedNotebooks"
+"""A notebook that was only opened is not marked as unsaved."""
 NOTEBOOKS_VARIABLE = "AUTOGRADER_NOTEBOOKS"
 """Names the folder of the session's notebooks to its terminals."""
 _CONFIG_PATH = "JUPYTER_CONFIG_PATH"
@@ -57,10 +61,23 @@ def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
 
     try:
         # In this process, because the domain is held for as long as it lives.
-        LabApp.launch_instance([*_start_page(), *_start_folder(Path.cwd()), *arguments])
+        LabApp.launch_instance([*_start_page(), NOTHING_TO_SAVE, *_start_folder(Path.cwd()), *arguments])
     finally:
+        end_idle_workers()
         if claim:
             claim.release()
+
+
+def end_idle_workers() -> None:
+    """End the threads in which the server has read and written files, so that Python does not wait for them.
+
+    Each of them (AnyIO's) ends with the request that it was made for. A request that was being answered when the server
+    was told to end never comes to its end, and the terminal would hang after Ctrl-C.
+    """
+    for thread in threading.enumerate():
+        stop = getattr(thread, "stop", None)
+        if thread.name == "AnyIO worker thread" and stop is not None:
+            stop()
 
 
 def join_domain() -> DomainClaim | None:

@@ -137,6 +137,19 @@ def from_json(data: bytes | str) -> Verdict:
     return msgspec.json.decode(data, type=Verdict)
 
 
+def failed(exercise: str, title: str, max_score: float, diagnosis: Diagnosis, detail: str = "") -> Verdict:
+    """The verdict for a check that could not be made because of what was submitted; it earns nothing."""
+    return Verdict(
+        exercise=exercise,
+        title=title,
+        state=State.FAILED,
+        score=0.0,
+        max_score=max_score,
+        diagnosis=diagnosis,
+        detail=detail,
+    )
+
+
 def not_checked(exercise: str, title: str, max_score: float, reason: str, next_step: str = "") -> Verdict:
     """The verdict for trouble of the grader's own; it earns nothing and accuses nobody."""
     return Verdict(

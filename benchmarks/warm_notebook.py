@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import psutil
 
-from autograder.boxes.execution import Kind
+from autograder.boxes.execution import CellType
 from autograder.grading.task import decode_task
 from benchmarks.machine import CpuGroup
 
@@ -106,7 +106,7 @@ def _run(task: Task, folder: Path, domain: int, judge: Any, group: CpuGroup | No
         sink = io.StringIO()
         with contextlib.redirect_stdout(sink):
             for cell in task.cells:
-                if cell.kind is not Kind.CODE:
+                if cell.kind is not CellType.CODE:
                     continue
                 before, began = group.seconds() if group else 0.0, time.monotonic()
                 exercise = cell.check.exercise if cell.check else ""

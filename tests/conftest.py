@@ -28,6 +28,7 @@ TOGETHER = ("tests/attacks", "tests/boxes")
 LONGEST = (
     "tests/judge/test_bank.py",
     "tests/attacks",
+    "tests/appeals/test_every_exercise.py",
     "tests/grading/cluster/test_cluster.py",
     "tests/grading/classes/test_sample_class.py",
     "tests/grading/test_killed.py",

@@ -31,8 +31,11 @@ MAY_IMPORT = {
     "boxes": frozenset({"verdict"}),
     "masters": frozenset({"course", "exercises"}),
     "journal": frozenset({"course", "verdict"}),
-    "notebook": ALL - {"judge", "exercises", "kit", "masters", "boxes", "grading", "execution", "recording"},
-    "judge": ALL - {"notebook", "cards", "masters", "boxes", "grading", "execution", "recording"},
+    "message_files": frozenset[str](),
+    "appeals": ALL - {"grading", "boxes", "notebook"},
+    "notebook": ALL
+    - {"judge", "exercises", "kit", "masters", "boxes", "grading", "execution", "recording", "appeals"},
+    "judge": ALL - {"notebook", "cards", "masters", "boxes", "grading", "execution", "recording", "appeals"},
     "__main__": frozenset({"cli"}),
 }
 

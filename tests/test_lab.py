@@ -2,25 +2,36 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import subprocess
 import sys
+import threading
 from pathlib import Path
 from typing import Any
 
+import anyio.to_thread
 import pytest
 from jupyter_core.paths import jupyter_config_path
 from jupyter_server.services.config import ConfigManager
 from jupyterlab.labapp import LabApp
 from jupyterlab_server.config import get_page_config
+from nbgrader.server_extensions.validate_assignment.handlers import ValidateAssignmentHandler
 
-from autograder import journal
-from autograder.lab import NOTEBOOKS_VARIABLE, PANEL, NoSuchFolderError, open_lab
+from autograder import exercises, journal
+from autograder.lab import (
+    NOTEBOOKS_VARIABLE,
+    NOTHING_TO_SAVE,
+    PANEL,
+    NoSuchFolderError,
+    end_idle_workers,
+    open_lab,
+)
 from autograder.ros_domain import claim_free_domain
 
 ROS_VARIABLES = ("ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
 VARIABLES = (*ROS_VARIABLES, "JUPYTER_CONFIG_PATH", journal.VARIABLE, NOTEBOOKS_VARIABLE)
-START = ["--LabApp.default_url=/course", f"--LabApp.extra_labextensions_path={PANEL}"]
+START = ["--LabApp.default_url=/course", f"--LabApp.extra_labextensions_path={PANEL}", NOTHING_TO_SAVE]
 
 
 class Started:
@@ -35,6 +46,7 @@ class Started:
         self.config_path = jupyter_config_path()
         # As jupyterlab_server's settings_utils reads it.
         self.settings = ConfigManager(config_dir_name="labconfig").get("default_setting_overrides")  # type: ignore[no-untyped-call]
+        self.validate = ValidateAssignmentHandler.load_config(None)
         self.domain_is_held = not _can_claim(int(os.environ.get("ROS_DOMAIN_ID", "0")))
 
 
@@ -100,6 +112,13 @@ def test_a_student_has_validate_and_nothing_of_the_instructors(
     assert off == {"assignment-list", "course-list", "create-assignment", "formgrader", "menu"}
 
 
+def test_validate_gives_a_cell_the_time_that_a_check_of_programs_may_take(
+    started: list[Started], tmp_path: Path
+) -> None:
+    open_lab(tmp_path)
+    assert started[0].validate.Execute.timeout >= max(exercise.limit for exercise in exercises.unbroken())
+
+
 def test_cells_have_line_numbers_since_cards_name_them(started: list[Started], tmp_path: Path) -> None:
     open_lab(tmp_path)
     assert started[0].settings["@jupyterlab/notebook-extension:tracker"]["codeCellConfig"]["lineNumbers"]
@@ -123,6 +142,27 @@ def test_its_kernels_and_terminals_know_the_journal_beside_the_notebooks(
     open_lab(tmp_path)
     assert started[0].environ[NOTEBOOKS_VARIABLE] == str(tmp_path)
     assert started[0].environ[journal.VARIABLE] == str(tmp_path / journal.NAME)
+
+
+def test_a_request_that_was_never_answered_does_not_keep_the_server_alive() -> None:
+    before = set(threading.enumerate())
+    loop = asyncio.new_event_loop()
+
+    async def request() -> None:
+        await anyio.to_thread.run_sync(loop.call_soon_threadsafe, loop.stop)
+        await asyncio.Event().wait()
+
+    task = loop.create_task(request())
+    loop.run_forever()
+    loop.run_until_complete(asyncio.sleep(0))  # the thread is idle, and its request goes on
+    (worker,) = set(threading.enumerate()) - before
+    end_idle_workers()
+    worker.join(60)
+    assert not worker.is_alive()
+    assert not task.done()
+    task.cancel()
+    loop.run_until_complete(asyncio.wait([task]))
+    loop.close()
 
 
 def test_a_folder_that_is_not_there_is_a_clear_error(tmp_path: Path) -> None:

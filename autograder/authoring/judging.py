@@ -124,7 +124,8 @@ def _judged_warm(exercise: Exercise, command: Sequence[str], seed: str) -> Verdi
     subject = WarmScript(WarmPython(), command)
     try:
         with domain.lease() as domain_id:
-            return trial.check(exercise, subject, reference.load(exercise.id), seed=seed, domain_id=domain_id)
+            expected = reference.load(exercise.id)
+            return trial.check(exercise, subject, expected, seed=seed, domain_id=domain_id).verdict
     except JudgeFailed as error:
         return not_checked(exercise.id, exercise.title, exercise.points, str(error))
 

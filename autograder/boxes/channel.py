@@ -14,8 +14,6 @@ from typing import TYPE_CHECKING, Any, Self
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from types import TracebackType
-
 LARGEST = 200_000
 """Bytes of one message; what Linux lets a packet have by default is a little more."""
 _MOST_DESCRIPTORS = 32
@@ -106,9 +104,7 @@ class Channel:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
 
 
-class Kind(StrEnum):
+class CellType(StrEnum):
     """The type of a cell, in nbformat's words."""
 
     CODE = "code"
@@ -51,7 +51,7 @@ class Cell:
     """
 
     source: str
-    kind: Kind = Kind.CODE
+    kind: CellType = CellType.CODE
     check: Check | None = None
     name: str = ""
     own: bool = False
@@ -103,6 +103,8 @@ class Execution:
         start_seconds: Of these, until kernel and judge were ready.
         as_typed: The places of the cells whose text is too costly to be rendered on a page.
         needs_room: It came to the end of the memory that it may have while others run beside: it says nothing then.
+        evidence: What the judge's verdicts follow from, by exercise, as the judge has packed it. Nothing looks into it
+            while a class is graded.
     """
 
     cells: tuple[CellRun, ...]
@@ -112,3 +114,4 @@ class Execution:
     start_seconds: float = 0.0
     as_typed: tuple[int, ...] = ()
     needs_room: bool = False
+    evidence: dict[str, bytes] = field(default_factory=dict)

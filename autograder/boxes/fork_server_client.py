@@ -17,8 +17,6 @@ from autograder.boxes.held_folder import HeldFolder
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
-    from types import TracebackType
-
 SUPERVISOR_MODULE = "autograder.boxes.supervisor"
 KERNEL_MODULE = "autograder.boxes.kernel_process"
 _NO_THREADS = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
@@ -168,9 +166,7 @@ class ForkServers:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.stop()
 
     def _all(self) -> list[ForkServer]:

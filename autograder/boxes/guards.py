@@ -113,7 +113,7 @@ class BoxGuard:
         self._group.close()
 
     def _look(self) -> Ended | None:
-        # Whom the kernel ends is a matter of chance; that somebody had to be is not.
+        # Which process the kernel kills is chance; that it had to kill one means that the memory was used up.
         if self._group.ran_out_of_memory:
             return Ended.OUT_OF_MEMORY
         use = use_of(self._first, None if self._memory else _memory_of)
@@ -213,7 +213,7 @@ def _sum_of(file: Path, wanted: tuple[str, ...]) -> int:
 
 
 class NoGuard:
-    """No box, no guard but the time: what runs has all rights anyway."""
+    """The guard without a box: it counts nothing, and only the limits of time hold."""
 
     def exceeded(self) -> Ended | None:
         """Nothing is counted."""

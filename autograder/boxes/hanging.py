@@ -12,7 +12,7 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from autograder.boxes.execution import Cell, Kind
+from autograder.boxes.execution import Cell, CellType
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from autograder.boxes.limits import Limits
 
 AGAIN_SECONDS = 10.0
-"""Of a cell without points that uses what has hung before."""
+"""Seconds for a cell without points that uses what has hung before."""
 _SHARE_OF_A_CHECK = 0.25
-"""Of the judge's own limit, which is some twenty times what a check takes."""
+"""Share of the judge's limit for a check of what has hung before; a check takes about a twentieth of that limit."""
 
 
 @dataclass
@@ -39,7 +39,7 @@ class Hangs:
     @classmethod
     def of(cls, cells: Iterable[Cell]) -> Hangs:
         """For these cells."""
-        own = (cell.source for cell in cells if cell.kind is Kind.CODE and cell.own)
+        own = (cell.source for cell in cells if cell.kind is CellType.CODE and cell.own)
         return cls(frozenset(name for source in own for name in _defined(source)))
 
     def note(self, cell: Cell, title: str) -> None:

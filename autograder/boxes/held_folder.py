@@ -17,7 +17,6 @@ from autograder.boxes.scratch import remove_tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from types import TracebackType
 
 
 class HeldFolder:
@@ -39,7 +38,7 @@ class HeldFolder:
             except FileNotFoundError:
                 continue
             fcntl.flock(self._lock, fcntl.LOCK_EX)
-            # Somebody may have taken it for a dead one's before it was locked.
+            # Before it was locked, another process may have removed it as one that was left behind.
             if self.path.exists():
                 return
             os.close(self._lock)
@@ -54,9 +53,7 @@ class HeldFolder:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.remove()
 
 

@@ -22,6 +22,7 @@ from jupyter_client.session import Session
 
 from autograder.boxes.execution import Ended
 from autograder.boxes.guards import INTERVAL, NoGuard
+from autograder.boxes.time_left import Left, until, wall_time
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -162,14 +163,14 @@ class Kernel:
                 raise KernelFailed(f"the kernel did not answer within {self._limits.start_seconds:g} s")
             raise KernelFailed(f"the kernel ended while it started: {self._last_words()}")
 
-    def execute(self, source: str, deadline: float, request: Callable[[str], None] = lambda _: None) -> Ended:
+    def execute(self, source: str, left: Left, request: Callable[[str], None] = lambda _: None) -> Ended:
         """Execute one cell.
 
-        A cell that is still running at the deadline is interrupted; a kernel that does not obey is killed.
+        A cell that is still running when its time is up is interrupted; a kernel that does not obey is killed.
 
         Args:
             source: The cell's text.
-            deadline: On the monotonic clock.
+            left: The seconds that it has left, whenever it is asked.
             request: Called with the id of this request before any output of it arrives.
         """
         if not self.alive:
@@ -186,14 +187,14 @@ class Kernel:
         message = self._session.msg("execute_request", content)
         request(message["header"]["msg_id"])
         self._session.send(self._shell, message)
-        ended = self._await_reply(message["header"]["msg_id"], deadline)
+        ended = self._await_reply(message["header"]["msg_id"], left)
         if ended is not None:
             return ended
         stopped_for = Ended.TOO_MUCH_OUTPUT if self._floods else self._guard.reason() or Ended.TIMED_OUT
         self._sent = 0
         self.interrupt()
         grace = self._limits.interrupt_grace
-        if self._await_reply(message["header"]["msg_id"], time.monotonic() + grace) is None:
+        if self._await_reply(message["header"]["msg_id"], wall_time(grace)) is None:
             self.kill()
         return stopped_for
 
@@ -213,11 +214,11 @@ class Kernel:
         os.close(self._log)
         self._context.destroy(linger=0)
 
-    def _await_reply(self, request: str, deadline: float) -> Ended | None:
-        """How the cell ended, or None where it is still running at the deadline."""
+    def _await_reply(self, request: str, left: Left) -> Ended | None:
+        """How the cell ended, or None where it is still running when its time is up."""
         reply: Mapping[str, Any] | None = None
         idle = False
-        for channel, message in self._messages(deadline):
+        for channel, message in self._messages(left):
             content = _answer(message, request)
             idle = idle or (channel is self._iopub and content.get("execution_state") == "idle")
             if channel is self._shell and content and message.get("msg_type") == "execute_reply":
@@ -235,7 +236,7 @@ class Kernel:
 
     def _await_idle(self, request: str) -> None:
         """The reply is there; the last outputs travel on the other socket and may be a little later."""
-        for channel, message in self._messages(time.monotonic() + _LAST_OUTPUT_S):
+        for channel, message in self._messages(wall_time(_LAST_OUTPUT_S)):
             if channel is self._iopub and _answer(message, request).get("execution_state") == "idle":
                 return
         if self.alive:
@@ -255,7 +256,7 @@ class Kernel:
         while self.alive and time.monotonic() < deadline:
             # Asked more than once because outputs published before our subscription was known are lost.
             asked.add(self._ask("kernel_info_request", {}))
-            for channel, message in self._messages(min(deadline, time.monotonic() + _ASK_AGAIN_S)):
+            for channel, message in self._messages(until(min(deadline, time.monotonic() + _ASK_AGAIN_S))):
                 if _parent(message) in asked:
                     answered |= channel is self._shell
                     heard |= channel is self._iopub
@@ -275,10 +276,10 @@ class Kernel:
         """Why the kernel is gone."""
         return self._guard.reason() or Ended.KERNEL_DIED
 
-    def _messages(self, deadline: float) -> Iterator[tuple[zmq.Socket[bytes], dict[str, Any]]]:
-        """All messages until the deadline, a limit or the kernel's end; outputs are handed on from here."""
+    def _messages(self, left: Left) -> Iterator[tuple[zmq.Socket[bytes], dict[str, Any]]]:
+        """All messages until the time is up, a limit or the kernel's end; outputs are handed on from here."""
         while True:
-            ready = dict(self._poller.poll(self._wait_ms(deadline)))
+            ready = dict(self._poller.poll(_wait_ms(left)))
             if self._guard.exceeded():
                 self.kill()
                 return
@@ -291,15 +292,11 @@ class Kernel:
                             self._hand_on(message)
                         yield channel, message
             if self._iopub in ready or self._shell in ready:
-                if time.monotonic() < deadline and not self._floods:
+                if left() > 0 and not self._floods:
                     continue
                 return
-            if not self.alive or time.monotonic() >= deadline or self._floods:
+            if not self.alive or left() <= 0 or self._floods:
                 return
-
-    def _wait_ms(self, deadline: float) -> int:
-        left = deadline - time.monotonic()
-        return int(1000 * max(0.0, min(left, INTERVAL))) + 1
 
     def _received(self, channel: zmq.Socket[bytes]) -> Iterator[dict[str, Any]]:
         # Bounded, so that a flood on one socket starves neither the other one nor the deadline.
@@ -350,6 +347,10 @@ class Kernel:
             if lines:
                 return lines[-1][:500]
         return "without a word"
+
+
+def _wait_ms(left: Left) -> int:
+    return int(1000 * max(0.0, min(left(), INTERVAL))) + 1
 
 
 def _listener(path: Path) -> socket.socket:

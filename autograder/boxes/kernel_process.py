@@ -50,7 +50,7 @@ _PRELOADED = (
     "autograder.cards.bundle",
 )
 _PREPARED = ("autograder.cards.bundle",)
-"""Of those, what has a function ``prepare`` for that."""
+"""The modules of these that have a function ``prepare`` to be called."""
 _INTERFACES = (
     "action_msgs.msg",
     "action_msgs.srv",
@@ -94,7 +94,7 @@ def prepare(*interfaces: str) -> None:
 
 
 def _rehearsed() -> list[str]:
-    """The modules that a kernel imports until its first cell has run, as a child finds out that is one for a moment."""
+    """The modules that a kernel imports until its first cell has run; a child becomes a kernel and lists them."""
     before = set(sys.modules)
     reading, writing = os.pipe()
     pid = os.fork()
@@ -152,7 +152,7 @@ def _arguments() -> list[str]:
 
 
 def _forget_the_fork() -> None:
-    """Let nothing be alike in two kernels because they came from one process. Python reseeds ``random`` itself."""
+    """Draw anew what a fork has in common with its siblings: random numbers. Python reseeds ``random`` itself."""
     random.seed()
     numpy_random = sys.modules.get("numpy.random")
     if numpy_random is not None:

@@ -1,11 +1,11 @@
-"""The verdict where the judge has none: zero points, and a reason a student can act on."""
+"""The verdict on a check that the judge could not decide: zero points, and a reason that a student can act on."""
 
 from __future__ import annotations
 
 import re2
 
 from autograder.boxes.execution import CellRun, Check, Ended
-from autograder.verdict import Diagnosis, State, Verdict, not_checked
+from autograder.verdict import Diagnosis, Verdict, failed, not_checked
 
 _SYNTAX_ERRORS = ("SyntaxError", "IndentationError", "TabError")
 
@@ -32,7 +32,7 @@ _LIMITS = {
         "Look for a loop that prints without waiting, or print less.",
     ),
 }
-"""What is said of a limit, and what to do."""
+"""For each limit of a box: what a student is told, and what to do."""
 _SHORTAGES = {
     "OSError: [Errno 28]": (
         "disk_full",
@@ -61,15 +61,7 @@ def zero_points(check: Check, key: str, reason: str, next_step: str, detail: str
         next_step: What to do now.
         detail: More text, such as the end of a traceback.
     """
-    return Verdict(
-        exercise=check.exercise,
-        title=check.title,
-        state=State.FAILED,
-        score=0.0,
-        max_score=check.points,
-        diagnosis=Diagnosis(key=key, text=reason, next_step=next_step),
-        detail=detail,
-    )
+    return failed(check.exercise, check.title, check.points, Diagnosis(key, reason, next_step), detail)
 
 
 def grader_trouble(check: Check, reason: str) -> Verdict:

@@ -26,7 +26,7 @@ ETC_FOLDERS = ("alternatives", "ld.so.conf.d")
 _SEARCH_PATHS = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH", "PATH")
 
 USER = "student"
-"""Who one is in a box; the id is the one that a first user has on many systems."""
+"""The user in a box; the id is that of the first user on many systems."""
 USER_ID = 1000
 HOME = Path("/home") / USER
 WORK = HOME / "notebook"
@@ -211,7 +211,7 @@ def _in_system(path: Path) -> bool:
 
 
 def _outermost(paths: Iterable[Path]) -> list[Path]:
-    """Without those that lie in another one; the package inside an environment needs no line of its own."""
+    """The folders without those that lie in another of them."""
     every = sorted(set(paths))
     return [
         path for path in every if not any(path != other and path.is_relative_to(other) for other in every)

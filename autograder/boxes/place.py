@@ -1,4 +1,4 @@
-"""Where a notebook runs: in boxes, or, where that was asked for in as many words, beside them.
+"""Where a notebook runs: in boxes, or without them where somebody has asked for that.
 
 A place starts the two processes of a notebook, its kernel and its judge, and leaves nothing behind.
 """
@@ -21,7 +21,6 @@ from autograder.boxes.scratch import write_files
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from types import TracebackType
 
     from autograder.boxes.fork_server_client import Addresses
     from autograder.boxes.kernel import Channels
@@ -158,9 +157,7 @@ class BoxedPlace:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._open.close()
 
 
@@ -217,9 +214,7 @@ class UnboxedPlace:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         pass
 
 

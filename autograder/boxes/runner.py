@@ -11,11 +11,12 @@ import time
 from typing import TYPE_CHECKING, Any, Protocol
 
 from autograder.boxes.assertions import verdict_of
-from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution, Kind
+from autograder.boxes.execution import Cell, CellRun, CellType, Check, Ended, Execution
 from autograder.boxes.hanging import Hangs, seconds_again
 from autograder.boxes.kernel import Kernel, KernelFailed, Start
 from autograder.boxes.missing_verdict import grader_trouble, without_verdict
 from autograder.boxes.outputs import Budget, OutputCollector
+from autograder.boxes.time_left import Patient, first_of, wall_time
 from autograder.verdict import State, Verdict
 
 if TYPE_CHECKING:
@@ -24,6 +25,10 @@ if TYPE_CHECKING:
 
     from autograder.boxes.guards import Guard
     from autograder.boxes.limits import Limits
+
+
+_TERMINAL = ("%%bash", "%%sh", "%%script")
+"""What the cell of a terminal begins with."""
 
 
 class Judge(Protocol):
@@ -46,6 +51,7 @@ def run_notebook(
     folder: Path,
     limits: Limits,
     guard: Guard | None = None,
+    patient: Patient = wall_time,
 ) -> Execution:
     """Execute a notebook in a kernel of its own.
 
@@ -56,13 +62,14 @@ def run_notebook(
         folder: For the kernel's sockets, a short path.
         limits: All limits.
         guard: Says when a limit of the box is exceeded.
+        patient: How long the seconds of the limits on cells last.
 
     Returns:
         The execution. Nothing that the notebook does makes this function raise; trouble of the grader's own
         (no kernel, no judge) is in ``trouble``, and every check it concerns is "not checked".
     """
     began = time.monotonic()
-    run = _Run(cells, limits)
+    run = _Run(cells, limits, patient)
     try:
         with (
             contextlib.closing(Kernel(folder, start, limits, run.on_output, guard)) as kernel,
@@ -83,8 +90,9 @@ def run_notebook(
 class _Run:
     """One notebook's execution while it goes on."""
 
-    def __init__(self, cells: Sequence[Cell], limits: Limits) -> None:
+    def __init__(self, cells: Sequence[Cell], limits: Limits, patient: Patient = wall_time) -> None:
         self._cells = cells
+        self._patient = patient
         self._limits = limits
         budget = Budget(limits.notebook_output_bytes)
         self._collectors = [OutputCollector(limits.cell_output_bytes, budget) for _ in cells]
@@ -105,18 +113,20 @@ class _Run:
 
     def all_cells(self, kernel: Kernel, judge: Judge) -> None:
         """Run what is to run, as long as there is a kernel and time."""
-        notebook_deadline = time.monotonic() + self._limits.notebook_seconds
+        of_notebook = wall_time(self._limits.notebook_seconds)
         for index, cell in enumerate(self._cells):
-            if cell.kind is not Kind.CODE:
+            if cell.kind is not CellType.CODE:
                 self._ended[index] = Ended.DONE
                 continue
-            if not kernel.alive or time.monotonic() >= notebook_deadline:
+            if not kernel.alive or of_notebook() <= 0:
                 continue
             with self._watched(index, cell, judge):
                 began = time.monotonic()
                 self._allow(index, cell)
-                deadline = min(notebook_deadline, began + self._allowed[index])
-                self._ended[index] = kernel.execute(cell.source, deadline, self._remember(index))
+                of_cell = self._patient(self._allowed[index])
+                self._ended[index] = kernel.execute(
+                    cell.source, first_of(of_cell, of_notebook), self._remember(index)
+                )
                 self._seconds[index] = time.monotonic() - began
                 if self._ended[index] is Ended.TIMED_OUT:
                     self._hangs.note(cell, _title(cell))
@@ -145,7 +155,7 @@ class _Run:
 
     def _what_led_to(self, check: int, runs: list[CellRun]) -> list[tuple[str, CellRun]]:
         """The code cells before a check, with titles: those since the last one, or all if none went wrong."""
-        code = [index for index in range(check) if self._cells[index].kind is Kind.CODE]
+        code = [index for index in range(check) if self._cells[index].kind is CellType.CODE]
         checks = [index for index in code if self._cells[index].check is not None]
         recent = [index for index in code if index > (checks[-1] if checks else -1)]
         if all(runs[index].ended is Ended.DONE or runs[index].ended is Ended.NOT_RUN for index in recent):
@@ -197,7 +207,8 @@ class _Run:
     def _limit(self, cell: Cell) -> float:
         if cell.check is not None and not cell.check.asserts:
             return cell.check.limit + self._limits.check_margin
-        return self._limits.cell_seconds
+        is_terminal = cell.source.lstrip().startswith(_TERMINAL)
+        return self._limits.cell_seconds * (self._limits.terminal_factor if is_terminal else 1.0)
 
     def _cell_run(self, index: int) -> CellRun:
         outputs = self._collectors[index].outputs()

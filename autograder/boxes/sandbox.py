@@ -31,7 +31,6 @@ from autograder.boxes.scratch import write_files
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from types import TracebackType
 
     from autograder.boxes.guards import BoxGuard
 
@@ -255,9 +254,7 @@ class Enclosure:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def _guarded(self, rlimits: Mapping[str, int] | None = None) -> dict[str, Any]:

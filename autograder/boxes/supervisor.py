@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 SCRATCH_FOLDERS = ("home", "tmp", "shm", "work")
-"""What there is in the scratch; a box sees each of them at a place of its own."""
+"""The folders in the scratch; a box sees each of them at another path."""
 
 MOST_TERMINALS = 32
 """A line with an exclamation mark takes one while it runs."""
@@ -184,7 +184,7 @@ class _Supervisor:
             process.stdin.write(b"\n")
             process.stdin.flush()
         assert process.stdout is not None
-        # What waits in an empty box says what one says to it: this comes back once the box is complete.
+        # The program that waits in an empty box repeats what is sent to it: an answer means that the box is complete.
         with process.stdout as said:
             line = said.readline()
             if line != b"\n":

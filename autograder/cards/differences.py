@@ -22,7 +22,7 @@ _QUOTED = re2.compile("“([^“”]*)”")
 _BLANK = "␣"
 
 
-class Kind(StrEnum):
+class DiffTag(StrEnum):
     """What a piece of the text is."""
 
     SAME = "same"
@@ -34,16 +34,16 @@ class Kind(StrEnum):
 class Piece:
     """Some characters in a row."""
 
-    kind: Kind
+    kind: DiffTag
     text: str
 
     @property
     def marked(self) -> str:
         """With the marks that say without colour what it is: ``[missing]``, ``{too much}``."""
-        if self.kind is Kind.SAME:
+        if self.kind is DiffTag.SAME:
             return self.text
         text = self.text.replace(" ", _BLANK)
-        return f"[{text}]" if self.kind is Kind.MISSING else f"{{{text}}}"
+        return f"[{text}]" if self.kind is DiffTag.MISSING else f"{{{text}}}"
 
 
 def difference(criterion: Criterion) -> tuple[Piece, ...]:
@@ -73,9 +73,9 @@ def _pieces(expected: str, seen: str) -> tuple[Piece, ...]:
     found = []
     for operation, a1, a2, b1, b2 in matcher.get_opcodes():
         if operation == "equal":
-            found.append(Piece(Kind.SAME, expected[a1:a2]))
+            found.append(Piece(DiffTag.SAME, expected[a1:a2]))
         if operation in ("delete", "replace"):
-            found.append(Piece(Kind.MISSING, expected[a1:a2]))
+            found.append(Piece(DiffTag.MISSING, expected[a1:a2]))
         if operation in ("insert", "replace"):
-            found.append(Piece(Kind.EXTRA, seen[b1:b2]))
+            found.append(Piece(DiffTag.EXTRA, seen[b1:b2]))
     return tuple(found)

@@ -7,7 +7,7 @@ card is a heading, sentences and tables in the right order without them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from autograder.cards import wording
 from autograder.cards.differences import Piece, difference
 from autograder.cards.readable import block, one_line, paragraph
+from autograder.cards.solution import HEADING, OTHER, Solution
 from autograder.cards.timeline import HALF_WIDTH, WIDTH, Picture, picture
 from autograder.cards.tracebacks import TRACEBACK, Place, place
 from autograder.cards.traffic import Part, traffic
@@ -36,16 +37,33 @@ _SYMBOLS = {State.PASSED: "✓", State.FAILED: "✗", State.NOT_CHECKED: "?"}
 _PLAIN_COLOURS = {State.PASSED: "#2f8f57", State.FAILED: "#c8641a", State.NOT_CHECKED: "#6482c8"}
 
 
-def card_html(verdict: Verdict, *, before: float | None = None, notice: str = "") -> str:
+def card_html(
+    verdict: Verdict,
+    *,
+    before: float | None = None,
+    notice: str = "",
+    solution: Solution | None = None,
+    short: bool = False,
+) -> str:
     """Show a verdict in JupyterLab, in nbgrader's feedback or on any page; everything is escaped.
 
     Args:
         verdict: What the judge found.
         before: The points of the try before this one, where there was one.
         notice: Why the card is out of date; it is then dimmed. Empty for one that is not.
+        solution: The reference solution, which is shown with full marks only.
+        short: Leave out all but the points, what happened and what to do next.
     """
     css, template = templates()
-    return template.render(card=_Card.of(verdict, before, notice), css=css)
+    card = _Card.of(verdict, before, notice)
+    offered = solution.shown_with(verdict) if solution else None
+    return template.render(
+        card=card.shortened() if short else card,
+        css=css,
+        solution=None if short else offered,
+        solution_heading=HEADING,
+        other_way=OTHER,
+    )
 
 
 def waiting_html(title: str, doing: str) -> str:
@@ -196,6 +214,10 @@ class _Card:
             detail_heading=one_line(wording.detail_heading(verdict.detail), 160),
             fine_print=one_line(" · ".join(wording.fine_print(verdict)), 200),
         )
+
+    def shortened(self) -> _Card:
+        """The same without what is only looked up."""
+        return replace(self, criteria=(), remarks=(), parts=(), detail="", fine_print="")
 
 
 def _shown(place: Place | None) -> Place | None:

@@ -12,6 +12,7 @@ from autograder.cards import wording
 from autograder.cards.differences import difference, marked
 from autograder.cards.readable import block, one_line, paragraph, wrap
 from autograder.cards.readable import width as columns
+from autograder.cards.solution import HEADING, OTHER
 from autograder.cards.tracebacks import place
 from autograder.cards.traffic import Part, Traffic, traffic
 from autograder.verdict import State
@@ -19,6 +20,7 @@ from autograder.verdict import State
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from autograder.cards.solution import Solution
     from autograder.verdict import Criterion, Verdict
 
 MOMENTS = 30
@@ -31,7 +33,14 @@ _NARROWEST = 40
 
 
 def card_text(
-    verdict: Verdict, *, width: int = 88, color: bool = False, before: float | None = None, notice: str = ""
+    verdict: Verdict,
+    *,
+    width: int = 88,
+    color: bool = False,
+    before: float | None = None,
+    notice: str = "",
+    solution: Solution | None = None,
+    short: bool = False,
 ) -> str:
     """Show a verdict in a terminal.
 
@@ -41,23 +50,33 @@ def card_text(
         color: Whether to add ANSI codes (bold, and a colour for the state); they carry no meaning.
         before: The points of the try before this one, where there was one.
         notice: Why the card is out of date; empty for one that is not.
+        solution: The reference solution, which is shown with full marks only.
+        short: Leave out all but the points, what happened and what to do next.
 
     Returns:
         Lines without a newline at the end.
     """
-    return "\n".join(_Writer(max(width, _NARROWEST), color, before, notice).card(verdict))
+    offered = solution.shown_with(verdict) if solution else None
+    writer = _Writer(max(width, _NARROWEST), color, before, notice, offered)
+    return "\n".join(writer.begin(verdict) if short else writer.card(verdict))
 
 
 class _Writer:
-    def __init__(self, width: int, color: bool, before: float | None, notice: str) -> None:
+    def __init__(
+        self, width: int, color: bool, before: float | None, notice: str, solution: Solution | None = None
+    ) -> None:
         self._width = width
         self._color = color
         self._before = before
         self._notice = notice
+        self._solution = solution
 
-    def card(self, verdict: Verdict) -> Iterator[str]:
+    def begin(self, verdict: Verdict) -> Iterator[str]:
         yield from self._head(verdict)
         yield from self._advice(verdict)
+
+    def card(self, verdict: Verdict) -> Iterator[str]:
+        yield from self.begin(verdict)
         if verdict.criteria:
             yield ""
             yield self._heading("Criteria")
@@ -70,6 +89,8 @@ class _Writer:
                 yield from self._wrapped(paragraph(remark, 600, mark=_MARK), "  - ", "    ")
         yield from self._traffic(traffic(verdict.timeline, at_most=MOMENTS))
         yield from self._detail(verdict.detail)
+        if self._solution:
+            yield from self._offered(self._solution)
         yield ""
         fine_print = one_line(", ".join(wording.fine_print(verdict)), 200, mark=_MARK)
         yield from self._wrapped(f"({fine_print})", "", " ")
@@ -153,6 +174,18 @@ class _Writer:
         yield from self._wrapped(one_line(wording.detail_heading(detail), 160, mark=_MARK))
         for line in block(detail, max_lines=60, max_columns=240, mark=_MARK):
             yield f"  | {line}".rstrip()
+
+    def _offered(self, solution: Solution) -> Iterator[str]:
+        yield ""
+        yield self._heading(HEADING)
+        yield from self._wrapped(solution.why, "  ")
+        for code in solution.code:
+            yield ""
+            yield from (f"  | {line}".rstrip() for line in code.split("\n"))
+        if solution.other_code:
+            yield ""
+            yield from self._wrapped(f"{OTHER}. {solution.other_way}", "  ")
+            yield from (f"  | {line}".rstrip() for line in solution.other_code.split("\n"))
 
     def _heading(self, text: str) -> str:
         return self._styled(text, "1")

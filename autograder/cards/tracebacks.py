@@ -9,6 +9,8 @@ import re2
 TRACEBACK = "Traceback (most recent call last)"
 _FRAME = re2.compile(r'^ +File "(?P<file>[^"]*)", line (?P<line>\d+)')
 _LIBRARIES = ("/site-packages/", "/lib/python3", "/opt/ros/", "<frozen")
+_SCRIPT = re2.compile(r"/lib/[^/]+/[^/.]+$")
+"""The file that a build makes of an entry point, which ``ros2 run`` starts: nobody wrote its lines."""
 _CELLS = ("/ipykernel_", "<ipython-input")
 
 
@@ -36,7 +38,11 @@ def place(detail: str) -> Place | None:
     found: tuple[str, str, str] | None = None
     for number in range(starts[-1], len(lines)):
         frame = _FRAME.match(lines[number])
-        if frame and not any(part in frame["file"] for part in _LIBRARIES):
+        if (
+            frame
+            and not any(part in frame["file"] for part in _LIBRARIES)
+            and not _SCRIPT.search(frame["file"])
+        ):
             after = lines[number + 1] if number + 1 < len(lines) else ""
             quote = after.strip() if after.startswith("    ") and not _FRAME.match(after) else ""
             found = (frame["file"], frame["line"], quote)

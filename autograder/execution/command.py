@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from autograder.boxes.execution import Kind
-from autograder.execution.findings import Finding, findings
+from autograder.boxes.execution import CellType
 from autograder.execution.plan import Planned, plan
+from autograder.execution.problems import Problem, problems_of
 from autograder.execution.report import write_report
 from autograder.grading.running import engine
 from autograder.grading.running.progress import BatchProgress
@@ -41,7 +41,7 @@ class Executed:
 
     planned: Planned
     execution: Execution
-    found: tuple[Finding, ...]
+    found: tuple[Problem, ...]
     report: Path | None
 
 
@@ -78,9 +78,9 @@ def execute_command(
     failed = [result for result in results if result.found]
     for result in failed:
         _say(console, f"{result.planned.label} failed, see {result.report}")
-        for finding in result.found:
-            where = "" if finding.cell is None else f"cell {finding.cell + 1} "
-            _say(console, f"  {where}{finding.text}")
+        for problem in result.found:
+            where = "" if problem.cell is None else f"cell {problem.cell + 1} "
+            _say(console, f"  {where}{problem.text}")
     seconds = time.monotonic() - began
     _say(console, f"{len(results)} notebooks executed, {len(failed)} failed, {seconds:.1f} s")
     return 1 if failed else 0
@@ -121,7 +121,7 @@ def execute_all(
         with contextlib.closing(running):
             for done in running:
                 item = of_task[id(done.task)]
-                found = tuple(findings(item, done.execution))
+                found = tuple(problems_of(item, done.execution))
                 page = write_report(reports, item, done.execution, found) if found else None
                 results[id(done.task)] = Executed(item, done.execution, found, page)
                 note = f" ({done.execution.seconds:.1f} s)"
@@ -136,7 +136,7 @@ def _longest_first(planned: Sequence[Planned]) -> list[Planned]:
 
 def _weight(cell: Cell) -> float:
     """About how many seconds a cell takes: a build some, a terminal one, a check one, other code little."""
-    if cell.kind is not Kind.CODE:
+    if cell.kind is not CellType.CODE:
         return 0.0
     if "colcon build" in cell.source:
         return 5.0

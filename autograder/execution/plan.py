@@ -1,4 +1,4 @@
-"""Which notebooks are executed, and as what."""
+"""Which notebooks are executed, and what each has to show: a master full marks, a chapter no error."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LIMITS = Limits(cell_seconds=180.0, notebook_seconds=900.0)
 """Wider than for a submission: a cell may build a workspace, and several notebooks share the machine."""
 
 
-class Kind(StrEnum):
+class NotebookKind(StrEnum):
     """What a notebook has to show."""
 
     MASTER = "master"
@@ -42,7 +42,7 @@ class Planned:
         task: The same for the engine.
     """
 
-    kind: Kind
+    kind: NotebookKind
     notebook: NotebookNode
     task: Task
 
@@ -81,14 +81,14 @@ def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
         chapter = chapter_path(root, master)
         if not chapter.is_file():
             raise NothingToExecuteError(f"{chapter.relative_to(root)} is not there: run `autograder build`.")
-        planned.append(_planned(Kind.MASTER, lab_name(master), source_notebook(master)))
+        planned.append(_planned(NotebookKind.MASTER, lab_name(master), source_notebook(master)))
         planned.append(
-            _planned(Kind.CHAPTER, lab_name(master), nodes.read(chapter.read_text(encoding="utf-8")))
+            _planned(NotebookKind.CHAPTER, lab_name(master), nodes.read(chapter.read_text(encoding="utf-8")))
         )
     return planned
 
 
-def _planned(kind: Kind, name: str, notebook: NotebookNode) -> Planned:
+def _planned(kind: NotebookKind, name: str, notebook: NotebookNode) -> Planned:
     task = Task(
         student=kind,
         assignment="execute",

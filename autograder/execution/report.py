@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from nbconvert import HTMLExporter
 
-from autograder.boxes.execution import Kind as CellKind
+from autograder.boxes.execution import CellType
 from autograder.grading.rebuilding import nodes
 
 if TYPE_CHECKING:
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
     from autograder.boxes.execution import Execution
-    from autograder.execution.findings import Finding
     from autograder.execution.plan import Planned
+    from autograder.execution.problems import Problem
 
 
-def write_report(folder: Path, planned: Planned, execution: Execution, found: Sequence[Finding]) -> Path:
+def write_report(folder: Path, planned: Planned, execution: Execution, found: Sequence[Problem]) -> Path:
     """Write the page.
 
     Args:
@@ -44,31 +44,31 @@ def write_report(folder: Path, planned: Planned, execution: Execution, found: Se
     return path
 
 
-def _with_outputs(planned: Planned, execution: Execution, found: Sequence[Finding]) -> NotebookNode:
+def _with_outputs(planned: Planned, execution: Execution, found: Sequence[Problem]) -> NotebookNode:
     notebook = nodes.copied(planned.notebook)
     cells = []
     for index, cell in enumerate(notebook.cells):
-        if cell.cell_type == CellKind.CODE and index < len(execution.cells):
+        if cell.cell_type == CellType.CODE and index < len(execution.cells):
             cell.outputs = [nodes.output(**output) for output in execution.cells[index].outputs]
             cell.execution_count = None
-        wrong = [finding.text for finding in found if finding.cell == index]
+        wrong = [problem.text for problem in found if problem.cell == index]
         if wrong:
-            cells.append(_box(f'<p id="finding-{index}"><b>The next cell {_join(wrong)}.</b></p>'))
+            cells.append(_box(f'<p id="problem-{index}"><b>The next cell {_join(wrong)}.</b></p>'))
         cells.append(cell)
     notebook.cells = [_box(_summary(planned, found)), *cells]
     return notebook
 
 
-def _summary(planned: Planned, found: Sequence[Finding]) -> str:
-    lines = "".join(f"<li>{_line(finding)}</li>" for finding in found)
+def _summary(planned: Planned, found: Sequence[Problem]) -> str:
+    lines = "".join(f"<li>{_line(problem)}</li>" for problem in found)
     return f"<p><b>{html.escape(planned.label)}</b> failed:</p><ul>{lines}</ul>"
 
 
-def _line(finding: Finding) -> str:
-    text = html.escape(finding.text)
-    if finding.cell is None:
+def _line(problem: Problem) -> str:
+    text = html.escape(problem.text)
+    if problem.cell is None:
         return text
-    return f'<a href="#finding-{finding.cell}">cell {finding.cell + 1}</a> {text}'
+    return f'<a href="#problem-{problem.cell}">cell {problem.cell + 1}</a> {text}'
 
 
 def _join(texts: Sequence[str]) -> str:
@@ -77,4 +77,4 @@ def _join(texts: Sequence[str]) -> str:
 
 def _box(text: str) -> NotebookNode:
     style = "border-left: 6px solid #c62828; padding: 0.5em 1em; background: #fdecea; color: #5f1414"
-    return nodes.cell(CellKind.MARKDOWN, f'<div style="{style}">\n{text}\n</div>')
+    return nodes.cell(CellType.MARKDOWN, f'<div style="{style}">\n{text}\n</div>')

@@ -243,6 +243,17 @@ def attempts_of(path: Path, student: str) -> list[str]:
     return [printable(attempt.line()) for attempt in read(path, student)]
 
 
+def appeal(path: Path, student: str, exercise_id: str, *, to: Path | None = None) -> Path:
+    """Write the appeal file of a check; see :func:`autograder.grading.appealing.appeal.write_appeal`.
+
+    Raises:
+        GradingError: There is nothing of that check; the message says what to do.
+    """
+    from autograder.grading.appealing.appeal import write_appeal
+
+    return write_appeal(path, student, exercise_id, to)
+
+
 def demo(path: Path, *, console: Console | None = None) -> GradeReport:
     """Make the sample class where it is not there yet, grade it and print the result.
 

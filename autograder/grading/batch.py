@@ -19,14 +19,16 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from autograder.grading.classes.class_directory import ClassDirectory, Refused, Submission
+from autograder.grading.classes.configuration import check_configuration
 from autograder.grading.classes.timestamps import handed_in_at, is_not_believed
 from autograder.grading.collecting.tidying import Tidied, tidy
 from autograder.grading.entering import gradebook
 from autograder.grading.entering.attempts import Attempt, note, now
+from autograder.grading.entering.evidence import EvidenceFolder
 from autograder.grading.entering.journal import Journal
 from autograder.grading.entering.records import Records
 from autograder.grading.errors import MasterUnusable, clear_disk_errors, is_disk_full
-from autograder.grading.following.origins import moved_on, warning
+from autograder.grading.following.origins import news
 from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import check_release, read_released
@@ -90,6 +92,7 @@ def grade(
     began = time.monotonic()
     console = console or Console(stderr=True)
     directory = ClassDirectory(Path(path))
+    check_configuration(directory)
     if scheduler is None:
         from autograder.grading.running import sandboxing
 
@@ -127,8 +130,8 @@ class _Batch:
         self._not_usable = released.unusable
         if not released.cells and released.unusable:
             raise MasterUnusable(next(iter(released.unusable.values())))
-        check_release(directory, self._cells)
         self._journal = Journal(directory.state / "journal")
+        self._evidence = EvidenceFolder(directory)
         self._records = Records(directory)
         self._works: list[Work] = []
         self._others: list[Work] = []
@@ -150,20 +153,29 @@ class _Batch:
         return Writer(self._directory, self._records)
 
     def collect(self, assignments: Sequence[str], students: Sequence[str]) -> None:
-        """Find the submissions."""
+        """Find the submissions.
+
+        Raises:
+            ClassIncomplete: The gradebook does not know an assignment that was asked for.
+        """
+        asked = {name: found for name, found in self._cells.items() if not assignments or name in assignments}
+        if asked or not assignments:
+            check_release(self._directory, asked)
         tidied = Tidied()
         if not self._dry_run:
             enter_roster(self._directory)
             tidied = tidy(self._directory)
         self._notices += tidied.notices
-        for name in moved_on(self._directory, assignments or self._cells):
-            self._notices.append(warning(self._directory, name))
-            self._console.print(f"note: {self._notices[-1]}", markup=False, highlight=False, soft_wrap=True)
+        for text in news(self._directory, assignments or self._cells):
+            self._notices.append(text)
+            self._console.print(f"note: {text}", markup=False, highlight=False, soft_wrap=True)
         found, refused = self._directory.submissions()
         refused += [*tidied.refused, *self._unusable(assignments)]
         found = [submission for submission in found if submission.assignment in self._cells]
         check_known(assignments, self._directory.assignments(), "assignment")
         there = {submission.student for submission in found}
+        # Who asks for a folder that was refused is told why, further down.
+        there |= {one.path.name for one in refused if one.path.parent == self._directory.path / "submitted"}
         check_known(students, sorted(there | read_students(self._directory.gradebook_url).keys()), "student")
         self._chosen = assignments, students
         self._refused = refused
@@ -194,7 +206,7 @@ class _Batch:
                 )
 
     def plan(self, again: bool) -> None:
-        """Settle what is known already."""
+        """Find the submissions whose grades are in the gradebook already; the others are graded."""
         in_gradebook = {
             assignment: gradebook.scores(self._directory.gradebook_url, assignment)
             for assignment in sorted({work.submission.assignment for work in [*self._works, *self._others]})
@@ -336,7 +348,7 @@ class _Batch:
         work.written = True
 
     def _take_known(self, work: Work) -> None:
-        """Take over what the journal knows; write the submission down where that is all of it."""
+        """Take the results that are in the journal; enter the submission if it is complete with them."""
         if not self._journal.has(work.submission, work.notebooks):
             return
         for task in self._tasks_of(work.submission):
@@ -348,7 +360,7 @@ class _Batch:
             self._write(work)
 
     def _tasks(self, works: Sequence[Work]) -> Iterator[Task]:
-        """What has to be executed, made when it is its turn."""
+        """The tasks to be executed; each is made only when somebody asks for the next one."""
         for work in works:
             for task in self._tasks_of(work.submission):
                 if task.problem:
@@ -363,9 +375,10 @@ class _Batch:
             return tasks_of(self._directory, submission)
 
     def _take(self, work: Work, task: Task, execution: Execution) -> None:
-        """Keep a result, and write its submission where it is complete now."""
+        """Keep a result, and enter its submission if that makes it complete."""
         self._executed += 1
         self._timings.count(task.cells, execution)
+        execution = self._evidence.keep(task, execution)
         self._journal.put(task, execution)
         if execution.trouble:
             self._problems.append(f"{task.label} could not be checked: {execution.trouble}")
@@ -405,7 +418,7 @@ class _Batch:
         work.results.clear()
 
     def _keep_time(self, submission: Submission) -> SubmissionEntry:
-        """Follow what is written now about when a submission was handed in, and when it was due."""
+        """Enter a changed time of handing in, or a changed due date, and what being late costs now."""
         entry = self._entries.get((submission.student, submission.assignment), SubmissionEntry())
         at = handed_in_at(submission.folder)
         moved = at is not None and at != entry.handed_in

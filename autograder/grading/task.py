@@ -51,7 +51,7 @@ class Task:
         return f"{self.student}/{self.assignment}/{self.notebook}"
 
     def key(self) -> str:
-        """Equal for two tasks whose execution would be the same; whatever matters changes it."""
+        """A hash of everything that the execution depends on: equal for two tasks with the same result."""
         return hashlib.sha256(msgspec.json.encode(self, order="deterministic")).hexdigest()
 
     def without_execution(self) -> Execution:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.crashes import CRASHES, OTHER_CRASHES, traceback_of
+from autograder.kit.giving_up import ended_at_once
 from autograder.kit.hangs import something_spins
 from autograder.kit.model import Advice, Mistake
 
@@ -21,6 +22,7 @@ __all__ = [
     "CRASHES",
     "NEVER_CONSTRUCTED",
     "NOTHING_THERE",
+    "NOT_BEGUN",
     "OTHER_CRASHES",
     "ended_too_early",
     "endpoint_name",
@@ -256,6 +258,12 @@ def _returned_silently(evidence: Evidence) -> Advice | None:
     )
 
 
+def _returned_at_once(evidence: Evidence) -> Advice | None:
+    """The same, and it waited for nobody either, although it was told how long it may: the rest is not there at all."""
+    asked = any(part.of(kind) for part in evidence for kind in ("called", "spared", "willing"))
+    return None if asked or not all(map(ended_at_once, evidence)) else _returned_silently(evidence)
+
+
 def _nothing_on_the_graph(evidence: Evidence) -> Advice | None:
     if any(survey.data.get("nodes") for part in evidence for survey in part.of("interface")):
         return None
@@ -281,6 +289,8 @@ def _never_constructed(evidence: Evidence) -> Advice | None:
 NEVER_CONSTRUCTED = Mistake("never_ended", _never_constructed, certain=True)
 
 
+NOT_BEGUN = Mistake("not_written", _returned_at_once, certain=True)
+"""A function as it was handed out: to be asked before anything is said of how it asks, waits or gives up."""
 NOTHING_THERE = (
     Mistake("not_written", _returned_silently, certain=True),
     Mistake("main_guard", _main_guard, certain=True),

@@ -88,6 +88,8 @@ class Part:
 
 
 _ENDINGS = ("exited", "returned", "raised")
+INTERRUPTED = "Ctrl-C"
+"""The name of the event that stands where the judge has pressed Ctrl-C."""
 
 
 _OF_A_TRACEBACK = (

@@ -8,6 +8,8 @@ says something once and is silent then, does neither. A function that is told ho
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from decimal import Decimal
 from typing import TYPE_CHECKING
 
 import re2
@@ -113,6 +115,12 @@ def broken_patience(part: Part) -> str:
     return f"gave up after {waited(part):.1f} s, where {PATIENCE} was {limit:g}"
 
 
+def ended_at_once(part: Part) -> bool:
+    """Whether a function that was told how long to wait has ended much too early for any wait."""
+    limit = patience(part)
+    return limit is not None and part.ending is not None and waited(part) < limit * TOO_SHORT
+
+
 def patience_not_kept(part: Part) -> Advice | None:
     """The advice for a function that waits by a limit of its own."""
     wrong = broken_patience(part)
@@ -137,7 +145,9 @@ def remark(part: Part) -> str:
 
 # --- with a server -------------------------------------------------------------------------------------------
 
-_NUMBER = re2.compile(r"-?\d+")
+MOST_LINES = 200
+"""Different lines of a run that are compared one by one; nobody says more of a server that is not there."""
+_NUMBER = re2.compile(r"-?\d+(?:\.\d+)?")
 
 
 def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool]) -> bool:
@@ -157,15 +167,54 @@ def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool])
         return True
     told = _parting_words(absent)
     # In each of them: a sum that the subject has added up itself may happen to be one of the run's own numbers.
-    return bool(absent.ending and told and ended) and all(_parting_words(part) == told for part in ended)
+    return bool(absent.ending and told and ended) and all(_same(_parting_words(part), told) for part in ended)
 
 
-def _parting_words(part: Part) -> set[str]:
-    """What it said, with a place for each of the run's own numbers; once each, for a log line may come on two ways."""
+@dataclass(frozen=True)
+class _Words:
+    """A line that a subject said, so that it can be compared with a line of another run, which had other inputs.
+
+    Attributes:
+        shape: The line with a place for each number.
+        numbers: The numbers in these places, as they were said.
+        own: Of each number, whether it is one of the run's inputs.
+    """
+
+    shape: str
+    numbers: tuple[str, ...]
+    own: tuple[bool, ...]
+
+    def says_the_same_as(self, other: _Words) -> bool:
+        """Whether the lines differ in nothing but the inputs of their runs. A number may be an input by chance."""
+        return self.shape == other.shape and all(
+            mine == theirs or (own and others)
+            for mine, theirs, own, others in zip(
+                self.numbers, other.numbers, self.own, other.own, strict=True
+            )
+        )
+
+
+def _same(words: set[_Words], others: set[_Words]) -> bool:
+    if max(len(words), len(others)) > MOST_LINES:
+        return words == others
+    return _all_within(words, others) and _all_within(others, words)
+
+
+def _all_within(words: set[_Words], others: set[_Words]) -> bool:
+    return all(any(line.says_the_same_as(other) for other in others) for line in words)
+
+
+def _parting_words(part: Part) -> set[_Words]:
+    """What it said; each line once, for a log line may come on two ways."""
     said = filter(str.strip, [*part.said(), *part.traceback.splitlines()[-1:]])
-    own = {number.lstrip("-") for number in _NUMBER.findall(str(list(part.inputs.values())))}
+    own = {_value(number) for number in _NUMBER.findall(str(list(part.inputs.values())))}
+    return {
+        _Words(_NUMBER.sub("#", line), tuple(numbers), tuple(_value(number) in own for number in numbers))
+        for line in said
+        for numbers in [_NUMBER.findall(line)]
+    }
 
-    def place(number: re2._Match) -> str:
-        return "…" if number[0].lstrip("-") in own else number[0]
 
-    return {_NUMBER.sub(place, line) for line in said}
+def _value(number: str) -> Decimal:
+    """Without its sign: who says ``1-2`` may mean two numbers."""
+    return abs(Decimal(number))

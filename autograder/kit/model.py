@@ -155,10 +155,10 @@ class Bench(Protocol):
         """Start the subject; a class is made but not yet spun, a command or function runs at once.
 
         ``options`` are keyword arguments that only a notebook's function understands (a command ignores
-        them); for a class, ``threads`` says how many threads spin it. ``hurry`` is a factor below 1 by which a notebook
-        shortens what its subject sleeps in this run. ``spare`` are seconds of waiting for a server that a notebook
-            leaves out of ``wait_for_service`` and ``wait_for_server`` and tells: for runs in which the judge knows that
-            none comes so soon.
+        them); for a class, ``threads`` says how many threads spin it. Two options are for the notebook itself: it
+        multiplies what its subject sleeps in this run with ``sleep_factor``, which is 1 or less, and it leaves
+        ``spare`` seconds out of ``wait_for_service`` and ``wait_for_server``, and reports that, in runs in which the
+        judge knows that no server comes so soon.
         """
         ...
 
@@ -342,6 +342,17 @@ class Bench(Protocol):
 
     def watch_graph(self, condition: Callable[[Evidence], bool], within: float) -> bool:
         """The same for what the graph tells of, which is asked again and again: endpoints, and whose they are."""
+        ...
+
+    def press_ctrl_c(self, within: float) -> bool:
+        """Press Ctrl-C, as in the subject's terminal, and wait until it has ended.
+
+        Args:
+            within: Seconds of wall time at most.
+
+        Returns:
+            Whether it ended by that; False also where it had ended before, and then nothing is pressed.
+        """
         ...
 
     def await_end(self, within: float) -> bool:

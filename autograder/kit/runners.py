@@ -19,6 +19,19 @@ class RunsProgram:
 
 
 @dataclass(frozen=True)
+class RunsPrograms:
+    """The workspace is built, and of one of its packages the program run whose name each start gives first.
+
+    Attributes:
+        package: The package.
+        programs: The programs, as ``ros2 run`` knows them, in the order of the task.
+    """
+
+    package: str
+    programs: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class ServesInterface:
     """The workspace is built, and a service type that it makes is served by a node of ours.
 
@@ -36,4 +49,4 @@ class Launches:
     """The launch file is launched, with what it needs of the workspace around it."""
 
 
-Runner = RunsProgram | ServesInterface | Launches
+Runner = RunsProgram | RunsPrograms | ServesInterface | Launches

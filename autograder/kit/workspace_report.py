@@ -47,6 +47,8 @@ class PackageReport:
         programs: The console scripts that its setup.py names, as ``name = module:function``.
         interfaces: Its interface files.
         dependencies: Everything that package.xml depends on, ``member_of_group`` included.
+        modules: Its Python files, as paths inside the package.
+        commented: What package.xml would depend on, too, if the lines inside its comments counted.
     """
 
     name: str
@@ -54,6 +56,8 @@ class PackageReport:
     programs: Sequence[str] = ()
     interfaces: Sequence[Interface] = ()
     dependencies: Sequence[str] = ()
+    modules: Sequence[str] = ()
+    commented: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -87,7 +91,12 @@ def as_line(report: WorkspaceReport) -> str:
     """The line that travels; a log and interface files that are too long for it are cut."""
     for limit in (2_500, 1_200, 600, 200, 50):
         packages = [
-            replace(p, interfaces=[replace(i, text=i.text[:limit]) for i in p.interfaces])
+            replace(
+                p,
+                interfaces=[replace(i, text=i.text[:limit]) for i in p.interfaces],
+                modules=p.modules[: limit // 60],  # none where all else needs the room
+                commented=p.commented[: limit // 60],
+            )
             for p in report.packages
         ]
         cut = replace(report, log=report.log[-limit:], line=report.line[:limit], packages=packages)

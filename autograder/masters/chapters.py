@@ -1,4 +1,4 @@
-"""Derive every chapter notebook from its master, or say which of them are out of step."""
+"""Derive every chapter notebook and each solution to read from its master, or say which of them are out of step."""
 
 from __future__ import annotations
 
@@ -7,27 +7,31 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
+from autograder.course import SOLUTION
 from autograder.masters.checks import exercise_points
 from autograder.masters.errors import MasterError
 from autograder.masters.layout import chapter_notebooks, chapter_path, masters
 from autograder.masters.release import release_text
-from autograder.masters.source import Points, source_notebook
+from autograder.masters.solutions import solution_files
+from autograder.masters.source import Points, named_cells, notebook_of
 from autograder.masters.work import holds_work
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+NOTEBOOK = ".ipynb"
+
 
 @dataclass(frozen=True)
 class BuildReport:
-    """What a build did, or in check mode would do. Each is a tuple of chapter notebooks, in order.
+    """What a build did, or in check mode would do. Each is a tuple of files: chapter notebooks, then solutions to read.
 
     Attributes:
         written: Written just now.
         unchanged: In step with their masters already.
         stale: Check mode only: missing, or out of step with their masters.
         edited: Not overwritten because somebody has written into them.
-        orphans: In the chapters although no master stands for them. They are never deleted.
+        orphans: There although no master, or no reason, stands for them. They are never deleted.
     """
 
     written: tuple[Path, ...] = ()
@@ -56,20 +60,23 @@ def build(root: Path, *, check: bool = False, points: Points = exercise_points) 
         MasterError: A master cannot be used, or there is none.
         OSError: A chapter notebook cannot be read or written.
     """
-    sources = {chapter_path(root, master): source_notebook(master, points=points) for master in masters(root)}
-    texts = {path: release_text(source) for path, source in sources.items()}
+    cells = {master: named_cells(master, points=points) for master in masters(root)}
+    texts = {chapter_path(root, master): release_text(notebook_of(named)) for master, named in cells.items()}
+    for master, named in cells.items():
+        texts |= solution_files(master, named)
     found: dict[str, list[Path]] = {"written": [], "unchanged": [], "stale": [], "edited": []}
     for path, text in texts.items():
         found[_settle(path, text, check=check)].append(path)
-    orphans = [path for path in chapter_notebooks(root) if path not in texts]
+    solutions = [path for master in cells for path in sorted(master.parent.glob(f"*{SOLUTION}"))]
+    orphans = [path for path in (*chapter_notebooks(root), *solutions) if path not in texts]
     return BuildReport(**{state: tuple(paths) for state, paths in found.items()}, orphans=tuple(orphans))
 
 
 def _settle(path: Path, text: str, *, check: bool) -> str:
-    """Bring one chapter notebook in step, and say in a word what it came to."""
+    """Bring one file in step with its master; returns what was done, in a word."""
     if path.exists() and path.read_bytes() == text.encode():
         return "unchanged"
-    if holds_work(path):
+    if path.suffix == NOTEBOOK and holds_work(path):
         return "edited"
     if check:
         return "stale"
@@ -98,7 +105,7 @@ def build_command(
     for word, paths, meaning in _lines(report):
         for path in paths:
             console.print(f"{word:<10} {path.relative_to(root)}  {meaning}", highlight=False, soft_wrap=True)
-    in_step = len(report.unchanged) + len(report.written)
+    in_step = sum(path.suffix == NOTEBOOK for path in (*report.unchanged, *report.written))
     notebooks = "chapter notebook" if in_step == 1 else "chapter notebooks"
     console.print(f"{in_step} {notebooks} in step with the masters.", highlight=False)
     return 0 if report.in_step else 1

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from autograder.masters.errors import CellError, MasterError
 from autograder.masters.magics import has_magic
-from autograder.masters.parsing import Cell, Kind
+from autograder.masters.parsing import Cell, CellRole
 from autograder.masters.regions import find_region
 
 if TYPE_CHECKING:
@@ -40,9 +40,9 @@ def with_copies(master: Path, cells: list[Cell]) -> list[Cell]:
     defined: dict[str, str] = {}
     result = []
     for cell in cells:
-        if cell.kind not in (Kind.TEXT, Kind.MANUAL) and COPY.search(cell.source):
+        if cell.kind not in (CellRole.TEXT, CellRole.MANUAL) and COPY.search(cell.source):
             cell = _copied(master, cell, defined)
-        elif cell.kind in (Kind.SOLUTION, Kind.GIVEN) and not has_magic(cell.source):
+        elif cell.kind in (CellRole.SOLUTION, CellRole.GIVEN) and not has_magic(cell.source):
             defined |= _definitions(cell)
         result.append(cell)
     return result
@@ -67,7 +67,7 @@ def _definitions(cell: Cell) -> dict[str, str]:
     """The functions, classes and constants of a cell, with their solutions, by their names."""
     source = cell.source
     try:
-        if cell.kind is Kind.SOLUTION:
+        if cell.kind is CellRole.SOLUTION:
             region = find_region(source)
             source = "\n".join((*region.before, *region.answer, *region.after))
         body = ast.parse(source).body

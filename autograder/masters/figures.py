@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 REFERENCE = re.compile(r"!\[\]\((?P<path>[^)\s]+\.svg)\)")
-"""How a master shows a figure: without words of its own, as the SVG has them."""
+"""How a master shows a figure: without an alternative text, which is taken from the SVG."""
 KEYWORD = b"Drawn from SVG"
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 """How a PNG begins."""

@@ -28,7 +28,7 @@ kernelspec:
 """
 
 
-class Kind(StrEnum):
+class CellRole(StrEnum):
     """What a cell is for. The values but the first are tags; of code, an author types two."""
 
     TEXT = "text"
@@ -43,7 +43,7 @@ class Kind(StrEnum):
     """The one line that asks for a verdict: locked, graded, carries the exercise's points."""
 
 
-TAGS = {kind.value: kind for kind in (Kind.GIVEN, Kind.SOLUTION, Kind.CHECK)}
+TAGS = {kind.value: kind for kind in (CellRole.GIVEN, CellRole.SOLUTION, CellRole.CHECK)}
 OPTIONS = {"tags", "grade_id"}
 MANUAL_FORM = '+++ {"tags": ["manual"], "points": 5, "grade_id": "some_name"}'
 """The line above a question that a person grades."""
@@ -63,7 +63,7 @@ class Cell:
         points: What a question that a person grades can earn; None for any other cell.
     """
 
-    kind: Kind
+    kind: CellRole
     source: str
     line: int
     body_line: int
@@ -108,7 +108,7 @@ def _cell(path: Path, node: Any, place: int, lines: list[str]) -> Cell:
             text, figures = attach_figures(path.parent, nest_hints(node.source))
             if node.metadata:
                 return _question(path, node.metadata, text, first, figures)
-            return Cell(Kind.TEXT, text, first, first, attachments=figures)
+            return Cell(CellRole.TEXT, text, first, first, attachments=figures)
         except CellError as error:
             raise error.at(path, first) from error
     if node.cell_type == "raw":
@@ -125,7 +125,7 @@ def _question(path: Path, metadata: Any, text: str, line: int, figures: dict[str
     is_worth = isinstance(points, int | float) and not isinstance(points, bool) and points > 0
     if (
         set(metadata) != {"tags", "points", "grade_id"}
-        or list(metadata["tags"]) != [Kind.MANUAL]
+        or list(metadata["tags"]) != [CellRole.MANUAL]
         or not is_worth
     ):
         raise MasterError(
@@ -134,10 +134,10 @@ def _question(path: Path, metadata: Any, text: str, line: int, figures: dict[str
             "Text has options only where a person grades it, and this cell's are not those.",
             f"Write them so: '{MANUAL_FORM}'.",
         )
-    return Cell(Kind.MANUAL, text, line, line, str(name), figures, float(points))
+    return Cell(CellRole.MANUAL, text, line, line, str(name), figures, float(points))
 
 
-def _options(path: Path, metadata: Any, line: int) -> tuple[Kind, str | None]:
+def _options(path: Path, metadata: Any, line: int) -> tuple[CellRole, str | None]:
     for option in sorted(set(metadata) - OPTIONS):
         raise MasterError(
             path, line, f"Unknown cell option '{option}'.", f"Known are: {', '.join(sorted(OPTIONS))}."
@@ -145,13 +145,13 @@ def _options(path: Path, metadata: Any, line: int) -> tuple[Kind, str | None]:
     tags = metadata.get("tags", [])
     tags = [tags] if isinstance(tags, str) else list(tags)
     for tag in tags:
-        if tag == Kind.MANUAL:
+        if tag == CellRole.MANUAL:
             raise MasterError(path, line, "A person grades text, not code.", f"Begin with '{MANUAL_FORM}'.")
         if tag not in TAGS:
             raise MasterError(path, line, f"Unknown tag '{tag}'.", f"Known are: {', '.join(TAGS)}.")
     if len(tags) > 1:
         raise MasterError(path, line, f"A cell with {len(tags)} tags.", "A cell is one thing: keep one tag.")
-    kind = TAGS[tags[0]] if tags else Kind.GIVEN
+    kind = TAGS[tags[0]] if tags else CellRole.GIVEN
     grade_id = metadata.get("grade_id")
     return kind, None if grade_id is None else str(grade_id)
 

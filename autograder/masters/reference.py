@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from autograder.masters.checks import exercise_points
 from autograder.masters.errors import MasterError
 from autograder.masters.magics import has_magic, shell_script, written_file
-from autograder.masters.parsing import Cell, Kind
+from autograder.masters.parsing import Cell, CellRole
 from autograder.masters.source import Points, named_cells
 
 if TYPE_CHECKING:
@@ -60,11 +60,11 @@ def _kept(cell: Cell, *, shell: bool) -> Iterator[str]:
         cell: Any cell above the check.
         shell: Whether shell cells are run.
     """
-    if cell.kind not in (Kind.SOLUTION, Kind.GIVEN):
+    if cell.kind not in (CellRole.SOLUTION, CellRole.GIVEN):
         return
     if has_magic(cell.source):
         yield from _on_disk(cell.source, shell=shell)
-    elif cell.kind is Kind.SOLUTION:
+    elif cell.kind is CellRole.SOLUTION:
         yield cell.source
     else:
         yield from _definitions(cell)

@@ -1,4 +1,4 @@
-"""The solution region of a cell: what the student is given, what the student writes.
+"""The solution region of a cell: the part that the student is given and the part that the student writes.
 
 A solution cell of a master looks like this::
 
@@ -10,7 +10,8 @@ A solution cell of a master looks like this::
         ### END SOLUTION
 
 The comment that opens the region is the stub. It is what remains of the region in the chapter notebook. The
-two markers are nbgrader's own, so that a stock nbgrader still finds and clears the region.
+two markers are nbgrader's own, so that a stock nbgrader still finds and clears the region. In a file of XML each of the
+three lines is a comment by itself: ``<!-- ### BEGIN SOLUTION -->``.
 """
 
 from __future__ import annotations
@@ -108,19 +109,26 @@ def _marker(lines: list[str], marker: str) -> int:
             f"A second '{marker}' in one cell.",
             ONE_THING,
         )
-    if lines[places[0]].strip() != marker:
+    if _words(lines[places[0]]) != marker:
         raise CellError(places[0], "A marker is misspelt.", f"Its line holds '{marker}' and nothing else.")
     return places[0]
 
 
 def _stub_length(inside: list[str]) -> int:
     """The number of comment lines that open the region, 0 where the first is no TODO."""
-    if not inside or not inside[0].lstrip().startswith(TODO):
+    if not inside or not _words(inside[0]).startswith(TODO):
         return 0
     for offset, line in enumerate(inside):
-        if not line.lstrip().startswith("#"):
+        if not _words(line).startswith("#"):
             return offset
     return len(inside)
+
+
+def _words(line: str) -> str:
+    """A line without its indentation, and without the two ends of an XML comment that holds all of it."""
+    bare = line.strip()
+    commented = bare.startswith("<!--") and bare.endswith("-->")
+    return bare.removeprefix("<!--").removesuffix("-->").strip() if commented else bare
 
 
 def _only_one_todo(lines: list[str], stub: int) -> None:

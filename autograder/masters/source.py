@@ -18,7 +18,7 @@ from autograder.masters.checks import CheckCall, exercise_points, read_check
 from autograder.masters.copies import with_copies
 from autograder.masters.errors import CellError, MasterError
 from autograder.masters.magics import has_magic
-from autograder.masters.parsing import Cell, Kind, parse_master
+from autograder.masters.parsing import Cell, CellRole, parse_master
 from autograder.masters.regions import find_model_answer, find_region, mentions_a_region
 
 if TYPE_CHECKING:
@@ -71,9 +71,14 @@ def source_notebook(master: Path, *, points: Points = exercise_points) -> Notebo
     Raises:
         MasterError: The master cannot be used; says where, why and what to do.
     """
+    return notebook_of(named_cells(master, points=points))
+
+
+def notebook_of(cells: list[NamedCell]) -> NotebookNode:
+    """The nbgrader source notebook with these cells, solutions and all."""
     notebook = new_notebook(metadata=from_dict(NOTEBOOK_METADATA))
     notebook.nbformat_minor = 5
-    notebook.cells = [_node(named) for named in named_cells(master, points=points)]
+    notebook.cells = [_node(named) for named in cells]
     return notebook
 
 
@@ -94,30 +99,30 @@ def _name_all(master: Path, cells: list[Cell], points: Points) -> Iterator[Named
     numbering = naming.Numbering()
     section = "start"
     for cell in cells:
-        if cell.kind is Kind.TEXT:
+        if cell.kind is CellRole.TEXT:
             section = naming.last_heading(cell.source) or section
             yield NamedCell(cell, numbering.name(naming.text_id(cell.source)))
             continue
         _region_where_it_belongs(master, cell)
-        if cell.kind is Kind.MANUAL:
+        if cell.kind is CellRole.MANUAL:
             yield NamedCell(cell, str(cell.grade_id), points=cell.points)
-        elif cell.kind is Kind.CHECK:
+        elif cell.kind is CellRole.CHECK:
             check = read_check(master, cell)
             yield NamedCell(cell, naming.grade_id_of_exercise(check.exercise), check, points(check))
-        elif cell.kind is Kind.SOLUTION:
+        elif cell.kind is CellRole.SOLUTION:
             yield NamedCell(cell, cell.grade_id or _defined_name(master, cell))
         else:
             yield NamedCell(cell, cell.grade_id or numbering.name(f"{cell.kind}-{naming.slug(section)}"))
 
 
 def _region_where_it_belongs(master: Path, cell: Cell) -> None:
-    if cell.kind is Kind.MANUAL:
+    if cell.kind is CellRole.MANUAL:
         try:
             find_model_answer(cell.source)
         except CellError as error:
             raise error.at(master, cell.body_line) from error
         return
-    if cell.kind is not Kind.SOLUTION:
+    if cell.kind is not CellRole.SOLUTION:
         if mentions_a_region(cell.source):
             raise MasterError(
                 master,
@@ -187,9 +192,9 @@ def _subjects_are_solutions(master: Path, named: list[NamedCell]) -> None:
     written: set[str] = set()
     on_disk = False
     for item in named:
-        if item.cell.kind is Kind.SOLUTION and has_magic(item.cell.source):
+        if item.cell.kind is CellRole.SOLUTION and has_magic(item.cell.source):
             on_disk = True
-        elif item.cell.kind is Kind.SOLUTION:
+        elif item.cell.kind is CellRole.SOLUTION:
             written.update(naming.defined_names(item.cell.source))
         elif item.check is None or (item.check.is_path and on_disk):
             continue
@@ -211,11 +216,11 @@ def _subjects_are_solutions(master: Path, named: list[NamedCell]) -> None:
 
 def _node(named: NamedCell) -> NotebookNode:
     cell = named.cell
-    if cell.kind is Kind.TEXT:
+    if cell.kind is CellRole.TEXT:
         figures = {"attachments": from_dict(cell.attachments)} if cell.attachments else {}
         return new_markdown_cell(cell.source, id=named.name, **figures)
     metadata = {"nbgrader": _nbgrader(named)}
-    if cell.kind is Kind.MANUAL:
+    if cell.kind is CellRole.MANUAL:
         figures = {"attachments": from_dict(cell.attachments)} if cell.attachments else {}
         return new_markdown_cell(cell.source, id=named.name, metadata=from_dict(metadata), **figures)
     return new_code_cell(cell.source, id=named.name, metadata=from_dict(metadata))
@@ -224,12 +229,12 @@ def _node(named: NamedCell) -> NotebookNode:
 def _nbgrader(named: NamedCell) -> dict[str, Any]:
     kind = named.cell.kind
     metadata: dict[str, Any] = {
-        "cell_type": "markdown" if kind is Kind.MANUAL else "code",
-        "grade": kind in (Kind.CHECK, Kind.MANUAL),
+        "cell_type": "markdown" if kind is CellRole.MANUAL else "code",
+        "grade": kind in (CellRole.CHECK, CellRole.MANUAL),
         "grade_id": named.name,
-        "locked": kind not in (Kind.SOLUTION, Kind.MANUAL),
+        "locked": kind not in (CellRole.SOLUTION, CellRole.MANUAL),
         "schema_version": SCHEMA_VERSION,
-        "solution": kind in (Kind.SOLUTION, Kind.MANUAL),
+        "solution": kind in (CellRole.SOLUTION, CellRole.MANUAL),
         "task": False,
     }
     if named.points is not None:

@@ -1,4 +1,4 @@
-"""nbgrader's ClearSolutions, with a stub of its own for every solution.
+"""nbgrader's ClearSolutions, changed so that each solution leaves a stub of its own.
 
 Stock nbgrader puts the same text into every cleared region. Here each region opens with the comment that
 students get in its place (``regions.py``), so the cell runs as it stands and says what is to be done.

@@ -157,7 +157,7 @@ class Collect(Message, frozen=True):
 
 
 class Meet(Message, frozen=True):
-    """Look whether these endpoints of the judge's are there and those are gone.
+    """Wait until the participant sees these endpoints of the judge, and those no more.
 
     Attributes:
         fresh: With a context that is made anew.
@@ -180,7 +180,7 @@ class Start(Message, frozen=True):
         fresh: With a context that is made anew.
         arguments: What the class or function is called with.
         options: What it gets where it has parameters of these names.
-        hurry: What sleeps are multiplied with; 1.0 leaves them alone.
+        sleep_factor: What sleeps are multiplied with; 1.0 leaves them alone.
         spare: Seconds of waits for a server that may be left out.
     """
 
@@ -188,12 +188,18 @@ class Start(Message, frozen=True):
     fresh: bool
     arguments: list[Any]
     options: dict[str, Any]
-    hurry: float
+    sleep_factor: float
     spare: float
 
 
 class Release(Message, frozen=True):
     """Let the made node spin."""
+
+    run: int
+
+
+class Interrupt(Message, frozen=True):
+    """Press Ctrl-C at the process that was started for a path."""
 
     run: int
 
@@ -222,4 +228,4 @@ class Refused(Message, frozen=True):
     why: str
 
 
-FromJudge = Begin | Collect | Meet | Start | Release | Stack | Stop | Judged | Refused
+FromJudge = Begin | Collect | Meet | Start | Release | Interrupt | Stack | Stop | Judged | Refused

@@ -35,7 +35,7 @@ class Message(msgspec.Struct, frozen=True, tag_field="say", tag=_tag):
     """One message. The name of its type is the word in its field ``say``."""
 
 
-Kind = TypeVar("Kind", bound=Message)
+MessageT = TypeVar("MessageT", bound=Message)
 
 
 class Lines:
@@ -80,7 +80,7 @@ class Lines:
             raise Hangup(str(error)) from error
 
     @overload
-    def hear(self, kind: type[Kind]) -> Kind: ...
+    def hear(self, kind: type[MessageT]) -> MessageT: ...
 
     @overload
     def hear(self, kind: UnionType) -> Any: ...

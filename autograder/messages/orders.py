@@ -8,7 +8,7 @@ from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annota
 
 
 class Open(msgspec.Struct, tag="open", frozen=True):
-    """From now on one check of this exercise is answered.
+    """Answer one check of this exercise from now on.
 
     Attributes:
         exercise: The exercise's id.
@@ -16,30 +16,35 @@ class Open(msgspec.Struct, tag="open", frozen=True):
         record: Record a reference output instead of judging against one.
         workspaces: The socket of the grader's side of checks of workspaces, as the judge sees it; empty where there is
             none.
+        evidence: Hand over, with the verdict, what it follows from.
     """
 
     exercise: str
     seed: str
     record: bool = False
     workspaces: str = ""
+    evidence: bool = False
 
 
 class Close(msgspec.Struct, tag="close", frozen=True):
-    """No check is answered any more; report what the last one brought."""
+    """Answer no check any more, and report the result of the last one."""
 
 
 class Report(msgspec.Struct, frozen=True):
-    """What a check brought.
+    """The result of a check.
 
     Attributes:
         verdict: The judge's verdict; None where nobody asked or the judge had trouble.
         reference: The reference output as text, when recording.
         trouble: Why there is no verdict, in words; empty where nobody asked.
+        evidence: What the verdict follows from, as :mod:`autograder.judge.verdicts.keeping` packs it; empty where it
+            was not asked for.
     """
 
     verdict: Verdict | None = None
     reference: str | None = None
     trouble: str = ""
+    evidence: bytes = b""
 
 
 Order = Open | Close

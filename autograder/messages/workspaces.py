@@ -44,7 +44,19 @@ class Check(Message, frozen=True):
 
 
 class Start(Message, frozen=True):
-    """Build what was submitted, where that is not done yet, and run it."""
+    """Build what was submitted, where that is not done yet, and run it.
+
+    Attributes:
+        run: Its number.
+        arguments: Of the program; where an exercise is about several programs, the first one says which.
+    """
+
+    run: int
+    arguments: tuple[str, ...] = ()
+
+
+class Interrupt(Message, frozen=True):
+    """Press Ctrl-C at the program of the run, which goes on until it has ended by itself or is stopped."""
 
     run: int
 
@@ -55,7 +67,7 @@ class Stop(Message, frozen=True):
     run: int
 
 
-ToService = Start | Stop
+ToService = Start | Interrupt | Stop
 
 
 # --- A check: what the grader's side says

@@ -14,6 +14,7 @@ from autograder.notebook.plots import plot
 from autograder.notebook.recordings import read_recording, recording
 from autograder.notebook.robot import start_robot
 from autograder.notebook.ros_session import RosSession
+from autograder.notebook.watched_cells import unwatch, watch
 
 __all__ = [
     "RosSession",
@@ -26,6 +27,8 @@ __all__ = [
     "spinning",
     "start_robot",
     "start_ros",
+    "unwatch",
+    "watch",
     "watch_graph",
 ]
 

@@ -18,7 +18,6 @@ from autograder.notebook.judge_link import MAX_TEXT
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from types import TracebackType
 
 
 class CapturedOutput:
@@ -51,9 +50,7 @@ class CapturedOutput:
         self._silence_compiled_code()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         setattr(RcutilsLogger, "log", self._usual_log)  # noqa: B010
         for stream in (sys.stdout, sys.stderr):
             if isinstance(stream, _CapturedStream):

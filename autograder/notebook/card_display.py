@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, Self
 from autograder.cards import bundle
 from autograder.cards.wording import duration
 from autograder.notebook.judge_link import SOCKET_VARIABLE
+from autograder.notebook.reference_solution import solution_of
 from autograder.notebook.student_tracebacks import notebook_shell
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ class CardDisplay:
         if is_live():
             earlier = _shown.get(self.exercise)
             if earlier is not None:
-                self._handle = _display(bundle.mimebundle(earlier.verdict, before=earlier.before))
+                self._handle = display_card(bundle.mimebundle(earlier.verdict, before=earlier.before))
             here = contextvars.copy_context()  # what belongs to which cell is in there
             self._teller = threading.Thread(target=here.run, args=(self._tell,), name="check", daemon=True)
             self._teller.start()
@@ -82,7 +83,9 @@ class CardDisplay:
         if error is not None and self._handle is not None and (earlier := _shown.get(self.exercise)):
             # Interrupted: what stands there is an earlier result, and no check goes on.
             notice = "This is the result of an earlier check: the last one was interrupted."
-            _update(self._handle, bundle.mimebundle(earlier.verdict, before=earlier.before, notice=notice))
+            update_card(
+                self._handle, bundle.mimebundle(earlier.verdict, before=earlier.before, notice=notice)
+            )
 
     def doing(self, what: str) -> None:
         """Say what goes on, in a few words such as ``"run 2"``."""
@@ -94,13 +97,15 @@ class CardDisplay:
         shell = notebook_shell()
         earlier = _shown.get(self.exercise)
         before = earlier.verdict.score if earlier else None
-        card = bundle.mimebundle(verdict, before=before)
+        # Never in a grader's kernel: what a student hands in would carry it.
+        solution = solution_of(self.exercise) if verdict.passed and is_live() else None
+        card = bundle.mimebundle(verdict, before=before, solution=solution)
         if shell is None:
             print(card["text/plain"])
         elif self._handle is not None:
-            _update(self._handle, card)
+            update_card(self._handle, card)
         else:
-            self._handle = _display(card)
+            self._handle = display_card(card)
         if shell is not None:
             _remember(shell, self.exercise, self.subject, _Shown(verdict, before, self._handle, "", None))
 
@@ -120,9 +125,9 @@ class CardDisplay:
             else:
                 card = bundle.waiting_bundle(self.exercise, words)
             if self._handle is None:
-                self._handle = _display(card)
+                self._handle = display_card(card)
             else:
-                _update(self._handle, card)
+                update_card(self._handle, card)
 
 
 def is_live() -> bool:
@@ -153,16 +158,18 @@ def _dim_what_is_out_of_date(_: Any = None) -> None:
         if names[shown.name] is not shown.subject():
             shown.dated = True
             notice = f"{shown.name} has changed since this check: run the check again."
-            _update(shown.handle, bundle.mimebundle(shown.verdict, before=shown.before, notice=notice))
+            update_card(shown.handle, bundle.mimebundle(shown.verdict, before=shown.before, notice=notice))
 
 
-def _display(card: dict[str, str]) -> Any:
+def display_card(card: dict[str, str]) -> Any:
+    """Show a card below the cell that runs; what it is updated with."""
     from IPython.display import display
 
     return display(card, raw=True, display_id=True)  # type: ignore[no-untyped-call]
 
 
-def _update(handle: Any, card: dict[str, str]) -> None:
+def update_card(handle: Any, card: dict[str, str]) -> None:
+    """Show another card in a card's place."""
     # A kernel that is ending has closed its streams.
     if not sys.is_finalizing():
         handle.update(card, raw=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from autograder.cards import bundle
 from autograder.messages import checks as messages
@@ -26,6 +26,14 @@ if TYPE_CHECKING:
 
     from autograder.messages.lines import Message
 
+
+class Place(Protocol):
+    """Where a check's card is shown."""
+
+    def doing(self, what: str) -> None:
+        """Say what goes on, in a few words."""
+
+
 LINE = 70
 """Characters of a line of output that are shown while a check goes on."""
 
@@ -45,7 +53,7 @@ def check(exercise: str, subject: Any) -> float:
         TypeError: The subject is neither a class nor a function nor a path; the message says what to write instead.
     """
     if not (inspect.isclass(subject) or callable(subject) or is_path(subject)):
-        raise TypeError(_what_to_pass(exercise, subject))
+        raise TypeError(what_to_pass(exercise, subject))
     prepare_environment()
     with CardDisplay(exercise, subject) as place:
         verdict = _ask(exercise, subject, place)
@@ -62,15 +70,25 @@ def _ask(exercise: str, subject: Any, place: CardDisplay) -> Verdict:
     except JudgeUnreachable as error:
         return not_checked(exercise, exercise, 0.0, str(error))
     try:
-        return _converse(link, exercise, subject, place)
+        return converse(link, exercise, subject, place)
     except JudgeUnreachable as error:
         return not_checked(exercise, exercise, 0.0, str(error), "Run the cell again.")
     finally:
         link.close()
 
 
-def _converse(link: JudgeLink, exercise: str, subject: Any, card: CardDisplay) -> Verdict:
-    """Do what the judge says until it has a verdict."""
+def converse(link: JudgeLink, exercise: str, subject: Any, card: Place) -> Verdict:
+    """Do what the judge says until it has a verdict.
+
+    Args:
+        link: To the judge.
+        exercise: The exercise's id.
+        subject: What is checked.
+        card: Is told what goes on.
+
+    Raises:
+        JudgeUnreachable: The judge is gone, or the link was closed.
+    """
     link.say(messages.Check(exercise, kind="class" if inspect.isclass(subject) else "function"))
     bundle.prepare()  # while the judge makes its node
     first = link.hear()
@@ -108,11 +126,13 @@ def _converse(link: JudgeLink, exercise: str, subject: Any, card: CardDisplay) -
                             if is_path(subject)
                             else SubjectRun(number, subject, place.context, link.say)
                         )
-                        waits.begin_run(factor=order.hurry, spare=order.spare)
+                        waits.begin_run(factor=order.sleep_factor, spare=order.spare)
                         questions.begin_run()
                         run.start(order.arguments, order.options)
                     case messages.Release() if run is not None:
                         run.release()
+                    case messages.Interrupt() if isinstance(run, PathRun):
+                        run.interrupt()
                     case messages.Stack() if run is not None:
                         link.say(messages.Stacks(number, captured.stacks()))
                     case messages.Stop() if run is not None:
@@ -135,7 +155,7 @@ def _last_words(exercise: str, words: messages.FromJudge) -> Verdict:
     return not_checked(exercise, exercise, 0.0, why)
 
 
-def _retold(tell: Tell, card: CardDisplay) -> Tell:
+def _retold(tell: Tell, card: Place) -> Tell:
     """What a program says goes to the judge; its last line tells who waits what goes on, such as a build."""
 
     def told(message: Message) -> None:
@@ -146,6 +166,7 @@ def _retold(tell: Tell, card: CardDisplay) -> Tell:
     return told
 
 
-def _what_to_pass(exercise: str, subject: Any) -> str:
+def what_to_pass(exercise: str, subject: Any, call: str = "check") -> str:
+    """What to write instead of a subject that is none."""
     kind = type(subject).__name__
-    return f"check({exercise!r}, …) takes your class or function itself, without parentheses after it, not a {kind}"
+    return f"{call}({exercise!r}, …) takes your class or function itself, without parentheses after it, not a {kind}"

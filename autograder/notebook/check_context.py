@@ -21,7 +21,6 @@ from autograder.ros_participant import receivers_wait
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from types import TracebackType
 
     Endpoint = Sequence[str]
     """A topic of the middleware and the identifier of a reader or writer on it, as the judge names them."""
@@ -61,9 +60,7 @@ class CheckContext:
         os.environ[DOMAIN_VARIABLE] = str(self._domain_id)
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._end()
         setattr(rclpy, _GLOBAL_EXECUTOR, self._usual_executor)
         self._put(self._usual)

@@ -14,7 +14,7 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from autograder.notebook.graph_layout import Arrow, Point, lay_out
-from autograder.notebook.ros_graph import Channel, Kind, RosGraph, read_graph
+from autograder.notebook.ros_graph import Channel, ChannelKind, RosGraph, read_graph
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -111,7 +111,7 @@ class _Label:
     @property
     def small_print(self) -> str:
         """The line below the name."""
-        return self.type if self.shape in (Kind.TOPIC, "node") else f"{self.shape}: {self.type}"
+        return self.type if self.shape in (ChannelKind.TOPIC, "node") else f"{self.shape}: {self.type}"
 
     @property
     def width(self) -> float:

@@ -12,8 +12,6 @@ from rclpy.node import Node
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from types import TracebackType
-
 QUESTIONS = ("get_service_names_and_types", "get_service_names_and_types_by_node")
 """The questions to the graph that are told of."""
 ENOUGH = 10
@@ -44,9 +42,7 @@ class GraphQuestions:
             setattr(Node, name, self._noticed(ask))
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         for name, ask in self._usual:
             setattr(Node, name, ask)
 

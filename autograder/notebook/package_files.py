@@ -34,7 +34,7 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
     wanted = list(entries)
     for entry in wanted:
         if not isinstance(entry, str) or not _ENTRY_POINT.fullmatch(entry):
-            return f"{entry!r} is no entry point. Write: executable = module : function"
+            return _no_entry_point(entry)
     try:
         text = setup.read_text(encoding="utf-8")
         programs = _programs(ast.parse(text))
@@ -108,6 +108,16 @@ def add_definition(workspace: str | Path, package: str, definition: str, needs: 
         lists.write_text(text, encoding="utf-8")
     generated = ", ".join(re.findall(r'"([^"]+)"', "".join(_DEFINITIONS.findall(text))))
     return f"{package} generates: {generated}\n{add_dependencies(workspace, needs, package)}"
+
+
+def _no_entry_point(entry: object) -> str:
+    """What the student has to do about something that has not the form of an entry point."""
+    if isinstance(entry, str) and entry.count("=") > 1 and entry.count(":") > 1:
+        return (
+            f"Two entry points have run together: {entry!r}. A comma is missing between them: Python joins two texts "
+            "with nothing between. Write a comma after each entry point, behind its closing quotation mark."
+        )
+    return f"{entry!r} is no entry point. Write: executable = module : function"
 
 
 def _parts(entry: str) -> tuple[str, str]:

@@ -40,15 +40,25 @@ class PathRun:
         self._reader: threading.Thread | None = None
 
     def start(self, arguments: Sequence[Any], options: Mapping[str, Any]) -> None:
-        """Start the process; a path takes no arguments and no options."""
-        del arguments, options
+        """Start the process.
+
+        Args:
+            arguments: Where an exercise is about several programs: which one, and what it is called with.
+            options: None for a path.
+        """
+        del options
         # Interrupting the kernel must not end it halfway: the judge says when it ends.
-        self._program = OwnSession(self._command, _environment(self._domain))
+        self._program = OwnSession([*self._command, *map(str, arguments)], _environment(self._domain))
         self._reader = threading.Thread(target=self._follow, args=(self._program,), daemon=True)
         self._reader.start()
 
     def release(self) -> None:
         """A process runs from its start."""
+
+    def interrupt(self) -> None:
+        """Ctrl-C, as in a terminal."""
+        if self._program is not None:
+            self._program.interrupt()
 
     def stop(self) -> bool:
         """End the process with all that it started."""

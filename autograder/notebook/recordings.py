@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, Self
 
 from mcap.reader import make_reader
-from mcap.writer import Writer
 from mcap_ros2.decoder import DecoderFactory
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
+from autograder.message_files import ROS_2, MessageFile
 from autograder.notebook.live_picture import GONE
 from autograder.notebook.message_definitions import definition
 from autograder.notebook.ros_graph import hidden_node
@@ -24,7 +24,6 @@ from autograder.notebook.topic_traffic import message_class
 if TYPE_CHECKING:
     import os
     from collections.abc import Collection, Iterator
-    from types import TracebackType
 
     from rclpy.node import Node
     from rclpy.subscription import Subscription
@@ -96,21 +95,18 @@ class Recording:
     def __enter__(self) -> Self:
         """Begin to record."""
         self._file: IO[bytes] = self._path.open("wb")
-        self._writer = Writer(self._file)
-        self._writer.start(profile="ros2", library="ros2-course-autograder")
+        self._messages = MessageFile(self._file, ROS_2)
         self._node = hidden_node("_recorder")
         self._look_for_topics()
         self._thread = threading.Thread(target=self._record, name="recorder", daemon=True)
         self._thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """End the recording; the file is complete."""
         self._over.set()
         self._thread.join()
-        self._writer.finish()  # type: ignore[no-untyped-call]
+        self._messages.close()
         self._file.close()
 
     def __repr__(self) -> str:
@@ -135,12 +131,8 @@ class Recording:
                 while (taken := subscription.handle.take_message(subscription.msg_type, True)) is not None:
                     data, info = taken
                     self.counts[subscription.topic_name] += 1
-                    self._writer.add_message(
-                        channel,
-                        log_time=info["received_timestamp"],
-                        data=data,
-                        publish_time=info["source_timestamp"],
-                        sequence=self.counts[subscription.topic_name],
+                    self._messages.add(
+                        channel, data, arrived=info["received_timestamp"], sent=info["source_timestamp"]
                     )
 
     def _look_for_topics(self) -> None:
@@ -157,8 +149,7 @@ class Recording:
             kind, text = message_class(type_name), definition(type_name)
         except LookupError:
             return  # of a package that this environment does not have
-        schema = self._writer.register_schema(type_name, "ros2msg", text.encode())
-        channel = self._writer.register_channel(topic, "cdr", schema, {"offered_qos_profiles": ""})
+        channel = self._messages.channel(topic, type_name, text, about={"offered_qos_profiles": ""})
         self.counts[topic] = 0
         self._subscriptions[channel] = self._node.create_subscription(
             kind, topic, lambda _: None, _as_offered(self._node, topic), raw=True

@@ -39,7 +39,7 @@ _EVERY_SERVICE = {
 }
 
 
-class Kind(StrEnum):
+class ChannelKind(StrEnum):
     """What connects nodes."""
 
     TOPIC = "topic"
@@ -51,7 +51,7 @@ class Kind(StrEnum):
 class Channel:
     """A topic, a service or an action."""
 
-    kind: Kind
+    kind: ChannelKind
     name: str
     type: str
 
@@ -97,12 +97,12 @@ class RosGraph:
 
 
 _VERBS = {
-    (Kind.TOPIC, True): "publishes on",
-    (Kind.TOPIC, False): "subscribes to",
-    (Kind.SERVICE, True): "calls the service",
-    (Kind.SERVICE, False): "serves",
-    (Kind.ACTION, True): "sends goals to the action",
-    (Kind.ACTION, False): "serves the action",
+    (ChannelKind.TOPIC, True): "publishes on",
+    (ChannelKind.TOPIC, False): "subscribes to",
+    (ChannelKind.SERVICE, True): "calls the service",
+    (ChannelKind.SERVICE, False): "serves",
+    (ChannelKind.ACTION, True): "sends goals to the action",
+    (ChannelKind.ACTION, False): "serves the action",
 }
 
 
@@ -160,7 +160,7 @@ def _topic_ends(node: Node) -> Iterator[End]:
     """
     for topic, types in node.get_topic_names_and_types():
         # A topic that belongs to every node, or to an action, is no channel: nobody has to be asked about it.
-        if not list(_channels(Kind.TOPIC, [(topic, types)])):
+        if not list(_channels(ChannelKind.TOPIC, [(topic, types)])):
             continue
         for gives, infos in (
             (True, node.get_publishers_info_by_topic(topic)),
@@ -168,12 +168,12 @@ def _topic_ends(node: Node) -> Iterator[End]:
         ):
             for info in infos:
                 full = _full(info.node_name, info.node_namespace)
-                yield End(full, Channel(Kind.TOPIC, topic, info.topic_type), gives)
+                yield End(full, Channel(ChannelKind.TOPIC, topic, info.topic_type), gives)
 
 
 def _service_and_action_ends(node: Node, name: str, space: str) -> Iterator[End]:
     """The services and actions of one node. A node that has just gone has none."""
-    services, actions = Kind.SERVICE, Kind.ACTION
+    services, actions = ChannelKind.SERVICE, ChannelKind.ACTION
     try:
         found = [
             (services, True, node.get_client_names_and_types_by_node(name, space)),
@@ -188,11 +188,13 @@ def _service_and_action_ends(node: Node, name: str, space: str) -> Iterator[End]
             yield End(_full(name, space), channel, gives)
 
 
-def _channels(kind: Kind, names_and_types: Iterable[tuple[str, list[str]]]) -> Iterator[Channel]:
+def _channels(kind: ChannelKind, names_and_types: Iterable[tuple[str, list[str]]]) -> Iterator[Channel]:
     for name, types in names_and_types:
         last = name.rpartition("/")[2]
         common = (
-            name in _EVERY_TOPIC if kind is Kind.TOPIC else kind is Kind.SERVICE and last in _EVERY_SERVICE
+            name in _EVERY_TOPIC
+            if kind is ChannelKind.TOPIC
+            else kind is ChannelKind.SERVICE and last in _EVERY_SERVICE
         )
         # An action's own topics and services are below <action>/_action.
         hidden = any(part.startswith("_") for part in name.split("/"))

@@ -25,7 +25,7 @@ from autograder.messages.checks import Called, Spared, Willing
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from types import ModuleType, TracebackType
+    from types import ModuleType
 
 READY_POLL = 0.004
 """Seconds between two looks whether a server is there."""
@@ -122,9 +122,7 @@ class ShorterWaits:
             setattr(owner, name, function)
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         for owner, name, value in self._usual:
             setattr(owner, name, value)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
-from autograder.notebook.ros_graph import Channel, Kind
+from autograder.notebook.ros_graph import Channel, ChannelKind
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -43,7 +43,7 @@ class TopicTraffic:
 
     def look(self, channels: Iterable[Channel]) -> dict[Channel, float]:
         """Messages in a second on each of these topics since the last look; those that are new are left out."""
-        wanted = {channel for channel in channels if channel.kind is Kind.TOPIC}
+        wanted = {channel for channel in channels if channel.kind is ChannelKind.TOPIC}
         for channel in self._counted.keys() - wanted:
             self._forget(channel)
         rates = {}

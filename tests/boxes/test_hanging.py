@@ -75,6 +75,11 @@ def test_a_cell_of_the_students_own_blames_nobody() -> None:
     assert seconds([TALKER, own, check("Talker")], "while")[0] == [120, 120, 130]
 
 
+def test_a_terminal_has_twice_as_long_since_it_may_build() -> None:
+    cells = [Cell("%%bash --no-raise-error\ncolcon build"), Cell("x = 'colcon build'"), Cell("  %%sh\nls")]
+    assert seconds(cells)[0] == [240, 120, 240]
+
+
 def test_a_cell_that_is_no_python_blames_nobody() -> None:
     cells = [Cell("%%writefile talker.py\nclass Talker: pass", own=True), TALKER, Cell("%%bash\nTalker")]
-    assert seconds([*cells, check("Talker")], "Talker")[0][:3] == [120, 120, 120]
+    assert seconds([*cells, check("Talker")], "Talker")[0][:3] == [120, 120, 240]

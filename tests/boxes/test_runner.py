@@ -11,12 +11,13 @@ from pathlib import Path
 import psutil
 import pytest
 
-from autograder.boxes.execution import Cell, Check, Ended, Execution, Kind
+from autograder.boxes.execution import Cell, CellType, Check, Ended, Execution
 from autograder.boxes.fork_server_client import Addresses
 from autograder.boxes.limits import Limits
 from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.boxes.runner import run_notebook
 from autograder.boxes.scratch import scratch_folder
+from autograder.boxes.time_left import Left, Patient, wall_time
 from autograder.verdict import State, Verdict
 
 CHECK = Check("lab.one", "One", points=10, worth=10, limit=2)
@@ -46,7 +47,10 @@ def run(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses, unboxe
     addresses, kind = (boxed, BoxedPlace) if request.param == "in a box" else (unboxed, UnboxedPlace)
 
     def go(
-        cells: Sequence[Cell | str], says: Verdict | Exception | None = None, **limits: float
+        cells: Sequence[Cell | str],
+        says: Verdict | Exception | None = None,
+        patient: Patient = wall_time,
+        **limits: float,
     ) -> Execution:
         @contextlib.contextmanager
         def judge() -> Iterator[SayingJudge]:
@@ -63,6 +67,7 @@ def run(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses, unboxe
                 start=place.start_kernel,
                 folder=folder,
                 limits=holds,
+                patient=patient,
             )
 
     return go
@@ -145,6 +150,27 @@ def test_the_notebook_as_a_whole_has_a_limit(run: Run) -> None:
     assert execution.verdicts[3].score == 0
 
 
+def test_a_cells_seconds_last_as_long_as_the_machine_makes_them(run: Run) -> None:
+    def crowded(seconds: float) -> Left:
+        asked.append(seconds)
+        return lambda: 1.0  # nobody had the processor, so none of it is used up
+
+    asked: list[float] = []
+    execution = run(["import time; time.sleep(0.5)", check()], passed(), patient=crowded, cell_seconds=0.01)
+    assert [cell.ended for cell in execution.cells] == [Ended.DONE, Ended.DONE]
+    assert asked == [0.01, CHECK.limit + Limits().check_margin]
+
+
+def test_the_notebooks_limit_is_wall_time_however_crowded_the_machine_is(run: Run) -> None:
+    execution = run(
+        ["import time; time.sleep(600)", check()],
+        passed(),
+        patient=lambda _: lambda: 1.0,
+        notebook_seconds=1.0,
+    )
+    assert [cell.ended for cell in execution.cells] == [Ended.TIMED_OUT, Ended.NOT_RUN]
+
+
 def test_a_log_line_on_stderr_costs_nothing(run: Run) -> None:
     execution = run(["import sys; print('[INFO] up', file=sys.stderr)", check()], passed())
     assert execution.cells[0].outputs[0]["name"] == "stderr"
@@ -204,7 +230,7 @@ def test_a_verdict_on_another_exercise_does_not_count(run: Run) -> None:
 
 
 def test_markdown_is_not_executed(run: Run) -> None:
-    execution = run([Cell("raise SystemExit", Kind.MARKDOWN), "1"])
+    execution = run([Cell("raise SystemExit", CellType.MARKDOWN), "1"])
     assert [cell.ended for cell in execution.cells] == [Ended.DONE, Ended.DONE]
 
 

@@ -18,12 +18,25 @@ if TYPE_CHECKING:
 pytestmark = [pytest.mark.browser, pytest.mark.ros, pytest.mark.slow]
 TALKER_CHECK = r'^check\("lab_1_2\.talker"'
 LISTENER_CHECK = r'^check\("lab_1_2\.listener"'
+PROGRAMS_CHECK = r'^check\("lab_1_2\.programs"'
+PACKAGE = "src/my_robot_pkg/my_robot_pkg"
+ENTRY_POINTS = """entry_points = [
+    "talker = my_robot_pkg.talker:main",
+    "listener = my_robot_pkg.listener:main",
+]
+print(add_entry_points("ros2_ws", entry_points))"""
 BANK = Path(__file__).parents[1] / "submissions/notebooks"
 
 
 def answer(file: str) -> str:
     """What a student types into the solution cell."""
     return (BANK / file).read_text().partition("# %% solution ")[2].partition("\n")[2].strip()
+
+
+def program(name: str) -> str:
+    """The cell that writes a program of the package."""
+    file = Path(__file__).parents[2] / "solutions/ros2_ws" / PACKAGE / f"{name}.py"
+    return f"%%writefile ros2_ws/{PACKAGE}/{name}.py\n{file.read_text()}"
 
 
 def test_a_student_errs_reads_the_card_mends_it_and_validates(page: Page, lab: str) -> None:
@@ -51,12 +64,21 @@ def test_a_student_errs_reads_the_card_mends_it_and_validates(page: Page, lab: s
 
     notebook.write(r"^class TalkerNode", answer("lab_1_2.talker/right/as_hinted.py"))
     notebook.write(r"^class ListenerNode", answer("lab_1_2.listener/right/as_hinted.py"))
+    for name in ("talker", "listener"):
+        notebook.write(rf"^%%writefile .*/{name}\.py", program(name))
+    notebook.write(r"^entry_points = ", ENTRY_POINTS)
     notebook.menu("Run", "Run All Cells")
     listener = notebook.cell(LISTENER_CHECK)
     expect(listener.locator(".agc-passed")).to_contain_text("10 of 10 points")
     look(page, "listener")
     expect(notebook.cell(TALKER_CHECK).locator(".agc-passed")).to_contain_text("10 of 10 points")
     look(page, "passed")
+
+    programs = notebook.cell(PROGRAMS_CHECK)
+    expect(programs.locator(".agc-passed")).to_contain_text("10 of 10 points")
+    programs.locator(".agc-solution summary").click()
+    expect(programs.locator(".agc-solution")).to_contain_text("Another way.")
+    look(page, "programs")
 
     notebook.panel.get_by_text("Validate", exact=True).click()
     dialog = page.locator(".jp-Dialog")

@@ -23,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "grading"))
 from server_of_a_test import jupyter_server
 from tiny_class import FakeEngine, TinyClass, make_tiny_class
 
-from autograder.boxes.execution import CellRun, Ended, Kind
+from autograder.boxes.execution import CellRun, CellType, Ended
 from autograder.boxes.limits import Limits
 from autograder.boxes.outputs import Budget, OutputCollector
 from autograder.grading.classes.class_directory import ClassDirectory
@@ -169,7 +169,7 @@ class HostileEngine(FakeEngine):
     def execute(self, task: Task) -> Execution:
         execution = super().execute(task)
         # The given cells, the answers, the checks, and one of the student's own; all of them would only take long.
-        talkative = [index for index, cell in enumerate(task.cells) if cell.kind is Kind.CODE][:6]
+        talkative = [index for index, cell in enumerate(task.cells) if cell.kind is CellType.CODE][:6]
         runs = (
             CellRun(Ended.RAISED, self._outputs() if index in talkative else ())
             for index in range(len(task.cells))
@@ -200,7 +200,7 @@ def hostile_class(tmp_path_factory: pytest.TempPathFactory) -> TinyClass:
     path = tiny.submit("eve", 4, 10)
     notebook = nbformat.read(path, as_version=4)
     for text in TEXTS:
-        for kind in Kind:
+        for kind in CellType:
             cell = nodes.cell(kind, text)
             cell.metadata = {"tags": [text], "raw_mimetype": "text/html", "magics_language": text}
             notebook.cells.append(cell)
@@ -313,6 +313,6 @@ def test_what_is_kept_is_harmless_by_itself(hostile_class: TinyClass) -> None:
     for cell in own:
         kinds = {kind for output in cell.get("outputs", []) for kind in output.get("data", {})}
         assert kinds <= {"text/plain", "image/png", "image/jpeg"}
-        if cell.cell_type == Kind.MARKDOWN:
+        if cell.cell_type == CellType.MARKDOWN:
             assert harmless_markdown(cell.source) == cell.source
     assert "<script>fired()" not in json.dumps(notebook.metadata)

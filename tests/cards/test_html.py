@@ -363,3 +363,20 @@ def test_long_names_break_at_their_slashes(load: Callable[[str], Verdict]) -> No
     name = Criterion("type", "Type", 1.0, False, "a/b", "my_robot_interfaces/srv/AddTwoInts")
     source = card_html(replace(load("talker_wrong_topic"), criteria=(name,)))
     assert "my_robot_interfaces/<wbr/>srv/<wbr/>AddTwoInts" in source
+
+
+def test_a_short_card_has_points_what_happened_and_what_to_do_next_and_no_more(
+    load: Callable[[str], Verdict],
+) -> None:
+    verdict = load("talker_wrong_topic")
+    assert verdict.diagnosis is not None
+    for shown in (
+        html.unescape(card_html(verdict, short=True).partition("</style>")[2]),
+        card_text(verdict, short=True),
+    ):
+        words = " ".join(re.sub(r"<wbr/>|`|<[^>]*>", "", shown).split())
+        assert verdict.title in words
+        assert "What to do next" in words
+        assert verdict.seed not in words
+        assert "Criteria" not in words
+        assert "on the wire" not in words

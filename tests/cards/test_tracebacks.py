@@ -22,6 +22,12 @@ def test_a_line_that_python_does_not_quote_has_no_quote() -> None:
     assert found == Place("Line 2 of your cell", "", "KeyError: 1")
 
 
+def test_the_script_of_an_entry_point_is_nobodys() -> None:
+    script = '  File "/ws/install/my_pkg/lib/my_pkg/talker", line 25, in importlib_load_entry_point\n    return 1\n'
+    text = f"Traceback (most recent call last):\n{script}ModuleNotFoundError: No module named 'talker'"
+    assert place(text) is None
+
+
 def test_output_that_is_no_traceback_has_no_place() -> None:
     assert place("Hello, world! 0\nTerminated") is None
     assert place("") is None

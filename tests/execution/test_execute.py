@@ -99,8 +99,8 @@ def test_a_cell_that_does_not_cope_with_the_stub_is_found_in_the_chapter(tmp_pat
     page = tmp_path / "execution-reports" / "lab_9_1-chapter.html"
     assert [*page.parent.iterdir()] == [page]
     text = page.read_text()
-    assert 'href="#finding-5"' in text
-    assert 'id="finding-5"' in text
+    assert 'href="#problem-5"' in text
+    assert 'id="problem-5"' in text
     assert "ZeroDivisionError" in text
 
 

@@ -68,3 +68,16 @@ def test_who_says_how_each_goal_ended_is_right(canceled: str, succeeded: str) ->
 )
 def test_a_word_that_is_true_of_the_other_goal_only_is_wrong(canceled: str, succeeded: str) -> None:
     assert not right(canceled, succeeded)
+
+
+@pytest.mark.parametrize(
+    ("words", "ended"),
+    [
+        ("the goal ended as CANCELED", "succeeded in spite of the cancel request"),
+        ("the goal ended as SUCCEEDED", "was canceled"),
+    ],
+)
+def test_who_says_the_same_of_both_goals_hears_of_the_one_for_which_it_is_false(
+    words: str, ended: str
+) -> None:
+    assert false_claim(run(words), run(words)) == (words, ended)

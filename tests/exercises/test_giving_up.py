@@ -51,6 +51,19 @@ def test_a_sum_that_happens_to_be_an_own_number_is_not_what_it_says_of_a_missing
     assert not gave_up(parts, run("the sum is 42953", [42953, 0]), has_asked)
 
 
+def test_a_number_that_is_an_input_by_chance_is_the_same_number_all_the_same() -> None:
+    # "3 s" is what the program says in each run; in two of them 3 is a number that it was given, too.
+    parts = [run("no server within 3 s", [1, 2]), run("no server within 3 s", [3, 12])]
+    assert gave_up(parts, run("no server within 3 s", [3, 8]), has_asked)
+    assert not gave_up(parts, run("no server within 4 s", [3, 8]), has_asked)
+
+
+def test_the_digits_of_a_patience_are_one_number() -> None:
+    parts = [_waits((4.0, "nobody within 6.3 s, try 3"), told=6.3, ends=4.0)]
+    assert gave_up(parts, _waits((4.0, "nobody within 5.8 s, try 3"), told=5.8, ends=4.0), has_asked)
+    assert not gave_up(parts, _waits((4.0, "nobody within 5.8 s, try 4"), told=5.8, ends=4.0), has_asked)
+
+
 def test_it_asked_once_it_had_met_the_server() -> None:
     late, usual = run("nobody", [1, 2]), run("3", [1, 2], asked=True)
     assert gave_up([late, usual], run("something else", [1, 2]), has_asked)

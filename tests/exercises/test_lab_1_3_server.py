@@ -63,3 +63,9 @@ def test_who_does_not_answer_the_last_call_is_not_alive() -> None:
 
 def test_two_servers_of_one_name_are_one_too_many() -> None:
     assert failed(part(SUMS, servers=2)) == {"service"}
+
+
+def test_where_chance_picks_the_server_a_wrong_answer_counts_against_each_call() -> None:
+    # The other server happened to answer one call only; another time it answers others.
+    assert failed(part(SUMS | {3: 0}, servers=2)) == {"service", "sums", "together", "alive"}
+    assert failed(part(SUMS | {LAST: 0}, servers=2)) == {"service", "sums", "together", "alive"}

@@ -138,3 +138,36 @@ def test_a_bad_order_that_is_taken_is_wrong_even_if_it_is_aborted_later() -> Non
 def test_a_server_that_refuses_everything_does_not_refuse_rightly() -> None:
     seen = evidence(RIGHT, [*REFUSALS[:6], *goal(3, 2, accepted=False)])
     assert failed(seen) == {"refuse"}
+
+
+def test_where_goals_reach_two_servers_no_answer_counts() -> None:
+    # Whose answers the client takes is chance, so the points must not depend on it.
+    two = [Event(0.0, "servers", ACTION, {"count": 2}), *RIGHT]
+    assert failed(evidence(two)) == {"action", "sequence", "feedback", "two", "cancel", "refuse"}
+
+
+def test_the_answer_of_a_program_that_exits_with_it_counts_for_nothing() -> None:
+    # It gets out of the program or it does not: chance must not give the point.
+    exited = Event(1.0, "subject", "exited", {"code": 0})
+    answered = goal(0, 5)[:2]
+    for events in (answered[:1], answered):
+        assert "action" in failed(evidence([*events, exited], []))
+    assert "action" not in failed(evidence([*goal(0, 5)[:3], exited], []))
+
+
+def test_a_goal_that_was_over_before_the_cancel_is_told_so_where_its_result_was_not_seen() -> None:
+    *events, _ = goal(LONG, 20, feedback=[FIBONACCI[:n] for n in (3, 4, 5)], pause=0.0002)
+    events.append(Event(0.0, "cancel_answer", ACTION, {"goal": LONG, "accepted": False, "return_code": 3}))
+    seen = evidence(
+        [*goal(0, 5, pause=0.0002), *goal(1, 4, pause=0.0002), *goal(2, 3, pause=0.0002), *events]
+    )
+    assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(seen)) == "done_at_once"
+
+
+def test_a_server_without_a_pause_whose_last_number_was_out_when_it_agreed_to_cancel_has_not_ignored_that() -> (
+    None
+):
+    quick = [*goal(0, 5, pause=0.001), *goal(1, 4, pause=0.001), *goal(2, 3, pause=0.001)]
+    last = goal(LONG, 20, feedback=[FIBONACCI[:n] for n in (3, 4, 5)], pause=0.001, cancel=True, status=4)
+    seen = evidence([*quick, *last])
+    assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(seen)) == "done_at_once"

@@ -49,3 +49,22 @@ def test_a_function_that_comes_back_with_nothing_is_not_written_yet(exercise_id:
     diagnosis = trial.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
     asked_nothing = {"not_written", "no_call", "one_call_only"} if seen else {"not_written"}
     assert diagnosis.key in asked_nothing
+
+
+@pytest.mark.parametrize(
+    "exercise_id",
+    ["exercise_1_2.three_ints", "inspecting_topics.mismatch", "lab_1_3.client", "lab_1_4.client"],
+)
+@pytest.mark.parametrize("seen", [True, False], ids=["its client was seen", "it was gone too soon"])
+def test_a_function_as_it_was_handed_out_is_not_written_yet(exercise_id: str, seen: bool) -> None:
+    stored = reference.load(exercise_id)
+    started = Event(0.0, "subject", "started", {"accepted": ["patience_sec"]})
+    survey = Event(0.005, "interface", "graph", {"nodes": ["/client"], **stored.interface} if seen else {})
+    returned = Event(0.01, "subject", "returned", {"value": None})
+    parts = [
+        Part(part.name, {"patience_sec": 2.5, **part.inputs}, [started, survey, returned])
+        for part in stored.parts
+    ]
+    diagnosis = trial.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
+    assert diagnosis.key == "not_written"
+    assert "TODO" in diagnosis.next_step

@@ -35,7 +35,7 @@ def tiny(_made: Path, tmp_path: Path) -> TinyClass:
     return TinyClass(tmp_path / "class")
 
 
-@pytest.fixture(scope="session", autouse=True)
+@pytest.fixture(scope="module", autouse=True)
 def _one_course_version() -> Iterator[None]:
     """Several processes and runs must agree on it, also while somebody edits the course."""
     with pytest.MonkeyPatch.context() as patch:
@@ -49,7 +49,6 @@ def fake_engine(monkeypatch: pytest.MonkeyPatch) -> FakeEngine:
     """Nothing is executed in this test."""
     fake = FakeEngine()
     monkeypatch.setattr(engine, "execute_all", fake.execute_all)
-    monkeypatch.setattr(engine, "execute_one", fake.execute_one)
     return fake
 
 

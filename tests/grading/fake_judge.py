@@ -25,6 +25,7 @@ class FakeJudge:
         self._seed = seed
         self._exercise = ""
         self._said: str | None = None
+        self.keeps_evidence = False
 
     def __enter__(self) -> Self:
         self._listener = listen(self._path)
@@ -45,7 +46,9 @@ class FakeJudge:
             raise RuntimeError("the judge is gone")
         if self._said == "kill worker":
             os._exit(9)
-        return Report(verdict(self._exercise, float(self._said), self._seed))
+        found = verdict(self._exercise, float(self._said), self._seed)
+        evidence = f"{self._exercise} said {self._said}".encode() if self.keeps_evidence else b""
+        return Report(found, evidence=evidence)
 
     def _hear(self) -> None:
         with contextlib.suppress(OSError):

@@ -124,8 +124,9 @@ def test_what_is_no_file_is_named_once_and_earns_nothing(
 @pytest.mark.parametrize("kind", ["pipe", "device", "folder", "hard link"])
 def test_plain_nbgrader_is_not_held_up_either(tiny: TinyClass, fake_engine: FakeEngine, kind: str) -> None:
     tiny.submit("ada", 7, 8)
-    in_place_of_the_notebook(tiny, kind)
-    nbgrader_autograde(tiny)
+    path = in_place_of_the_notebook(tiny, kind)
+    with pytest.raises(NbGraderException, match=rf"{path}: .*{ODD[kind][1]}"):
+        nbgrader_autograde(tiny)
     assert tiny.scores("eve") == NOTHING
     assert tiny.scores("ada") == {TALKER: 7, LISTENER: 8}
 

@@ -11,11 +11,11 @@ import nbformat
 import pytest
 from conftest import LISTENER, TALKER, FakeEngine, TinyClass
 from nbgrader.api import Gradebook
-from nbgrader.preprocessors import SaveAutoGrades
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
 from autograder.grading.entering import gradebook
+from autograder.grading.entering.gradebook import NotebookEntry
 from autograder.grading.entering.journal import Journal
 from autograder.grading.errors import (
     ClassBusy,
@@ -167,46 +167,16 @@ def test_grades_are_taken_back_before_the_first_notebook_runs(
     assert tiny.scores("ben") == {TALKER: 0, LISTENER: 0}
 
 
-def test_nbgrader_failing_in_the_middle_leaves_zero_and_a_word(
-    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    tiny.configure_otherwise()
-    tiny.submit("ada")
-    tiny.submit("ben")
-    tiny.grade()
-    tiny.submit("ada", 9)
-    tiny.submit("ben", 9)
-    usual = SaveAutoGrades.preprocess
-
-    def fail(self: Any, nb: Any, resources: Any) -> Any:
-        if resources["nbgrader"]["student"] == "ada":
-            raise RuntimeError("no more")
-        return usual(self, nb, resources)
-
-    monkeypatch.setattr(SaveAutoGrades, "preprocess", fail)
-    report = tiny.grade()
-    assert tiny.scores("ada") == {TALKER: 0, LISTENER: 0}
-    assert tiny.scores("ben")[TALKER] == 9
-    assert not (tiny.path / "autograded" / "ada" / "lab_1_2").exists()
-    assert row(report, "ada").state == "not_checked"
-    assert row(report, "ada").score == 0
-    assert len(report.problems) == 1
-    monkeypatch.undo()
-
-
 def test_a_gradebook_that_says_something_else_afterwards_is_not_believed(
     tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    tiny.configure_otherwise()
+    usual = gradebook.enter
 
-    def generous(self: Any, cell: Any, resources: Any) -> None:
-        grade = self.gradebook.find_grade(
-            cell.metadata.nbgrader.grade_id, "lab_1_2", "lab_1_2", self.student_id
-        )
-        grade.auto_score = 10
-        self.gradebook.db.commit()
+    def generous(url: str, assignment: str, student: str, notebooks: Any, at: Any) -> bool:
+        ten = {name: NotebookEntry({TALKER: 10}, {}) for name in notebooks}
+        return usual(url, assignment, student, ten, at)
 
-    monkeypatch.setattr(SaveAutoGrades, "_add_score", generous)
+    monkeypatch.setattr(gradebook, "enter", generous)
     tiny.submit("ada", 4)
     report = tiny.grade()
     assert tiny.scores("ada")[TALKER] == 0
@@ -402,20 +372,6 @@ def test_a_full_disk_is_said_and_costs_nothing(
     tiny.grade()
     assert fake_engine.ran == ["ben"]
     assert tiny.scores("ben")[TALKER] == 10
-
-
-def test_a_full_disk_inside_nbgrader_is_said_too(
-    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    tiny.configure_otherwise()
-
-    def full(*_: object) -> None:
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    monkeypatch.setattr(SaveAutoGrades, "preprocess", full)
-    tiny.submit("ada")
-    with pytest.raises(DiskFull):
-        tiny.grade()
 
 
 def test_a_source_that_is_no_notebook_stops_the_run(tiny: TinyClass, fake_engine: FakeEngine) -> None:

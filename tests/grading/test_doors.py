@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Any
 import nbformat
 import pytest
 from conftest import LISTENER, TALKER, FakeEngine, TinyClass
-from nbgrader.converters import Autograde, NbGraderException
+from nbgrader.api import Gradebook
+from nbgrader.converters import Autograde, GenerateFeedback, NbGraderException
 from nbgrader.coursedir import CourseDirectory
-from nbgrader.preprocessors import SaveAutoGrades
 
 from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.entering import gradebook
 from autograder.grading.entering.journal import Journal
+from autograder.grading.errors import ClassIncomplete
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -30,6 +32,16 @@ def nbgrader_autograde(tiny: TinyClass, **options: Any) -> None:
     converter = Autograde(coursedir=course, config=config)
     for name, value in options.items():
         setattr(converter, name, value)
+    converter.start()
+
+
+def nbgrader_generate_feedback(tiny: TinyClass) -> None:
+    """What ``nbgrader generate_feedback lab_1_2`` and formgrader's button do."""
+    config = ClassDirectory(tiny.path).config
+    course = CourseDirectory(config=config)
+    course.assignment_id = "lab_1_2"
+    converter = GenerateFeedback(coursedir=course, config=config)
+    converter.force = True
     converter.start()
 
 
@@ -76,7 +88,8 @@ def test_both_doors_give_the_same_points(tiny: TinyClass, fake_engine: FakeEngin
     other = TinyClass(tmp_path / "other")
     shutil.copytree(tiny.path, other.path)
     tiny.grade()
-    nbgrader_autograde(other)
+    with pytest.raises(NbGraderException, match="judge-died/lab_1_2/lab_1_2 could not be checked"):
+        nbgrader_autograde(other)
     ours = {student: tiny.scores(student) for student in students}
     assert {student: other.scores(student) for student in students} == ours
     assert ours["partly"] == {TALKER: 4, LISTENER: 7}
@@ -111,8 +124,8 @@ def test_plain_nbgrader_leaves_no_earlier_score_when_it_fails(
     elif where == "executing":
         monkeypatch.setattr(fake_engine, "execute", fail)
     else:
-        monkeypatch.setattr(SaveAutoGrades, "preprocess", fail)
-    with pytest.raises(NbGraderException):
+        monkeypatch.setattr(gradebook, "enter", fail)
+    with pytest.raises(RuntimeError if where == "executing" else NbGraderException):
         nbgrader_autograde(tiny, force=True)
     assert tiny.scores("ada") == {TALKER: 0, LISTENER: 0}
     assert not (tiny.path / "autograded" / "ada" / "lab_1_2").exists()
@@ -160,7 +173,7 @@ def test_a_linked_submission_folder_is_not_graded_by_plain_nbgrader_either(
     with pytest.raises(NbGraderException):
         nbgrader_autograde(tiny)
     assert tiny.scores("ada")[TALKER] == 10
-    assert tiny.scores("eve") in ({TALKER: 0, LISTENER: 0}, {TALKER: None, LISTENER: None})
+    assert list(gradebook.scores(ClassDirectory(tiny.path).gradebook_url, "lab_1_2")) == ["ada"]
 
 
 def test_a_result_that_cannot_be_kept_is_no_result(
@@ -173,4 +186,58 @@ def test_a_result_that_cannot_be_kept_is_no_result(
     tiny.submit("ada")
     with pytest.raises(NbGraderException):
         nbgrader_autograde(tiny)
-    assert tiny.scores("ada")[TALKER] in (0, None)
+    assert gradebook.scores(ClassDirectory(tiny.path).gradebook_url, "lab_1_2") == {}
+
+
+def test_a_single_notebook_of_a_submission_is_refused(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada")
+    config = ClassDirectory(tiny.path).config
+    course = CourseDirectory(config=config)
+    course.assignment_id, course.notebook_id = "lab_1_2", "lab_1_2"
+    with pytest.raises(NbGraderException, match="leave out --notebook"):
+        Autograde(coursedir=course, config=config).start()
+    assert fake_engine.ran == []
+
+
+def test_one_student_of_plain_nbgrader_is_graded_alone(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    """As formgrader's button asks for it; a folder that is refused is named with the reason."""
+    tiny.submit("ada", 3)
+    tiny.submit("ben", 5)
+    (tiny.path / "submitted" / "eve").symlink_to(tiny.path / "submitted" / "ada")
+    config = ClassDirectory(tiny.path).config
+    course = CourseDirectory(config=config)
+    course.assignment_id, course.student_id = "lab_1_2", "ben"
+    Autograde(coursedir=course, config=config).start()
+    assert fake_engine.ran == ["ben"]
+    course.student_id = "eve"
+    with pytest.raises(NbGraderException, match=r"eve.*: it is a link; put the folder itself there"):
+        Autograde(coursedir=course, config=config).start()
+    assert fake_engine.ran == ["ben"]
+
+
+def test_pages_of_plain_nbgrader_follow_what_a_person_has_given(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    tiny.submit("ada", 3, 4)
+    nbgrader_autograde(tiny)
+    nbgrader_generate_feedback(tiny)
+    page = tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html"
+    assert "(Score: 7.0 / 20.0)" in page.read_text()
+    with Gradebook(f"sqlite:///{tiny.path / 'gradebook.db'}") as book:
+        book.find_grade(TALKER, "lab_1_2", "lab_1_2", "ada").manual_score = 9
+        book.db.commit()
+    nbgrader_generate_feedback(tiny)
+    assert "(Score: 13.0 / 20.0)" in page.read_text()
+
+
+def test_an_assignment_in_the_making_holds_up_no_other(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    """Its source is there already, and the gradebook does not know it yet."""
+    shutil.copytree(tiny.path / "source" / "lab_1_2", tiny.path / "source" / "next_week")
+    (tiny.path / "source" / "next_week" / "lab_1_2.ipynb").rename(
+        tiny.path / "source" / "next_week" / "next_week.ipynb"
+    )
+    tiny.submit("ada", 3)
+    with pytest.raises(ClassIncomplete, match="does not know next_week"):
+        tiny.grade()
+    nbgrader_autograde(tiny)
+    assert tiny.scores("ada")[TALKER] == 3

@@ -19,7 +19,7 @@ from nbgrader.api import Gradebook
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
-from autograder.grading.entering import gradebook
+from autograder.grading.entering import database, gradebook
 from autograder.grading.errors import ClassIncomplete, GradingError
 
 if TYPE_CHECKING:
@@ -156,7 +156,7 @@ def test_what_is_missing_is_said(
     with pytest.raises(GradingError, match="Look whether the database server runs"):
         tiny.grade()
     monkeypatch.setitem(sys.modules, "psycopg", None)
-    gradebook._engine.cache_clear()  # as in another process
+    database._engine.cache_clear()  # as in another process
     with pytest.raises(GradingError, match=r"\./course setup --with postgresql"):
         tiny.grade()
 

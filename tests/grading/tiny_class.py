@@ -132,10 +132,10 @@ class TinyClass:
         path.write_text(text)
         return path
 
-    def configure_otherwise(self) -> None:
-        """Make nbgrader itself convert submissions and make pages, as for a class that changed its configuration."""
+    def configure(self, *lines: str) -> None:
+        """Write lines to the end of the class's configuration."""
         with (self.path / "nbgrader_config.py").open("a") as config:
-            config.write("c.SaveAutoGrades.enabled = True\nc.CSSHTMLHeaderPreprocessor.enabled = True\n")
+            config.writelines(f"{line}\n" for line in lines)
 
     def grade(self, **options: Any) -> GradeReport:
         return grade(self.path, **{"console": QUIET, "feedback": False, **options})
@@ -166,6 +166,7 @@ class FakeEngine:
 
     def __init__(self) -> None:
         self.ran: list[str] = []
+        self.evidence: dict[str, bytes] = {}
         self.before: Callable[[Task], None] = lambda _: None
 
     def execute_all(self, tasks: Sequence[Task], *_: object, **options: Any) -> Iterator[Done]:
@@ -174,10 +175,6 @@ class FakeEngine:
             self.before(task)
             self.ran.append(task.student)
             yield Done(task, self.execute(task))
-
-    def execute_one(self, task: Task, *_: object, **__: object) -> Execution:
-        self.ran.append(task.student)
-        return self.execute(task)
 
     def execute(self, task: Task) -> Execution:
         verdicts = {}
@@ -194,4 +191,5 @@ class FakeEngine:
                 verdicts[index] = verdict(cell.check.exercise, float(said), task.seed)
             else:
                 verdicts[index] = zero_points(cell.check, "crashed", "It raised.", "Mend it.")
-        return Execution(tuple(CellRun(Ended.DONE) for _ in task.cells), verdicts, trouble)
+        runs = tuple(CellRun(Ended.DONE) for _ in task.cells)
+        return Execution(runs, verdicts, trouble, evidence=dict(self.evidence))

@@ -16,12 +16,11 @@ from autograder.judge.serving import attached
 from autograder.judge.serving.process import JudgeDied, JudgeProcess
 from autograder.judge.settings import subject_environment
 from autograder.judge.subjects.command_subject import CommandSubject, kill_leftovers
-from autograder.verdict import Diagnosis, State, Verdict, not_checked, to_json
+from autograder.verdict import Diagnosis, failed, not_checked, to_json
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.kit.model import Exercise
 
 NEVER_ASKED = "never_asked"
 """The diagnosis where the program came to its end before its check."""
@@ -53,10 +52,16 @@ class _ForkedJudge:
             os.waitpid(self.pid, 0)
 
 
-def verdict_in_notebook(exercise_id: str, file: Path, seed: str) -> bytes:
+def verdict_in_notebook(exercise_id: str, file: Path, seed: str, evidence: Path | None = None) -> bytes:
     """Run a program that ends with its check; what the judge tells a grader of it, as JSON.
 
     Must run in a fork without threads of a process that is warm.
+
+    Args:
+        exercise_id: The exercise's id.
+        file: The program.
+        seed: What random inputs are drawn from.
+        evidence: Where to put what the judge hands over beside its verdict.
     """
     exercise = exercises.get(exercise_id)
     CommandSubject([])  # makes this process the one that gets the orphans
@@ -71,14 +76,18 @@ def verdict_in_notebook(exercise_id: str, file: Path, seed: str) -> bytes:
     with tempfile.TemporaryDirectory(prefix="notebook-") as folder:
         try:
             with JudgeProcess(Path(folder) / "judge", seed=seed, start=start) as judge:
+                judge.keeps_evidence = evidence is not None
                 judge.open(exercise.id)
                 _run(warm, file, judge.socket_path, exercise.limit + SPARE, helpers)
                 report = judge.close_report()
         except JudgeDied as error:
             return to_json(not_checked(exercise.id, exercise.title, exercise.points, str(error)))
+    if evidence is not None:
+        evidence.write_bytes(report.evidence)
     if report.trouble:
         return to_json(not_checked(exercise.id, exercise.title, exercise.points, report.trouble))
-    return to_json(report.verdict or _never_asked(exercise))
+    never_asked = Diagnosis(NEVER_ASKED, "The program ended before its check.")
+    return to_json(report.verdict or failed(exercise.id, exercise.title, exercise.points, never_asked))
 
 
 def _run(warm: WarmPython, file: Path, socket: Path, limit: float, helpers: Sequence[int]) -> None:
@@ -94,14 +103,3 @@ def _run(warm: WarmPython, file: Path, socket: Path, limit: float, helpers: Sequ
     kill_leftovers(spare=helpers)
     for reader in readers:
         reader.join()
-
-
-def _never_asked(exercise: Exercise) -> Verdict:
-    return Verdict(
-        exercise=exercise.id,
-        title=exercise.title,
-        state=State.FAILED,
-        score=0.0,
-        max_score=exercise.points,
-        diagnosis=Diagnosis(NEVER_ASKED, "The program ended before its check."),
-    )

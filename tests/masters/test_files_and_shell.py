@@ -11,6 +11,7 @@ import pytest
 
 from autograder.masters.magics import WrittenFile, python_of, shell_script, written_file
 from autograder.masters.reference import reference_source
+from autograder.masters.regions import find_region
 from autograder.masters.release import release_notebook
 from autograder.masters.source import Points, source_notebook
 
@@ -61,6 +62,15 @@ check("lab_9_1.hello", "made")
 @pytest.fixture
 def master(write_master: Callable[[str], Path]) -> Path:
     return write_master(MASTER)
+
+
+def test_in_xml_each_mark_is_a_comment_of_its_own() -> None:
+    region = find_region(
+        "<package>\n  <!-- ### BEGIN SOLUTION -->\n  <!-- # TODO: write the name. -->\n  <name>one</name>\n"
+        "  <!-- ### END SOLUTION -->\n</package>"
+    )
+    assert region.unsolved == "<package>\n  <!-- # TODO: write the name. -->\n</package>"
+    assert region.answer == ("  <name>one</name>",)
 
 
 def test_the_magic_stays_on_the_first_line(master: Path, ten_points: Points) -> None:

@@ -11,7 +11,7 @@ import pytest
 from autograder.judge.subjects.command import check_command
 from autograder.masters.layout import masters
 from autograder.masters.magics import WrittenFile, written_file
-from autograder.masters.parsing import Kind
+from autograder.masters.parsing import CellRole
 from autograder.masters.release import release_notebook
 from autograder.masters.source import named_cells, source_notebook
 
@@ -21,7 +21,7 @@ CHECKED = [
     for master in masters(ROOT)
     for named in named_cells(master)
     # Where the subject is a path, the check looks at the files.
-    if named.cell.kind is Kind.CHECK and named.check is not None and not named.check.is_path
+    if named.cell.kind is CellRole.CHECK and named.check is not None and not named.check.is_path
     # The first notebook writes no program yet.
     if any(written_file(other.cell.source) for other in named_cells(master))
 ]

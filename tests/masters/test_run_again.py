@@ -12,7 +12,7 @@ import pytest
 
 from autograder.masters.layout import lab_name, masters
 from autograder.masters.magics import shell_script, written_file
-from autograder.masters.parsing import Kind
+from autograder.masters.parsing import CellRole
 from autograder.masters.release import release_notebook
 from autograder.masters.source import source_notebook
 
@@ -34,7 +34,7 @@ def steps(master: Path, *, solved: bool) -> str:
     notebook = notebook if solved else release_notebook(notebook)
     parts = [IMPORTS]
     for cell in notebook.cells:
-        if cell.cell_type == Kind.TEXT or cell.cell_type == "markdown":
+        if cell.cell_type == CellRole.TEXT or cell.cell_type == "markdown":
             continue
         file, script = written_file(cell.source), shell_script(cell.source)
         if file is not None:

@@ -114,8 +114,9 @@ def _pieces(subject: Subject) -> Iterator[tuple[int, str, bool]]:
         head, *sections = f"\n{subject.text}".split(f"\n{_HEADER}")
         start = len(head)
         for section in sections:
-            name, _, text = section.partition("\n")
-            start += len(_HEADER) + len(name) + 1
+            # A file that is removed is a header alone.
+            name, newline, text = section.partition("\n")
+            start += len(_HEADER) + len(name) + len(newline)
             if " " not in name:  # a whole file, not one that is changed, moved or removed
                 yield start, text, name.endswith(".py")
             start += len(text) + 1

@@ -26,6 +26,8 @@ from tests.mutation.subjects import Subject, subjects
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from autograder.authoring.answers import Answer
+
 TALKER = '''"""Right."""
 import rclpy
 from std_msgs.msg import String
@@ -58,6 +60,16 @@ def made_by(operator: str, subject: Subject = SUBJECT) -> list[str]:
         for mutant in mutants(subject)
         if mutant.operator == operator
     ]
+
+
+def test_edits_stand_in_their_place_behind_files_that_are_removed() -> None:
+    text = f"=== src/old.py (removed)\n=== src/older.py (removed)\n=== src/talker.py\n{TALKER}"
+    workspace = Subject("lab_1_2.programs", "made_up.workspace", text, listed=any_listed())
+    assert made_by("endpoint_name", workspace) == made_by("endpoint_name")
+
+
+def any_listed() -> Answer:
+    return next(subject.listed for subject in subjects() if subject.listed is not None)
 
 
 def test_a_mutant_differs_in_one_small_thing() -> None:

@@ -64,11 +64,11 @@ def test_while_a_check_goes_on_the_card_of_the_one_before_keeps_its_place_and_sa
     """What stood there meanwhile is taken from the display itself, at the moment at which the check was going on."""
     watched = """
 shown = []
-usual = card_display._update
+usual = card_display.update_card
 def update(handle, card):
     shown.append(card["text/plain"])
     usual(handle, card)
-card_display._update = update
+card_display.update_card = update
 
 def meanwhile(place):
     place.doing("building my_package")

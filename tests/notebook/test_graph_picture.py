@@ -18,12 +18,12 @@ from std_msgs.msg import String
 
 from autograder.notebook import start_ros
 from autograder.notebook.graph_picture import GraphPicture, draw_graph
-from autograder.notebook.ros_graph import Channel, End, Kind, RosGraph, read_graph
+from autograder.notebook.ros_graph import Channel, ChannelKind, End, RosGraph, read_graph
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-CHATTER = Channel(Kind.TOPIC, "/chatter", "std_msgs/msg/String")
+CHATTER = Channel(ChannelKind.TOPIC, "/chatter", "std_msgs/msg/String")
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -53,8 +53,8 @@ def test_topics_services_and_actions_are_seen(make: Callable[..., Node]) -> None
     graph = read_graph()
     for end in ends:
         end.destroy()  # type: ignore[no-untyped-call]  # they would outlive their nodes
-    add = Channel(Kind.SERVICE, "/add", "my_robot_interfaces/srv/AddTwoInts")
-    count = Channel(Kind.ACTION, "/count", "my_robot_interfaces/action/Fibonacci")
+    add = Channel(ChannelKind.SERVICE, "/add", "my_robot_interfaces/srv/AddTwoInts")
+    count = Channel(ChannelKind.ACTION, "/count", "my_robot_interfaces/action/Fibonacci")
     assert graph.nodes == ("/desk/other", "/one")
     assert set(graph.ends) == {
         End("/one", CHATTER, True),
@@ -134,7 +134,7 @@ def test_the_arrow_leads_from_the_publisher_to_the_subscriber() -> None:
 
 
 def test_a_long_chain_runs_down_the_page() -> None:
-    topics = [Channel(Kind.TOPIC, f"/topic_number_{n}", "std_msgs/msg/String") for n in range(6)]
+    topics = [Channel(ChannelKind.TOPIC, f"/topic_number_{n}", "std_msgs/msg/String") for n in range(6)]
     nodes = tuple(f"/node_number_{n}" for n in range(7))
     ends = [End(nodes[n], topic, True) for n, topic in enumerate(topics)]
     ends += [End(nodes[n + 1], topic, False) for n, topic in enumerate(topics)]

@@ -74,6 +74,14 @@ def test_what_is_no_entry_point_changes_nothing(workspace: Path, entry: str) -> 
     assert (workspace / "src/my_robot_pkg/setup.py").read_text() == before
 
 
+def test_two_entry_points_without_a_comma_between_them_are_told_as_that(workspace: Path) -> None:
+    before = (workspace / "src/my_robot_pkg/setup.py").read_text()
+    told = add_entry_points(workspace, [TALKER + HELLO])
+    assert told.startswith("Two entry points have run together")
+    assert "A comma is missing between them" in told
+    assert (workspace / "src/my_robot_pkg/setup.py").read_text() == before
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [(None, "First make the package"), ("setup(", "cannot be read"), ("setup()", "has no list")],

@@ -29,13 +29,14 @@ def test_it_has_the_notebooks_in_their_order_with_their_titles_and_minutes() -> 
     assert all((FOLDER / one.path).is_file() and one.minutes for one in chapter.notebooks)
     talker = next(one for one in chapter.notebooks if one.name == "lab_1_2")
     assert talker.title == "Lab 1.2: A talker and a listener"
-    assert [one.id for one in talker.exercises] == ["lab_1_2.talker", "lab_1_2.listener"]
+    assert [one.id for one in talker.exercises] == ["lab_1_2.talker", "lab_1_2.listener", "lab_1_2.programs"]
 
 
 def test_points_make_a_notebook_done_and_a_mark_one_that_is_only_read() -> None:
     lines = [
         full("lab_1_2.talker"),
         Entry("check", "lab_1_2.listener", 2, 99, 10),
+        full("lab_1_2.programs"),
         Entry("read", "summary", 3),
     ]
     states = {one.name: one for one in after(*lines).chapters[0].notebooks}
@@ -53,7 +54,8 @@ def test_one_goes_on_where_one_was_and_then_with_what_was_left_out() -> None:
     names = [one.name for chapter in after().chapters for one in chapter.notebooks]
     assert following() == names[0]
     assert following(full("lab_1_2.talker")) == "lab_1_2"
-    assert following(full("lab_1_2.talker"), full("lab_1_2.listener")) == names[names.index("lab_1_2") + 1]
+    whole = [full(exercise) for exercise in exercises_of("lab_1_2")]
+    assert following(*whole) == names[names.index("lab_1_2") + 1]
     everything = [full(exercise) for exercise in exercises.all_ids()]
     read = [Entry("read", name, 2) for name in names]
     assert following(*everything, *read[1:]) == (None if exercises_of(names[0]) else names[0])

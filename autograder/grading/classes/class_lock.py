@@ -42,7 +42,7 @@ class Holder:
 
 
 _own: dict[Path, Holder] = {}
-"""What this process holds: to the system, a lock of one's own is never in the way."""
+"""The locks of this process: the system lets a process take a lock again that it has already."""
 _changing = threading.Lock()
 
 
@@ -92,7 +92,7 @@ def _take(file: IO[bytes], holder: Holder, of: Path) -> None:
 
 
 def _who(file: IO[bytes]) -> str:
-    """Who wrote the file; nobody, where the one who has just taken it has not come to that."""
+    """Who holds the lock, as the file says; empty where the holder has not written its name yet."""
     file.seek(0)
     try:
         return str(msgspec.json.decode(file.read(), type=Holder))

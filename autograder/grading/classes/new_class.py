@@ -41,20 +41,10 @@ c.CourseDirectory.root = os.path.dirname(os.path.abspath(__file__))
 # What students get: each solution replaced by its TODO comment, given cells locked.
 c.GenerateAssignment.preprocessors = release_preprocessors()
 
-# How a submission is read: rebuilt from the source notebook, with only the text of the student's cells.
+# How a submission is graded: the judge watches each check cell on the wire, whether it is `autograder grade`,
+# `nbgrader autograde` or formgrader's button that starts it. Without the first line, the second one refuses to grade.
 c.Autograde.exporter_class = "autograder.grading.exporter.SubmissionExporter"
-c.Autograde.pre_convert_hook = "autograder.grading.hooks.before_autograde"
-c.Autograde.sanitize_preprocessors = ["nbgrader.preprocessors.CheckCellMetadata"]
-
-# How it is graded: the judge watches each check cell on the wire, and only its points are entered.
-c.Autograde.autograde_preprocessors = [
-    "autograder.grading.preprocessors.WireExecute",
-    "nbgrader.preprocessors.LimitOutput",
-    "nbgrader.preprocessors.SaveAutoGrades",
-    "nbgrader.preprocessors.AssignLatePenalties",
-    "nbgrader.preprocessors.CheckCellMetadata",
-]
-c.OverwriteCells.add_missing_cells = True
+c.Autograde.autograde_preprocessors = ["autograder.grading.preprocessors.WireExecute"]
 
 # What you and the students read: no script, no frame and no address that a submission brought along.
 c.GenerateFeedback.exporter_class = "autograder.grading.pages.FeedbackExporter"
@@ -65,7 +55,8 @@ c.HTMLExporter.filters = {{"markdown2html": "autograder.grading.pages.markdown_t
 c.ExportApp.plugin_class = "autograder.grading.export.SafeCsvExport"
 c.ExportPlugin.to = "nbgrader_export.csv"
 
-# Wall time in seconds, of one cell and of a whole notebook. Check cells have their exercise's own limit.
+# In seconds: what the machine has for one cell, and the wall time of a whole notebook. Where the machine is crowded,
+# the first last longer. Check cells have their exercise's own limit.
 c.WireExecute.cell_seconds = {cell_seconds:g}
 c.WireExecute.notebook_seconds = {notebook_seconds:g}
 

@@ -14,7 +14,7 @@ import msgspec
 from rich.console import Console
 
 from autograder import course
-from autograder.boxes.execution import Kind
+from autograder.boxes.execution import CellType
 from autograder.grading.batch import grade
 from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, SUFFIX
 from autograder.grading.classes.new_class import new_class
@@ -50,7 +50,7 @@ class SampleNotebook:
     answers: dict[str, str] = field(default_factory=dict)
     delete: tuple[str, ...] = ()
     duplicate: tuple[str, ...] = ()
-    retype: dict[str, Kind] = field(default_factory=dict)
+    retype: dict[str, CellType] = field(default_factory=dict)
     insert: dict[str, str] = field(default_factory=dict)
     unsolved: bool = False
     file: str = ""
@@ -162,9 +162,9 @@ def _changed(
         return [cell]
     answer = answers.get(name)
     cell.source = answer.source if answer else right.get(name, cell.source)
-    before = [nodes.cell(Kind.CODE, source) for source in (answer.extra if answer else ())]
+    before = [nodes.cell(CellType.CODE, source) for source in (answer.extra if answer else ())]
     if name in wanted.insert:
-        before.append(nodes.cell(Kind.CODE, wanted.insert[name]))
+        before.append(nodes.cell(CellType.CODE, wanted.insert[name]))
     if name in wanted.delete:
         return before
     if name in wanted.retype:

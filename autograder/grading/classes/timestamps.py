@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 TIMESTAMP = "timestamp.txt"
 """The file's name, beside the notebooks."""
 SECRET = "submission_secret.txt"
-"""By which nbgrader's exchange finds whose feedback a page is; it lies beside the notebooks that came that way."""
+"""nbgrader's exchange writes it beside the notebooks that it collects, and finds by it whose feedback a page is."""
 _LONGEST = 200
 _HEX = frozenset("0123456789abcdef")
 _EARLIEST = datetime(2024, 5, 23)

@@ -31,7 +31,7 @@ _CLOSING_LINE = 200
 
 
 class Forged(ValueError):
-    """What a worker said cannot be; the message says why."""
+    """The answer of a worker is not possible, so it is not believed; the message says why."""
 
 
 def admitted_offer(data: bytes) -> Offer:

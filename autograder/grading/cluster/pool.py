@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from autograder.grading.task import Task
 
 ATTEMPTS = 3
-"""A task that cost its worker so many times is given up: it may be what ends them."""
+"""A task is given up after so many workers have died with it: it may be what kills them."""
 _RETURN_SECONDS = 60.0
 """How long to wait for a worker when none is left: one that died is often started again."""
 _EXTRA_SECONDS = 90.0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -11,16 +10,20 @@ from typing import TYPE_CHECKING
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, reason_against_name
 from autograder.grading.collecting.archives import File, NotPlaced, NotTaken, files_of, within
 from autograder.grading.collecting.forms import FORMS, base_and_number, plain, read_path
-from autograder.grading.collecting.lists import LmsList, read_list
+from autograder.grading.collecting.lists import read_list
 from autograder.grading.collecting.placing import Candidate, Placed, Placing
+from autograder.grading.collecting.which import Which
+from autograder.grading.collecting.whose import Whose
 from autograder.grading.errors import GradingError, clear_disk_errors
-from autograder.grading.rebuilding.submission import UnreadableSubmission, parse, read_bytes
-from autograder.grading.table.roster import Identity, Roster, Student, enter_roster, read_roster
+from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
+from autograder.grading.table.roster import Roster, enter_roster, read_roster
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
     from datetime import tzinfo
     from pathlib import Path
+
+    from autograder.grading.collecting.which import Target
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,8 @@ class CollectReport:
         placed: What was put into ``submitted``.
         unchanged: How many lay there already.
         older: What is older than what lies there, with the reason.
+        others: Notebooks for other assignments than the one that was asked for.
+        unread_times: Times in names that nobody could read.
         not_placed: What could not be placed, with the reason.
         left_out: How many files were no notebooks: pages that the LMS adds, pictures and the like.
         missing: Students of whom nothing is there, by assignment.
@@ -42,6 +47,8 @@ class CollectReport:
     placed: tuple[Placed, ...] = ()
     unchanged: int = 0
     older: tuple[NotPlaced, ...] = ()
+    others: tuple[NotPlaced, ...] = ()
+    unread_times: tuple[str, ...] = ()
     not_placed: tuple[NotPlaced, ...] = ()
     left_out: int = 0
     missing: dict[str, tuple[str, ...]] = field(default_factory=dict)
@@ -97,9 +104,11 @@ class _Collecting:
         self._zone = zone
         self._form = form
         self._roster: Roster = read_roster(directory)
+        self._whose = Whose(self._roster)
+        self._which = Which(directory)
         self._placing = Placing(directory)
-        self._lists: dict[str, LmsList] = {}
         self._candidates: list[Candidate] = []
+        self._others: list[NotPlaced] = []
         self._left_out = 0
 
     def read(self, sources: Sequence[Path]) -> None:
@@ -117,12 +126,25 @@ class _Collecting:
         for candidate in self._candidates:
             groups[candidate.assignment, candidate.student, candidate.notebook].append(candidate)
         for key in sorted(groups):
-            newest = self._placing.newest(groups[key])
+            newest = self._placing.newest(self._asked_for(groups[key]))
             if newest is not None:
                 self._placing.put(newest)
 
+    def _asked_for(self, group: list[Candidate]) -> list[Candidate]:
+        """Without the notebooks for other assignments that came along, as in a zip of the whole course."""
+        told = [candidate for candidate in group if candidate.is_told]
+        if not told:
+            return group
+        self._others += [
+            NotPlaced(one.file.label, f"it is not for {one.assignment}, and {told[0].file.name} is")
+            for one in group
+            if not one.is_told
+        ]
+        return told
+
     def report(self) -> CollectReport:
         """What came of it."""
+        unread = (one.found.time for one in self._candidates if one.found.time and one.found.when is None)
         there = {(one.student, one.assignment) for one in self._directory.submissions()[0]}
         assignments = sorted({one.assignment for one in self._candidates})
         missing = {
@@ -134,6 +156,8 @@ class _Collecting:
             tuple(self._placing.placed),
             self._placing.unchanged,
             tuple(self._placing.older),
+            tuple(self._others),
+            tuple(dict.fromkeys(unread)),
             tuple(self._placing.not_placed),
             self._left_out,
             {name: students for name, students in missing.items() if students},
@@ -153,7 +177,7 @@ class _Collecting:
                 f"Classroom's grades. A list of your students belongs into {self._directory.path / 'students.csv'}",
             )
         else:
-            self._lists[found.lms] = found
+            self._whose.learn(found)
 
     def _take(self, source: Path) -> None:
         files: list[File] = []
@@ -164,9 +188,9 @@ class _Collecting:
                 files.append(file)
             else:
                 self._left_out += 1
-        form = self._form or self._likely_form(files)
         # Folders deeper than what all have in common are the students' own: their names say nothing.
         depth = 2 if len({file.parts[0] for file in files}) == 1 else 1
+        form = self._form or self._likely_form(files, depth)
         for file in files:
             if not file.name.lower().endswith(".zip"):
                 self._take_file(file, form, depth)
@@ -179,24 +203,28 @@ class _Collecting:
                 else:
                     self._left_out += 1
 
-    def _likely_form(self, files: Iterable[File]) -> str:
-        """The form that most of the names have; plain folders where none has."""
+    def _likely_form(self, files: Sequence[File], depth: int) -> str:
+        """The form that most of the names have; empty where as many lie in folders that are called as students are.
+
+        A student chooses the names of files in such a folder, and might choose one that another system would give
+        to somebody else's.
+        """
         counts: Counter[str] = Counter()
         for file in files:
             for form in FORMS:
-                if read_path(file.parts, form, self._is_notebook) is not None:
+                if read_path(file.parts, form, self._which.is_notebook) is not None:
                     counts[form] += 1
                     break
-        return max(FORMS, key=lambda form: counts[form]) if counts else ""
+        likely = max(FORMS, key=lambda form: counts[form]) if counts else ""
+        in_folders = sum(any(map(self._whose.find, plain(file.parts)[:depth])) for file in files)
+        return likely if counts[likely] > in_folders else ""
 
     def _take_file(self, file: File, form: str, depth: int) -> None:
-        found = read_path(file.parts, form, self._is_notebook) if form else None
+        found = read_path(file.parts, form, self._which.is_notebook) if form else None
         ways = [found] if found else plain(file.parts)[:depth]
-        named = [(way, self._students(way.identity)) for way in ways]
-        chosen = next(((way, students) for way, students in named if students), None)
+        chosen = next((who for way in ways if (who := self._whose.find(way)) is not None), None)
         if chosen is None:
-            who = found.identity if found else None
-            self._placing.refuse(file.label, self._reason_against_all(who))
+            self._placing.refuse(file.label, self._whose.reason_against(found.identity if found else None))
             return
         way, students = chosen
         if len(students) > 1:
@@ -216,10 +244,11 @@ class _Collecting:
         except NotTaken as error:
             self._placing.refuse(file.label, str(error))
             return
-        stem, number = base_and_number(
-            way.file[: -len(SUFFIX)] if way.file.lower().endswith(SUFFIX) else way.file
-        )
-        target = self._target(stem, data)
+        # Of what lies in a student's own zip the name says which notebook it is, though not whose.
+        name = file.name if file.inner else way.file
+        stem, number = base_and_number(name[: -len(SUFFIX)] if name.lower().endswith(SUFFIX) else name)
+        told = self._which.told(stem, data)
+        target = self._target(told)
         if target is None:
             known = ", ".join(self._directory.assignments())
             self._placing.refuse(
@@ -227,78 +256,26 @@ class _Collecting:
                 f"it is not clear which assignment it is for (the class has: {known}): say --assignment NAME",
             )
             return
-        when = self._in_utc(way.when or self._time_in_list(way.identity))
+        when = self._in_utc(way.when or self._whose.time_in_list(way.identity))
         self._candidates.append(
-            Candidate(file, way, students[0].id, *target, data, when, (way.order, number))
-        )
-
-    def _students(self, identity: Identity) -> tuple[Student, ...]:
-        """Who may be meant. Without any list of students, whoever is named in the LMS's own form."""
-        found = self._roster.find(identity)
-        known = self._lists.get(identity.lms)
-        if known is not None:
-            others = known.people.get(identity.number or identity.login, ())
-            sure = next((hit for other in others if len(hit := self._roster.find(other)) == 1), ())
-            found = sure or found
-        if not found and not self._roster.students and identity.lms:
-            found = (Student(identity.login or identity.name),)
-        return found
-
-    def _reason_against_all(self, identity: Identity | None) -> str:
-        if identity is None:
-            return (
-                "its name does not say whose it is: say --from, or put it into a folder with the student's id"
+            Candidate(
+                file,
+                way,
+                students[0].id,
+                *target,
+                data,
+                when,
+                (way.order, number),
+                told == target,
             )
-        return (
-            f"nobody in the class is called {identity}: add a line to students.csv, or the id that "
-            f"{identity.lms.capitalize()} uses ({identity.number or identity.login}) to the column {identity.lms}"
         )
 
-    def _is_notebook(self, file: str) -> bool:
-        stem = base_and_number(file[: -len(SUFFIX)])[0] if file.lower().endswith(SUFFIX) else file
-        return stem.casefold() in self._notebooks
-
-    @functools.cached_property
-    def _notebooks(self) -> dict[str, tuple[str, str]]:
-        """Assignment and notebook by the notebook's name."""
-        return {
-            notebook.casefold(): (assignment, notebook)
-            for assignment in self._directory.assignments()
-            for notebook in self._directory.notebooks(assignment)
-        }
-
-    def _target(self, stem: str, data: bytes) -> tuple[str, str] | None:
-        """Which notebook of which assignment it is: what the instructor says, then its name, then its cells."""
-        by_name = self._notebooks.get(stem.casefold())
-        if self._assignment:
+    def _target(self, told: Target | None) -> Target | None:
+        """Which notebook a file counts as: where the instructor names the assignment, one of that."""
+        if self._assignment and (told is None or told[0] != self._assignment):
             notebooks = self._directory.notebooks(self._assignment)
-            if by_name is not None and by_name[0] == self._assignment:
-                return by_name
             return (self._assignment, notebooks[0]) if len(notebooks) == 1 else None
-        return by_name or self._by_its_cells(data)
-
-    def _by_its_cells(self, data: bytes) -> tuple[str, str] | None:
-        try:
-            names = {cell.grade_id for cell in parse(data)[0] if cell.grade_id}
-        except UnreadableSubmission:
-            return None
-        shared = {target: len(names & own) for target, own in self._grade_ids.items()}
-        most = max(shared.values(), default=0)
-        best = [target for target, count in shared.items() if count == most]
-        return best[0] if most and len(best) == 1 else None
-
-    @functools.cached_property
-    def _grade_ids(self) -> dict[tuple[str, str], set[str]]:
-        """The names of the cells of each notebook, as they are handed out."""
-        found = {}
-        for assignment, notebook in self._notebooks.values():
-            path = self._directory.path / "source" / assignment / f"{notebook}{SUFFIX}"
-            found[assignment, notebook] = {cell.grade_id for cell in parse(path.read_bytes())[0]} - {""}
-        return found
-
-    def _time_in_list(self, identity: Identity) -> datetime | None:
-        known = self._lists.get(identity.lms)
-        return known.times.get(identity.number or identity.login) if known else None
+        return told
 
     def _in_utc(self, when: datetime | None) -> datetime | None:
         if when is None:

@@ -21,20 +21,28 @@ FORMS = ("moodle", "blackboard", "brightspace", "canvas", "google", "github")
 # Ada Lovelace_12345_assignsubmission_file_lab_1_2.ipynb; since 4.1, and with folders before, it is a folder's name.
 _MOODLE = re2.compile(r"^(?P<name>[^_]+)_(?P<number>\d+)_assignsubmission_(?:file|onlinetext)_?(?P<file>.*)$")
 # lab_1_2_adal_attempt_2025-10-03-14-05-06_lab_1_2.ipynb; without the file, .txt: what the student typed.
+# The first attempt in the name is Blackboard's: what stands behind it is the student's own.
 _BLACKBOARD = re2.compile(
-    r"^(?P<item>.+)_(?P<login>[^_]+)_attempt_(?P<when>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)$"
+    r"^(?P<item>.+?)_(?P<login>[^_]+)_attempt_(?P<when>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)$"
 )
-# 12345-67890 - Ada Lovelace - Oct 3, 2025 205 PM
+# 12345-67890 - Ada Lovelace - Oct 3, 2025 205 PM, a folder; or, with " - lab_1_2.ipynb" behind it, a file. The date is
+# in the language of the course: 3 October, 2025 1405.
 _BRIGHTSPACE = re2.compile(
-    r"^(?P<number>\d+)-\d+ ?- ?(?P<name>.+?) ?- ?(?P<when>[A-Za-z]{3,9} \d{1,2}, \d{4} \d{1,2}:?\d\d ?[AaPp][Mm])$"
+    r"^(?P<number>\d+)-\d+ ?- ?(?P<name>.+?) ?- ?"
+    r"(?P<when>(?:[^\d\s,.-]+\.? \d\d?|\d\d?\.? (?:de )?[^\d\s,.-]+\.?),? (?:de )?\d{4} "
+    r"\d\d?[:.h]?\d\d(?: ?[AaPp]\.?[Mm]\.?)?)"
+    r"(?: ?- ?(?P<file>.+))?$"
 )
 # lovelaceada_LATE_123_456_lab_1_2-1.ipynb: the student's number, then the file's
 _CANVAS = re2.compile(
     r"^(?P<login>.*?[^\d_].*?)_(?P<late>LATE_)?(?P<number>\d+)_(?P<file_number>\d+)_(?P<file>.+)$"
 )
-# Ada Lovelace - lab_1_2.ipynb
+# Ada Lovelace - lab_1_2.ipynb; of copies that were made for each student long ago: lab_1_2 - Ada Lovelace.ipynb
 _GOOGLE = re2.compile(r"^(?P<name>[^/]*?\S) - (?P<file>.+)$")
+_MOST_MARKS = 10
+"""Of a name that can be read in several ways; nobody's has more."""
 # What browsers, Canvas and Drive add to a name that is there already, and file managers to a copy.
+_COPY_OF = "Copy of "
 _NUMBERED = re2.compile(r"^(?P<base>.+?)(?: ?\((?P<in_brackets>\d{1,6})\)|-(?P<behind>\d{1,6})| - [Cc]opy)$")
 
 
@@ -48,6 +56,9 @@ class Found:
         when: When it was handed in, in the LMS's own time; None where the name does not say.
         order: Grows with later files of one student, where the LMS numbers files.
         late: Whether the LMS marks it as late.
+        readings: Who may be meant where the name can be read in several ways, the longest first; the first who is in
+            the class is. Empty where there is one way.
+        time: The time as the name has it, also where nobody could read it.
     """
 
     identity: Identity
@@ -55,6 +66,8 @@ class Found:
     when: datetime | None = None
     order: int = 0
     late: bool = False
+    readings: tuple[Identity, ...] = ()
+    time: str = ""
 
 
 def read_path(parts: Sequence[str], form: str, is_notebook: Callable[[str], bool]) -> Found | None:
@@ -67,6 +80,8 @@ def read_path(parts: Sequence[str], form: str, is_notebook: Callable[[str], bool
     """
     parts = [unicodedata.normalize("NFC", part) for part in parts]
     found = _READERS[form](parts)
+    if found and form == "google" and is_notebook(found.identity.name):
+        found = _with_the_name_last(found)
     if found and form in ("canvas", "google") and found.file != parts[-1] and is_notebook(parts[-1]):
         return None  # lab_1_2_3.ipynb and "lab_1_2 - Copy.ipynb" are a student's own names
     return found
@@ -75,6 +90,8 @@ def read_path(parts: Sequence[str], form: str, is_notebook: Callable[[str], bool
 def base_and_number(stem: str) -> tuple[str, int]:
     """A name without what was added because there was one already, and the number that was added."""
     number = 0
+    while stem.startswith(_COPY_OF) and stem != _COPY_OF:
+        stem, number = stem.removeprefix(_COPY_OF), 1
     while (found := _NUMBERED.match(stem)) is not None:
         stem = found["base"]
         number = max(number, int(found["in_brackets"] or found["behind"] or 1))
@@ -86,9 +103,17 @@ def _moodle(parts: Sequence[str]) -> Found | None:
         found = _MOODLE.match(part)
         if found is not None:
             is_file = place == len(parts) - 1
-            identity = Identity("moodle", found["number"], name=found["name"])
-            return Found(identity, found["file"] if is_file else parts[-1])
+            # Of a group's work, or with a group chosen, the group's name stands in front: Group A-Ada Lovelace.
+            names = [found["name"], *_ends(found["name"], "-")]
+            whole, *shorter = (Identity("moodle", found["number"], name=name) for name in names)
+            return Found(whole, found["file"] if is_file else parts[-1], readings=(whole, *shorter))
     return None
+
+
+def _ends(text: str, mark: str) -> list[str]:
+    """What stands behind each of the last few marks in a text, the longest first."""
+    pieces = text.rsplit(mark, _MOST_MARKS)[1:]
+    return [end for start in range(len(pieces)) if (end := mark.join(pieces[start:]).strip())]
 
 
 def _blackboard(parts: Sequence[str]) -> Found | None:
@@ -97,7 +122,10 @@ def _blackboard(parts: Sequence[str]) -> Found | None:
         if found is not None:
             file = found["file"] if place == len(parts) - 1 else parts[-1]
             when = datetime.strptime(found["when"], "%Y-%m-%d-%H-%M-%S") if _is_date(found["when"]) else None
-            return Found(Identity("blackboard", login=found["login"]), file or part, when)
+            # A user name may have the mark in it that stands in front of it.
+            logins = _ends(f"{found['item']}_{found['login']}", "_") or [found["login"]]
+            *longer, usual = (Identity("blackboard", login=login) for login in logins)
+            return Found(usual, file or part, when, readings=(*longer, usual), time=found["when"])
     return None
 
 
@@ -110,24 +138,30 @@ def _is_date(text: str) -> bool:
 
 
 def _brightspace(parts: Sequence[str]) -> Found | None:
-    for part in parts[:-1]:
+    for place, part in enumerate(parts):
         found = _BRIGHTSPACE.match(part)
-        if found is not None:
+        is_file = place == len(parts) - 1
+        if found is not None and (found["file"] is not None) == is_file:
             identity = Identity("brightspace", found["number"], name=found["name"])
-            return Found(identity, parts[-1], _twelve_hours(found["when"]))
+            return Found(identity, found["file"] or parts[-1], _clock_time(found["when"]), time=found["when"])
     return None
 
 
-def _twelve_hours(text: str) -> datetime | None:
-    """``Oct 3, 2025 205 PM``: the colon cannot stand in a folder's name."""
-    date, _, clock = text.replace(":", "").replace(" AM", "AM").replace(" PM", "PM").rpartition(" ")
-    digits = clock[:-2].rjust(4, "0")
-    for month in ("%b", "%B"):
+def _clock_time(text: str) -> datetime | None:
+    """``Oct 3, 2025 205 PM`` or ``3 October, 2025 1405``: the colon cannot stand in a folder's name."""
+    words = text.replace(",", "").replace(".", "").replace(":", "").upper().replace("SEPT ", "SEP ")
+    half = next((half for half in ("AM", "PM") if words.endswith(half)), "")
+    *date, clock = words.removesuffix(half).split()
+    forms = [f"{date_form} %Y {'%I%M %p' if half else '%H%M'}" for date_form in _DATES]
+    for form in forms:
         try:
-            return datetime.strptime(f"{date} {digits} {clock[-2:]}", f"{month} %d, %Y %I%M %p")
+            return datetime.strptime(f"{' '.join(date)} {clock.rjust(4, '0')} {half}".strip(), form)
         except ValueError:
             continue
     return None
+
+
+_DATES = ("%b %d", "%B %d", "%d %b", "%d %B")
 
 
 def _canvas(parts: Sequence[str]) -> Found | None:
@@ -145,8 +179,18 @@ def _google(parts: Sequence[str]) -> Found | None:
     found = _GOOGLE.match(parts[-1])
     if found is None:
         return None
-    name, file = found["name"], found["file"]
-    return Found(Identity("google", login=name if "@" in name else "", name=name), file)
+    return _of_google(found["name"], found["file"])
+
+
+def _of_google(name: str, file: str) -> Found:
+    bare = name.removeprefix(_COPY_OF)
+    identity = Identity("google", login=bare if "@" in bare else "", name=bare)
+    return Found(identity, file)
+
+
+def _with_the_name_last(found: Found) -> Found:
+    stem, dot, suffix = found.file.rpartition(".")
+    return _of_google(base_and_number(stem)[0], f"{found.identity.name}{dot}{suffix}") if stem else found
 
 
 def _github(parts: Sequence[str]) -> Found | None:
@@ -154,17 +198,31 @@ def _github(parts: Sequence[str]) -> Found | None:
     for above, part in itertools.pairwise(parts[:-1]):
         slug, dash, _ = above.rpartition("-")
         if dash and above == f"{slug}-submissions" and part.startswith(f"{slug}-"):
-            return Found(Identity("github", login=part.removeprefix(f"{slug}-")), parts[-1])
+            login = part.removeprefix(f"{slug}-")
+            # Where somebody had a repository of that name already, GitHub Classroom adds a number.
+            logins = dict.fromkeys((login, base_and_number(login)[0]))
+            whole, *others = (Identity("github", login=one) for one in logins)
+            return Found(whole, parts[-1], readings=(whole, *others))
     return None
 
 
 def plain(parts: Sequence[str]) -> list[Found]:
-    """What a path says in which folders have students' ids or names."""
+    """What a path says in which folders have students' ids or names, or end with a user name of GitHub's.
+
+    Repositories that were downloaded one by one are called ``lab-1-2-adalove-main``; Classroom Assistant makes
+    folders with user names.
+    """
     parts = [unicodedata.normalize("NFC", part) for part in parts]
     found = Found(Identity(), parts[-1])
-    return [replace(found, identity=Identity(login=part, name=part)) for part in parts[:-1]]
+    ways = []
+    for part in parts[:-1]:
+        bare = next((part.removesuffix(end) for end in _BRANCHES if part.endswith(end)), part)
+        repository = [Identity("github", number=login) for login in (bare, *_ends(bare, "-"))]
+        ways.append(replace(found, readings=(Identity(login=part, name=part), *repository)))
+    return ways
 
 
+_BRANCHES = ("-main", "-master")
 _READERS = {
     "moodle": _moodle,
     "blackboard": _blackboard,

@@ -56,6 +56,7 @@ class Candidate:
         data: Its bytes.
         when: When it was handed in, in UTC; None where nothing says so.
         order: Grows with later files: the number that the LMS gave it, then the one in its name.
+        is_told: Whether its name or its cells say that it is this notebook, and not the instructor alone.
     """
 
     file: File
@@ -66,6 +67,7 @@ class Candidate:
     data: bytes
     when: datetime | None
     order: tuple[int, int]
+    is_told: bool
 
     @functools.cached_property
     def content(self) -> str:

@@ -31,6 +31,8 @@ def show(report: CollectReport, console: Console | None = None) -> None:
         line(f"placed       {one.student}/{one.assignment}: {one.label}{when}{late}{again}")
     for other in report.older:
         line(f"older        {other.label}: {other.reason}")
+    for other in report.others:
+        line(f"left out     {other.label}: {other.reason}")
     for other in report.not_placed:
         line(f"not placed   {other.label}: {other.reason}", "yellow")
     for assignment, students in report.missing.items():
@@ -41,11 +43,18 @@ def show(report: CollectReport, console: Console | None = None) -> None:
             f"note         {', '.join(untimed)}: the LMS marks work as late and does not say when it came, so "
             "nothing is taken off for it"
         )
+    for time in report.unread_times:
+        line(
+            f"note         the time “{time}” in a name could not be read, so nothing says when that work was handed "
+            "in: have the system show itself in English, and download again",
+            "yellow",
+        )
     if report.by_their_names:
         line("note         the class has no students.csv: folders have the names that the LMS uses")
     line(
         f"{len(report.placed)} placed, {report.unchanged} unchanged, {len(report.older)} older, "
         f"{len(report.not_placed)} not placed, {report.left_out} files that are no notebooks"
+        + (f", {len(report.others)} for other assignments" if report.others else "")
     )
     if report.placed:
         line(f"Then         autograder grade {report.path}")

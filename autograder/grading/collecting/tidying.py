@@ -22,19 +22,24 @@ class Tidied:
     Attributes:
         notices: What was put right or is worth knowing.
         refused: What somebody has to put right.
+        waiting: What would be put right: where it lies, and where it belongs.
+        moves: Whether anything is put right, or only found.
     """
 
     notices: list[str] = field(default_factory=list)
     refused: list[Refused] = field(default_factory=list)
+    waiting: list[tuple[Path, Path]] = field(default_factory=list)
+    moves: bool = True
 
 
-def tidy(directory: ClassDirectory) -> Tidied:
+def tidy(directory: ClassDirectory, *, moves: bool = True) -> Tidied:
     """Put notebooks and folders into their place: the content stays, and nothing is written over.
 
     Args:
         directory: The class, locked by this process.
+        moves: Do it; without, only find out what would be done, for which nobody has to lock the class.
     """
-    found = Tidied()
+    found = Tidied(moves=moves)
     submitted = directory.path / "submitted"
     notebooks = {name: directory.notebooks(name) for name in directory.assignments()}
     for entry in _entries(submitted):
@@ -64,7 +69,7 @@ def tidy(directory: ClassDirectory) -> Tidied:
 def _composed(folder: Path, found: Tidied) -> Path:
     """A name as everybody else writes it: a Mac stores é as e and an accent."""
     composed = folder.with_name(unicodedata.normalize("NFC", folder.name))
-    if composed.name == folder.name:
+    if composed.name == folder.name or not found.moves:
         return folder
     if composed.exists():
         found.refused.append(
@@ -131,6 +136,9 @@ def _tidy_assignment(folder: Path, names: list[str], found: Tidied) -> None:
 
 def _move(entry: Path, place: Path, found: Tidied) -> None:
     label = f"{place.parent.parent.name}/{place.parent.name}/{place.name}"
+    if not found.moves:
+        found.waiting.append((entry, place))
+        return
     try:
         place.parent.mkdir(exist_ok=True)
         entry.rename(place)

@@ -1,4 +1,4 @@
-"""What came of each time that somebody was graded: the table knows the last one only."""
+"""A log of all the times that a student was graded; the table has only the last one."""
 
 from __future__ import annotations
 

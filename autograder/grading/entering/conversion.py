@@ -1,8 +1,7 @@
-"""A graded submission as ``nbgrader autograde`` leaves it behind, made in this process and once a notebook.
+"""The one conversion: a graded submission as it lies in ``autograded/``, and what the gradebook has to hold of it.
 
-nbgrader's application reads, validates and writes every notebook twice and opens the gradebook a dozen times. What is
-here does the same in a twentieth of the time, for a class whose configuration is the one that ``new-class`` writes. A
-class that was configured otherwise goes through nbgrader itself (:mod:`autograder.grading.entering.writer`).
+It leaves behind what nbgrader's own conversion would, in a twentieth of the time: that one reads, validates and writes
+every notebook twice and opens the gradebook a dozen times.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from nbgrader.utils import compute_checksum, determine_grade, is_grade, is_solut
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.classes.timestamps import companions
 from autograder.grading.entering.gradebook import NotebookEntry
-from autograder.grading.preprocessors import with_results
+from autograder.grading.entering.results import with_results
 from autograder.grading.rebuilding.task_making import rebuilt_notebook, task_of
 
 if TYPE_CHECKING:
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from nbformat import NotebookNode
-    from traitlets.config import Config
 
     from autograder.boxes.execution import Execution
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
@@ -33,43 +31,9 @@ if TYPE_CHECKING:
 
 _READ_ONLY = 0o444
 
-_USUAL_AUTOGRADE = {
-    "exporter_class": "autograder.grading.exporter.SubmissionExporter",
-    "pre_convert_hook": "autograder.grading.hooks.before_autograde",
-    "sanitize_preprocessors": ["nbgrader.preprocessors.CheckCellMetadata"],
-    "autograde_preprocessors": [
-        "autograder.grading.preprocessors.WireExecute",
-        "nbgrader.preprocessors.LimitOutput",
-        "nbgrader.preprocessors.SaveAutoGrades",
-        "nbgrader.preprocessors.AssignLatePenalties",
-        "nbgrader.preprocessors.CheckCellMetadata",
-    ],
-}
-_KNOWN_OF_COURSE = {"root", "db_url"}
-_CHANGES_CONVERSION = (
-    "BaseConverter",
-    "NbConvertBase",
-    "Exporter",
-    "NotebookExporter",
-    "SubmissionExporter",
-    "NbGraderPreprocessor",
-    "SaveAutoGrades",
-    "FilesWriter",
-    "WriterBase",
-)
-
 
 class ChangedMeanwhile(RuntimeError):
     """The submission is not any more what was executed; the message says what to do."""
-
-
-def is_usual(config: Config) -> bool:
-    """Whether a class converts submissions as ``new-class`` has it."""
-    return (
-        dict(config.Autograde) == _USUAL_AUTOGRADE
-        and set(config.CourseDirectory) <= _KNOWN_OF_COURSE
-        and not any(config.get(section) for section in _CHANGES_CONVERSION)
-    )
 
 
 def convert(
@@ -127,7 +91,6 @@ def _graded(
         raise ChangedMeanwhile(
             f"{task.label} was changed while it was graded: grade it again to take the new one"
         )
-    rebuilt.notebook.metadata["autograder"]["problem"] = problem
     return with_results(rebuilt.notebook, task, execution)
 
 

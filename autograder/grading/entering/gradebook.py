@@ -6,22 +6,20 @@ importing them more than a second.
 
 from __future__ import annotations
 
-import functools
 import re  # noqa: TID251  (our own statements)
 import uuid
 from collections.abc import Iterable, Mapping
-from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import sqlalchemy
-from sqlalchemy.pool import NullPool
+
+from autograder.grading.entering.database import has_tables, opened, sql
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from datetime import datetime
 
-    from sqlalchemy import Connection, Engine, TextClause
+    from sqlalchemy import Connection
 
 Scores = Mapping[str, float | None]
 """By grade_id; None where there is no automatic score."""
@@ -383,27 +381,3 @@ def _scores(url: str, where: str, **names: str) -> dict[str, dict[str, Scores]]:
         for student, notebook, cell, score in rows:
             found.setdefault(student, {}).setdefault(notebook, {})[cell] = score
     return {student: dict(notebooks) for student, notebooks in found.items()}
-
-
-@contextmanager
-def opened(url: str) -> Iterator[Connection]:
-    """A connection whose block is one transaction, and that is closed behind it."""
-    with _engine(url).begin() as connection:
-        yield connection
-
-
-@functools.lru_cache(maxsize=8)
-def _engine(url: str) -> Engine:
-    """Holds no connection, only what SQLAlchemy knows of the database and of our statements."""
-    return sqlalchemy.create_engine(url, poolclass=NullPool)
-
-
-@functools.lru_cache(maxsize=64)
-def sql(statement: str) -> TextClause:
-    """A statement, parsed once."""
-    return sqlalchemy.text(statement)
-
-
-def has_tables(book: Connection) -> bool:
-    """Whether nbgrader has made its tables in this database."""
-    return sqlalchemy.inspect(book).has_table("grade")

@@ -1,4 +1,4 @@
-"""What was written into the gradebook, written down beside the class: a rerun knows from it what still holds."""
+"""Records of what was entered into the gradebook: from them the next run knows which entries are still right."""
 
 from __future__ import annotations
 

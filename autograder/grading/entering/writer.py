@@ -6,18 +6,12 @@ import contextlib
 import logging
 import shutil
 import warnings
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nbgrader.converters import BaseConverter, GenerateFeedback
-from nbgrader.coursedir import CourseDirectory
 from nbgrader.preprocessors import AssignLatePenalties
-from traitlets.config import Config
 
-from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, Submission
 from autograder.grading.classes.timestamps import handed_in_at
 from autograder.grading.entering import conversion, gradebook
-from autograder.grading.entering.nbgrader_guard import GuardedAutograde
 from autograder.grading.entering.points import scores_of
 from autograder.grading.entering.records import Records, Written
 from autograder.grading.errors import is_disk_full
@@ -27,14 +21,16 @@ from autograder.grading.returning import feedback
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from datetime import datetime
+    from pathlib import Path
 
     from autograder.boxes.execution import Execution
+    from autograder.grading.classes.class_directory import ClassDirectory, Submission
     from autograder.grading.reporting.report import Row
     from autograder.grading.task import Task
 
 
 class NotWritten(RuntimeError):
-    """The gradebook does not say what the judge said; the message says where."""
+    """The points in the gradebook are not those of the judge; the message says of which exercise."""
 
 
 class Writer:
@@ -80,10 +76,7 @@ class Writer:
         """
         try:
             with quiet(self._directory.state):
-                if conversion.is_usual(self._directory.config):
-                    self._convert_and_enter(submission, results)
-                else:
-                    _Autograde(submission, results, self._course()).convert()
+                self._convert_and_enter(submission, results)
             self._verify(submission, results)
         except NotWritten:
             self.take_back([submission])
@@ -103,7 +96,7 @@ class Writer:
         self._records.put(submission, record)
 
     def _convert_and_enter(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
-        """What nbgrader's conversion does. Notebooks first: without grades they are only files."""
+        """Notebooks first: without grades they are only files."""
         folder = self._folder("autograded", submission)
         _remove(folder)
         entries = conversion.convert(self._directory, submission, results, folder)
@@ -126,9 +119,7 @@ class Writer:
             if at is not None:
                 gradebook.enter_time(self._directory.gradebook_url, *names, at)
                 conversion.write_companions(submission, self._folder("autograded", submission))
-            steps = self._directory.config.Autograde.autograde_preprocessors
-            if any(AssignLatePenalties.__name__ in str(step) for step in steps):
-                self._assign_penalties(submission, self._directory.notebooks(submission.assignment))
+            self._assign_penalties(submission, self._directory.notebooks(submission.assignment))
 
     def _assign_penalties(self, submission: Submission, notebooks: Sequence[str]) -> None:
         """Have nbgrader say what being late costs: a class may have a rule of its own."""
@@ -151,11 +142,8 @@ class Writer:
         """
         with quiet(self._directory.state):
             try:
-                if feedback.is_usual(self._directory.config):
-                    self._pages.write(submission, self._directory.notebooks(submission.assignment))
-                    conversion.write_companions(submission, self._folder("feedback", submission))
-                else:
-                    _Feedback(submission, self._course()).convert()
+                self._pages.write(submission, self._directory.notebooks(submission.assignment))
+                conversion.write_companions(submission, self._folder("feedback", submission))
             except Exception as error:
                 if is_disk_full(error):
                     raise
@@ -170,81 +158,12 @@ class Writer:
                 if found.get(task.notebook, {}).get(name) != score:
                     raise NotWritten(f"{task.label}: the gradebook does not have {score:g} points for {name}")
 
-    def _course(self) -> CourseDirectory:
-        return CourseDirectory(config=self._directory.config)
-
     def _folder(self, step: str, submission: Submission) -> Path:
         return self._directory.path / step / submission.student / submission.assignment
 
 
-class _Remembering(BaseConverter):
-    """A conversion that remembers what went wrong, which nbgrader only logs."""
-
-    cause: BaseException | None = None
-
-    def convert_single_notebook(self, notebook_filename: str) -> None:
-        """Convert one notebook."""
-        try:
-            super().convert_single_notebook(notebook_filename)
-        except Exception as error:
-            self.cause = error
-            raise
-
-    def convert(self) -> None:
-        """Convert the submission.
-
-        Raises:
-            Exception: What nbgrader, or a step of it, ran into.
-        """
-        try:
-            self.start()
-        except Exception as error:
-            raise (self.cause or error) from error
-
-
-class _Autograde(_Remembering, GuardedAutograde):
-    """nbgrader's conversion of one submission.
-
-    It expects the notebooks of the assignment, not those that happen to be in the folder: a notebook that was
-    not handed in is graded, with zero.
-    """
-
-    def __init__(
-        self, submission: Submission, results: Sequence[tuple[Task, Execution]], course: CourseDirectory
-    ) -> None:
-        course.assignment_id, course.student_id = submission.assignment, submission.student
-        super().__init__(coursedir=course, config=course.config)
-        self.force = True
-        self.finished = {task.key(): execution for task, execution in results}
-        self._submission = submission
-        self._expected = [str(submission.folder / f"{task.notebook}{SUFFIX}") for task, _ in results]
-
-    def init_notebooks(self) -> None:
-        """Say what is to be converted."""
-        self.assignments = {str(self._submission.folder): self._expected}
-        self.notebooks: list[str] = []
-
-
-class _Feedback(_Remembering, GenerateFeedback):
-    """nbgrader's feedback for one submission."""
-
-    def __init__(self, submission: Submission, course: CourseDirectory) -> None:
-        course.assignment_id, course.student_id = submission.assignment, submission.student
-        config = Config(course.config)
-        config.HTMLExporter.template_name = "feedback"
-        super().__init__(coursedir=course, config=config)
-        self.force = True
-        self._submission = submission
-
-    def init_notebooks(self) -> None:
-        """Say what is to be converted."""
-        folder = Path(self._format_source(self._submission.assignment, self._submission.student))
-        self.notebooks: list[str] = []
-        self.assignments = {str(folder): sorted(str(path) for path in folder.glob(f"*{SUFFIX}"))}
-
-
 class _LogFile(logging.FileHandler):
-    """A log that gives up in silence: on a full disk its own complaints would drown the one that counts."""
+    """A log file that says nothing when it cannot be written: on a full disk, the grader itself says so once."""
 
     def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802  (logging's name)
         """Do nothing."""
@@ -252,7 +171,7 @@ class _LogFile(logging.FileHandler):
 
 @contextlib.contextmanager
 def quiet(state: Path) -> Iterator[None]:
-    """Nbgrader's words go to a file beside the class, not between the lines of a progress bar."""
+    """Send nbgrader's log to a file of the class, so that it does not break up the progress bar."""
     logger = logging.getLogger("traitlets")
     handler = _LogFile(state / "nbgrader.log", delay=True)
     handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))

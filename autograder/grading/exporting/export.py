@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-TO = ("canvas", "moodle", "csv", "xlsx")
-
 
 @dataclass(frozen=True)
 class Exported:
@@ -45,7 +43,7 @@ def export(
 
     Args:
         path: The class directory.
-        to: One of :data:`TO`.
+        to: ``canvas``, ``moodle``, ``csv`` or ``xlsx``.
         assignments: Only these; all that somebody has handed in by default.
         into: A list that the LMS has exported, to be filled in; for one assignment.
         folder: Where to write; ``export`` in the class by default.

@@ -59,6 +59,23 @@ def moved_on(directory: ClassDirectory, assignments: Iterable[str]) -> list[str]
     return [name for name in assignments if name in known and _has_moved(known[name])]
 
 
+def news(directory: ClassDirectory, assignments: Iterable[str]) -> list[str]:
+    """What to say before a class is graded: which tasks were changed since, or that nobody can know.
+
+    Args:
+        directory: The class.
+        assignments: Those that are graded.
+    """
+    if not _path(directory).exists():
+        return [
+            "This class was made before classes wrote down what their sources were made of, so nobody can tell whether "
+            "the course asks for something else by now. The judge expects what the course says now. Compare a source "
+            "with what the course has, or hand out and grade the new text; then it is written down: "
+            f"./course renew-class {directory.path}"
+        ]
+    return [warning(directory, name) for name in moved_on(directory, assignments)]
+
+
 def warning(directory: ClassDirectory, assignment: str) -> str:
     """What to say of such an assignment, and what to do."""
     return (

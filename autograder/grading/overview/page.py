@@ -12,8 +12,8 @@ from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.entering.journal import Journal, write_whole
 from autograder.grading.errors import GradingError, clear_disk_errors
 from autograder.grading.overview import statistics as figures
-from autograder.grading.pages import POLICY
 from autograder.grading.reporting.report import LATE, NOT_SUBMITTED
+from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.table.class_table import ClassTable, by_exercise, read_table
 from autograder.page_templates import page_templates
 

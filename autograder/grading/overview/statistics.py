@@ -1,4 +1,4 @@
-"""What the table of a class says about the class: numbers only, no page."""
+"""Statistics of a class from its table: numbers only, no page."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 BANDS = 10
 _FEWEST = 3
-"""Students without whom a correlation says nothing."""
+"""The number of students from which on a correlation says something."""
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ import functools
 import re  # noqa: TID251  (a master's cells)
 from typing import TYPE_CHECKING, Any
 
-from autograder.boxes.execution import Kind
+from autograder.boxes.execution import CellType
 
 if TYPE_CHECKING:
     from nbformat import NotebookNode
@@ -47,7 +47,12 @@ def is_demonstration(cell: NotebookNode) -> bool:
         cell: Of a rebuilt notebook, in which only the master's own cells carry nbgrader's marks.
     """
     marks = _marks(cell)
-    if cell.cell_type != Kind.CODE or not marks.get("locked") or marks.get("solution") or marks.get("grade"):
+    if (
+        cell.cell_type != CellType.CODE
+        or not marks.get("locked")
+        or marks.get("solution")
+        or marks.get("grade")
+    ):
         return False
     head, _, script = cell.source.partition("\n")
     return head.split()[:1] == ["%%bash"] and _only_looks(script)
@@ -75,11 +80,11 @@ def _marks(cell: NotebookNode) -> dict[str, Any]:
 
 def _is_file_or_terminal(cell: NotebookNode) -> bool:
     head = cell.source.partition("\n")[0].split()[:1]
-    return cell.cell_type == Kind.CODE and bool(_marks(cell)) and head in (["%%bash"], ["%%writefile"])
+    return cell.cell_type == CellType.CODE and bool(_marks(cell)) and head in (["%%bash"], ["%%writefile"])
 
 
 def are_run(directory: ClassDirectory) -> bool:
-    """Whether a class wants its demonstrations run all the same."""
+    """Whether the configuration of a class asks for demonstrations to be run."""
     return bool(directory.config.WireExecute.get("demonstrations", False))
 
 

@@ -69,12 +69,12 @@ class Fingerprints:
 
 
 def _trusted(path: Path) -> str:
-    """Stands for the bytes of a file of ours, which may be a link or have a second name."""
+    """A hash of a file of the class itself, which may be a link or have a second name."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def _content(path: Path) -> str:
-    """Stands for the bytes of a file that was handed in, or for the reason why it has none for us."""
+    """A hash of a file that was handed in, or of the reason why it cannot be read."""
     try:
         return hashlib.sha256(read_bytes(path)).hexdigest()
     except UnreadableSubmission as error:

@@ -67,7 +67,7 @@ def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
 
 
 def _rubrics(source: NotebookNode) -> dict[str, str]:
-    """What a source notebook has for whoever grades its questions, by grade_id."""
+    """The model answers and rules for points of the questions that a person grades, by grade_id."""
     found = {}
     for cell in source.cells:
         if cell.cell_type == "markdown" and is_answer(cell):

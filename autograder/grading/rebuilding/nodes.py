@@ -10,7 +10,7 @@ import nbformat
 from nbformat import NotebookNode
 from nbformat.v4 import rwbase
 
-from autograder.boxes.execution import Kind
+from autograder.boxes.execution import CellType
 
 _nbformat: Any = nbformat
 
@@ -45,7 +45,7 @@ def notebook(cells: list[NotebookNode], metadata: dict[str, Any]) -> NotebookNod
     return NotebookNode(metadata=_node(metadata), nbformat=4, nbformat_minor=5, cells=cells)
 
 
-def cell(kind: Kind, source: str, identifier: str = "") -> NotebookNode:
+def cell(kind: CellType, source: str, identifier: str = "") -> NotebookNode:
     """A cell without outputs, and without nbformat's validation: it would take longer than all the rest.
 
     Args:
@@ -56,7 +56,7 @@ def cell(kind: Kind, source: str, identifier: str = "") -> NotebookNode:
     made = NotebookNode(
         id=identifier or uuid.uuid4().hex[:8], cell_type=str(kind), metadata=NotebookNode(), source=source
     )
-    if kind is Kind.CODE:
+    if kind is CellType.CODE:
         made["execution_count"] = None
         made["outputs"] = []
     return made

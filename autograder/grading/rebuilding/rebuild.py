@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from nbformat import NotebookNode
 
-from autograder.boxes.execution import Kind
+from autograder.boxes.execution import CellType
 from autograder.grading.rebuilding import nodes
 
 if TYPE_CHECKING:
@@ -58,13 +58,13 @@ def rebuild(master: NotebookNode, submitted: Sequence[SubmittedCell], left_out: 
 
 
 def rebuild_unreadable(master: NotebookNode, problem: str) -> Rebuilt:
-    """What stands for a submission that is no notebook: the unanswered master and the reason."""
+    """The notebook in place of a submission that cannot be read: the master without answers, and the reason."""
     remarks = [f"This submission could not be graded. {problem}"]
     return _finished(master, [nodes.copied(cell) for cell in master.cells], remarks)
 
 
 class _Sorting:
-    """Which submitted cell is what."""
+    """Finds for each cell of the master the submitted cell that answers it."""
 
     def __init__(self, master: NotebookNode, submitted: Sequence[SubmittedCell]) -> None:
         self._master = {grade_id(cell): cell for cell in master.cells if grade_id(cell)}
@@ -134,7 +134,7 @@ class _Sorting:
         return found
 
     def _choose(self, name: str, places: list[int]) -> int:
-        """The last one, as when all cells are run; but a copy of the untouched stub is nobody's answer."""
+        """The last submitted cell of that name, as when all are run; a copy of the untouched stub does not count."""
         stub = self._master[name].source.strip()
         answered = [place for place in places if self._submitted[place].source.strip() != stub]
         return (answered or places)[-1]
@@ -170,7 +170,7 @@ def is_answer(cell: NotebookNode) -> bool:
 def is_check(cell: NotebookNode) -> bool:
     """Whether the cell is one that is graded automatically."""
     marked = bool(cell.metadata.get("nbgrader", {}).get("grade", False))
-    return marked and not is_answer(cell) and cell.cell_type == Kind.CODE
+    return marked and not is_answer(cell) and cell.cell_type == CellType.CODE
 
 
 def _without_hidden(source: str) -> str:
@@ -192,9 +192,9 @@ def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str
         # As items: to set an attribute, nbformat's nodes look for it in their class first.
         cell["id"] = _cell_id(cell, index)
         cell.pop("attachments", None)
-        if cell["cell_type"] == Kind.MARKDOWN and (shown := figures.of(cell["source"])):
+        if cell["cell_type"] == CellType.MARKDOWN and (shown := figures.of(cell["source"])):
             cell["attachments"] = shown
-        if cell["cell_type"] == Kind.CODE:
+        if cell["cell_type"] == CellType.CODE:
             cell["outputs"] = []
             cell["execution_count"] = None
     notebook = nodes.notebook(
@@ -232,7 +232,7 @@ def _extra(cell: SubmittedCell) -> NotebookNode:
 
 def _remarks_cell(remarks: list[str]) -> NotebookNode:
     lines = ["**Remarks of the grader**", ""] + [f"- {_escaped(remark)}" for remark in remarks]
-    return nodes.cell(Kind.MARKDOWN, "\n".join(lines))
+    return nodes.cell(CellType.MARKDOWN, "\n".join(lines))
 
 
 def _escaped(text: str) -> str:

@@ -1,4 +1,4 @@
-"""What the sources of a class carry points for, and whether the gradebook knows it.
+"""The cells with points in the sources of a class, and whether the gradebook has the same.
 
 Reading a source means running nbgrader's steps on it, which takes a second for a chapter; what came of it is kept.
 """
@@ -48,7 +48,7 @@ class _Kept:
 
 @dataclass(frozen=True)
 class Released:
-    """What the sources of a class carry points for.
+    """The cells with points of a class's assignments.
 
     Attributes:
         cells: The cells with points of each assignment, in the order of the course.

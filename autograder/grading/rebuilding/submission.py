@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING, Any
 
-from autograder.boxes.execution import Kind
+from autograder.boxes.execution import CellType
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -24,7 +24,7 @@ MAX_CELL_CHARACTERS = 100_000
 MAX_CHARACTERS = 1_000_000
 """Of all cells together."""
 _LONGEST_SHOWN = 80
-_CELL_TYPES = tuple(Kind)
+_CELL_TYPES = tuple(CellType)
 _KINDS = {
     stat.S_ISLNK: "a link",
     stat.S_ISDIR: "a folder",
@@ -49,13 +49,13 @@ class SubmittedCell:
         grade_id: The name it claims to have, empty for none.
     """
 
-    kind: Kind
+    kind: CellType
     source: str
     grade_id: str = ""
 
 
 class NotAFile(UnreadableSubmission):
-    """In the place of the notebook lies something that nobody hands in, or that may not be read."""
+    """What lies in the place of the notebook is no ordinary file, or may not be read."""
 
 
 def read_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
@@ -83,7 +83,7 @@ def read_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
 
 
 def reason_against_file(path: Path) -> str:
-    """Why nobody can have handed in what lies at ``path``; empty where it is a file, or nothing at all."""
+    """Why what lies at ``path`` cannot be a submission; empty for an ordinary file and where nothing is there."""
     try:
         with _opened(path):
             return ""
@@ -235,7 +235,7 @@ def _cell(cell: Any) -> SubmittedCell | None:
         return None
     # A lone surrogate is legal JSON but no text: it could not be written to a file again.
     return SubmittedCell(
-        Kind(cell["cell_type"]), source.encode("utf-8", "replace").decode("utf-8"), _grade_id(cell)
+        CellType(cell["cell_type"]), source.encode("utf-8", "replace").decode("utf-8"), _grade_id(cell)
     )
 
 

@@ -1,4 +1,4 @@
-"""From a submission to a task: the same way behind every door."""
+"""From a submission to a task, in the same way for a run, a dry run and the conversion."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.boxes.execution import Cell, Kind
+from autograder.boxes.execution import Cell, CellType
 from autograder.boxes.limits import Limits
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, Submission
 from autograder.grading.classes.seeds import seed_for
@@ -101,7 +101,7 @@ def cells_of(notebook: NotebookNode, *, demonstrations: bool = True) -> tuple[Ce
     return tuple(
         Cell(
             source="" if place in left_out else cell.source,
-            kind=Kind(cell.cell_type),
+            kind=CellType(cell.cell_type),
             check=check_of(cell),
             name=grade_id(cell),
             own=not is_the_masters(cell),

@@ -114,7 +114,7 @@ class GradeReport:
 
     @property
     def note(self) -> str:
-        """What whoever reads the points has to know about how they came about; mostly empty."""
+        """A warning for readers of the points, where the class was graded without boxes; else empty."""
         from autograder.grading.running import sandboxing
 
         return sandboxing.note(self.path)

@@ -115,7 +115,7 @@ def _diagnoses(rows: Sequence[Row]) -> Table:
 
 
 def _unreadable(report: GradeReport) -> list[tuple[str, str]]:
-    """What was handed in and is no notebook, with the reason; what was refused has its line already."""
+    """A line, with the reason, for each file that is no notebook; refused ones are listed elsewhere."""
     refused = {(entry.path.parent.parent.name, entry.path.parent.name) for entry in report.refused}
     reasons = {
         f"{row.student}/{row.assignment}": row.reason

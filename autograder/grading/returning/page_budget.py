@@ -12,7 +12,7 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
-from autograder.boxes.execution import Cell, Kind
+from autograder.boxes.execution import Cell, CellType
 from autograder.grading.returning.page_limits import HARMLESS_LENGTH
 from autograder.judge.verdicts.deciding import Undecided, limited
 
@@ -53,7 +53,7 @@ def too_costly(cells: Sequence[Cell], seconds: float = SECONDS) -> tuple[int, ..
 
 
 def _renderer() -> Callable[[Cell], object]:
-    """Does what is done on the way to a page; the imports are for those who need them."""
+    """A function that renders the text of a cell as a page does; its imports are only for those who need it."""
     from bs4 import BeautifulSoup
     from nbconvert.filters.highlight import Highlight2HTML
     from nbconvert.filters.markdown_mistune import markdown2html_mistune
@@ -65,14 +65,14 @@ def _renderer() -> Callable[[Cell], object]:
 
     def render(cell: Cell) -> object:
         # nbconvert/templates/lab/base.html.j2: its blocks "markdowncell" and "input".
-        if cell.kind is Kind.CODE:
+        if cell.kind is CellType.CODE:
             piece = clean_html(highlight(cell.source))
-        elif cell.kind is Kind.MARKDOWN:
+        elif cell.kind is CellType.MARKDOWN:
             piece = strip_files_prefix(clean(markdown2html_mistune(harmless_markdown(cell.source))))
         else:
             return None  # shown as it was typed in any case
         return BeautifulSoup(piece, "html.parser")  # nbconvert/exporters/html.py: from_notebook_node
 
-    for kind in (Kind.CODE, Kind.MARKDOWN):
+    for kind in (CellType.CODE, CellType.MARKDOWN):
         render(Cell("a <b>", kind))  # lexers and parsers are loaded at their first use
     return render

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 WAITS = "waits_for_a_person"
-"""The mark of a cell whose points nobody has given yet, among nbgrader's own."""
+"""The mark, among nbgrader's own metadata, of a cell that still waits for points by a person."""
 _BEGIN, _END = '<div id="toc">', "</div>"
 _LINK = re2.compile(r'(?s)<a\b[^>]*\bhref="([^"]*)"[^>]*>(.*?)</a>')
 _LEADS_SOMEWHERE = re2.compile(r"#|[a-zA-Z][a-zA-Z+.-]*:")

@@ -3,7 +3,8 @@
 nbconvert hands raw HTML, Mermaid diagrams and any address through to the page, in nbgrader's feedback and in
 formgrader alike. So a student's text is looked at with nbconvert's own Markdown parser before it is written
 into ``autograded/``: plain Markdown stays as it was written, anything else is rendered, cleaned with Bleach and
-kept as that HTML. The pages are cleaned once more where they are made (:mod:`autograder.grading.pages`).
+kept as that HTML. The pages are cleaned once more where they are made
+(:mod:`autograder.grading.returning.page_exporter`).
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from bleach.sanitizer import Cleaner
 from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
 from pygments.token import STANDARD_TYPES
 
-from autograder.boxes.execution import Kind
+from autograder.boxes.execution import CellType
 from autograder.boxes.outputs import IMAGES
 from autograder.grading.rebuilding import nodes
 from autograder.grading.returning.page_limits import HARMLESS_LENGTH
@@ -111,7 +112,7 @@ _TURNS = {
     code: f"\\u{code:04x}"
     for code in (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))
 }
-"""What turns the direction of writing, so that a text reads as another one (Unicode TR 36, "Bidirectional Text")."""
+"""Characters that turn the direction of writing: a text may look like another (Unicode TR 36, "Bidirectional Text")."""
 
 
 def visible(text: str) -> str:
@@ -139,16 +140,16 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
             cell.source = visible(cell.source)
             if place in as_they_are:
                 cell.source = _cut(cell.source, longest)
-            if cell.cell_type == Kind.MARKDOWN:
+            if cell.cell_type == CellType.MARKDOWN:
                 if place in as_they_are:
                     cell.source = as_typed(cell.source)
                 else:
                     cell.source = harmless_markdown(cell.source, _figures(cell))
-            elif cell.cell_type == Kind.RAW:
-                cell.update(nodes.cell(Kind.MARKDOWN, as_typed(cell.source)) | {"id": cell.id})
+            elif cell.cell_type == CellType.RAW:
+                cell.update(nodes.cell(CellType.MARKDOWN, as_typed(cell.source)) | {"id": cell.id})
             elif place in as_they_are:
                 cell.metadata["magics_language"] = "text"  # what nbconvert then takes the code for
-        if cell.cell_type == Kind.CODE and not _is_check(cell):
+        if cell.cell_type == CellType.CODE and not _is_check(cell):
             cell.outputs = [harmless_output(output) for output in cell.outputs]
     return notebook
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import queue
 import threading
 import time
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
     from autograder.boxes.execution import Execution
     from autograder.grading.task import Task
 
-__all__ = ["Done", "execute_all", "execute_one"]
+__all__ = ["Done", "execute_all"]
 
 
 @dataclass(frozen=True)
@@ -70,13 +69,6 @@ def execute_all(
         with contextlib.suppress(OSError):
             remove_tree(scratch)
             scratch.parent.rmdir()
-
-
-def execute_one(task: Task, scratch: Path, *, judge: str = JUDGE) -> Execution:
-    """Execute a single task; for the arguments see :func:`execute_all`."""
-    running = execute_all([task], scratch / str(os.getpid()), 1, judge=judge)
-    with contextlib.closing(running):
-        return next(running).execution
 
 
 class _Feed:
@@ -136,7 +128,7 @@ class _Crew:
         self.feed, self.gate = feed, gate
         self._scratch, self._judge, self._on_start = scratch, judge, on_start
         self._beside = beside
-        # None is a thread that found nothing more to do: whoever waits for results looks again.
+        # None says that a thread has found nothing more to do, so that who waits for results looks again.
         self._done: queue.SimpleQueue[Done | BaseException | None] = queue.SimpleQueue()
         self._threads: list[_WorkerThread] = []
 

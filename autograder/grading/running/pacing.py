@@ -27,10 +27,10 @@ _IDLE_FOR_FEWER = 0.01
 _STALLED_FOR_FEWER = 0.95
 _TICKS_FOR_FEWER = 4
 BOX_BYTES = Limits().beside_bytes + 150_000_000
-"""What one more notebook may take: its box, its judge and its worker."""
+"""Memory that one more notebook may take: its box, its judge and its worker."""
 _RESERVE_BYTES = 1_000_000_000
 _BUILD_BYTES = 500_000_000
-"""What a build takes; as many at once as there are processors are reckoned with."""
+"""Memory that a build takes; enough is kept for one build on each processor."""
 _MOST_PER_CORE = 12
 _PRESSURE = Path("/proc/pressure/cpu")
 

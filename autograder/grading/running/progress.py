@@ -16,7 +16,6 @@ from rich.text import Text
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from types import TracebackType
 
     from rich.console import Console
     from rich.progress import Task
@@ -94,9 +93,7 @@ class BatchProgress:
             threading.Thread(target=self._break_silence, daemon=True).start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._closed.set()
         if self._bar.live.is_started:
             self._bar.stop()
@@ -142,7 +139,7 @@ class BatchProgress:
             self.tell()
 
     def _rest(self) -> str:
-        """What stands in brackets behind a line of a log file; nothing behind the last one."""
+        """The text in brackets at the end of a line of the log; empty for the last line."""
         return f" ({', '.join(self._now())})" if self._done < self._total else ""
 
     def _now(self) -> list[str]:

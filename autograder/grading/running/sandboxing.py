@@ -1,4 +1,4 @@
-"""No sandbox, no silent grading: who may go on without one, and what is said then."""
+"""Where no sandbox is possible: grading stops, unless somebody has asked for it all the same, and then says so."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ NOTE = (
 
 
 class SandboxMissing(GradingError):
-    """Submissions cannot be shut off here, and nobody has said to go on all the same."""
+    """Submissions cannot be boxed on this machine, and nobody has asked to grade without boxes."""
 
 
 _off: set[Path] = set()
-"""The classes for which it was typed. nbgrader makes its own objects of a class on the way to the notebooks."""
+"""Folders of the classes that ``--unsafe-no-sandbox`` was given for; several objects may stand for one class."""
 
 
 def switch_off(path: Path) -> None:
-    """What ``--unsafe-no-sandbox`` does for the class at ``path``, in this process."""
+    """Grade the class at ``path`` without boxes, from now on in this process: the option ``--unsafe-no-sandbox``."""
     _off.add(path.resolve())
 
 
@@ -37,7 +37,7 @@ def switched_off(directory: ClassDirectory) -> bool:
 
 
 def note(path: Path) -> str:
-    """What whoever reads the points of a class has to know about how they came about; mostly empty."""
+    """A warning for readers of the points, where the class was graded without boxes; else empty."""
     return NOTE if switched_off(ClassDirectory(path)) else ""
 
 

@@ -51,7 +51,7 @@ class Timings:
 
     @contextmanager
     def measure(self, part: str) -> Iterator[None]:
-        """Add what the block takes to ``part``."""
+        """Add the time that the block takes to ``part``."""
         began = time.monotonic()
         try:
             yield

@@ -33,6 +33,7 @@ from autograder.boxes.scratch import scratch_folder
 from autograder.grading.returning.page_budget import too_costly
 from autograder.grading.running.workspaces import arrange, served
 from autograder.grading.task import Task, decode_task, encode
+from autograder.judge.bench.patience import Patience
 from autograder.judge.serving import attached
 from autograder.judge.serving.domain import lease
 from autograder.judge.settings import boxed_ros_environment, ros_environment
@@ -40,10 +41,13 @@ from autograder.judge.settings import boxed_ros_environment, ros_environment
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping
 
+    from autograder.boxes.time_left import Left
     from autograder.verdict import Verdict
 
 JUDGE = "autograder.judge.serving.process:JudgeProcess"
 SOCKET_VARIABLE = "AUTOGRADER_JUDGE_SOCKET"
+MOST_EVIDENCE = 4_000_000
+"""Bytes of evidence of one notebook, as much as ten checks can have; that of later checks is not kept."""
 
 
 def main(arguments: list[str]) -> None:
@@ -114,18 +118,28 @@ def _execute(
         start = functools.partial(place.start_judge, of_programs=of_programs)
         process = judge(place.judge_socket, seed=task.seed, start=start)
         process.workspaces = str(arrangement.judges_socket)
+        process.keeps_evidence = True
         return process
 
     first = next((cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts), "")
+    judges = _Judges(made, arrangement.runners, first)
     execution = run_notebook(
         task.cells,
-        judge=_Judges(made, arrangement.runners, first),
+        judge=judges,
         start=place.start_kernel,
         folder=folder,
         limits=task.limits,
         guard=place.guard,
+        patient=patiently,
     )
-    return replace(execution, needs_room=task.limits.beside and place.guard.reason() is Ended.OUT_OF_MEMORY)
+    needs_room = task.limits.beside and place.guard.reason() is Ended.OUT_OF_MEMORY
+    return replace(execution, needs_room=needs_room, evidence=judges.evidence)
+
+
+def patiently(seconds: float) -> Left:
+    """For so many seconds that the machine has for it, as the judge counts its own: crowded, each lasts longer."""
+    patience = Patience(seconds)
+    return lambda: patience.left
 
 
 class _Judges:
@@ -137,12 +151,17 @@ class _Judges:
         made: Makes a judge that is not started, for programs or for the notebook's own nodes.
         runners: The exercises whose subjects are programs.
         first: The exercise of the first check; its judge starts beside the kernel.
+
+    Attributes:
+        evidence: What the verdicts follow from, by exercise.
     """
 
     def __init__(self, made: Callable[[bool], Any], runners: Collection[str], first: str) -> None:
         self._made, self._runners, self._first = made, runners, first
         self._open = contextlib.ExitStack()
         self._of_programs = False
+        self._asked = ""
+        self.evidence: dict[str, bytes] = {}
 
     def __enter__(self) -> Self:
         self._start(self._first in self._runners)
@@ -160,12 +179,15 @@ class _Judges:
         if of_programs is not self._of_programs:
             self._open.close()
             self._start(of_programs)
+        self._asked = exercise_id
         self._judge.open(exercise_id)
 
     def close(self) -> Verdict | None:
         report = self._judge.close_report()
         if report.verdict is None and report.trouble:
             raise RuntimeError(report.trouble)
+        if sum(map(len, self.evidence.values())) + len(report.evidence) <= MOST_EVIDENCE and report.evidence:
+            self.evidence[self._asked] = report.evidence
         verdict: Verdict | None = report.verdict
         return verdict
 

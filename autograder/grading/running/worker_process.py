@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from autograder.boxes.fork_server_client import Addresses
 
 ATTEMPTS = 2
-"""A worker that dies costs its task, which is tried once more."""
+"""How often a task is tried: a second time where its worker died."""
 GOODBYE_SECONDS = 2.0
-"""Until a worker that was asked to end is killed; with what started it, Ctrl-C takes less than three seconds."""
+"""Seconds after which a worker that was asked to end is killed, so that Ctrl-C takes less than three in all."""
 _RESULT_BYTES = 64_000_000
 _EXTRA_SECONDS = 60.0
 
@@ -52,7 +52,7 @@ class WorkerProcess:
         self._scratch = scratch
         self._command = [sys.executable, "-m", "autograder.grading.running.worker", str(scratch), judge]
         self._boxed = boxed
-        # What a worker says on its way down, in a file: a pipe that nobody reads would fill up. Lives with
+        # Standard error of the worker goes to a file: a pipe that nobody reads would fill up. Lives with
         # the worker.
         self._log = tempfile.TemporaryFile()  # noqa: SIM115
         self._worker: subprocess.Popen[bytes] | None = None

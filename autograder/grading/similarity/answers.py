@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from autograder.boxes.execution import Kind
+from autograder.boxes.execution import CellType
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.errors import MasterUnusable
 from autograder.grading.rebuilding import nodes
@@ -66,7 +66,7 @@ def given_texts(directory: ClassDirectory) -> list[str]:
         for folder in ("source", "release")
         for path in sorted((directory.path / folder).glob(f"*/*{SUFFIX}"))
         for cell in _cells(directory, path.relative_to(directory.path).as_posix())
-        if cell.cell_type == Kind.CODE
+        if cell.cell_type == CellType.CODE
     ]
 
 
@@ -83,7 +83,7 @@ def read_answers(
         for cell in _cells(directory, f"source/{assignment}/{notebook}{SUFFIX}")
         if (name := grade_id(cell))
     }
-    answers = [name for name, cell in named.items() if is_answer(cell) and cell.cell_type == Kind.CODE]
+    answers = [name for name, cell in named.items() if is_answer(cell) and cell.cell_type == CellType.CODE]
     found = HandedIn()
     for submission in submissions:
         who = f"{submission.student}/{assignment}"
@@ -102,7 +102,7 @@ def read_answers(
         found.students.append(submission.student)
         written: dict[str, list[str]] = {}
         for cell in cells:
-            if cell.kind == Kind.CODE and (cell.grade_id in answers or cell.grade_id not in named):
+            if cell.kind == CellType.CODE and (cell.grade_id in answers or cell.grade_id not in named):
                 name = cell.grade_id if cell.grade_id in answers else OWN_CELLS
                 written.setdefault(name, []).append(cell.source)
         for name in (*answers, OWN_CELLS):

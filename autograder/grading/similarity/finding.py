@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from autograder.grading.collecting.tidying import tidy
 from autograder.grading.errors import GradingError
 from autograder.grading.similarity.answers import given_texts, read_answers
 from autograder.grading.similarity.own_code import LONGEST, Given, compared
@@ -64,8 +65,18 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
     check_known([assignment] if assignment else [], known, "assignment")
     submissions, refused = directory.submissions()
     submissions = [one for one in submissions if assignment in ("", one.assignment)]
+    beside = tidy(directory, moves=False)
     troubles = [
-        f"refused      {one.path}: {one.reason}" for one in refused if _concerns(directory, one, assignment)
+        *(
+            f"refused      {one.path}: {one.reason}"
+            for one in (*refused, *beside.refused)
+            if _concerns(directory, one, assignment)
+        ),
+        *(
+            f"not compared {path}: it belongs at {place}, where `autograder grade` puts it"
+            for path, place in beside.waiting
+            if assignment in ("", place.parent.name)
+        ),
     ]
     if not submissions and not troubles:
         raise GradingError(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from autograder.cards.readable import one_line
-from autograder.grading.pages import POLICY
+from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.similarity.pairs import LEAST_SHARE, SHORTEST
 from autograder.grading.similarity.passages import own_words
 from autograder.grading.similarity.side import Line, lines, stretches

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime  # noqa: TC003
 
 import msgspec
 import sqlalchemy
 
-from autograder.grading.entering import gradebook
+from autograder.grading.entering.database import has_tables, opened, sql
 
 
 @dataclass(frozen=True)
@@ -82,19 +82,18 @@ _FROM = "submitted_assignment s JOIN assignment a ON a.id = s.assignment_id"
 _CELLS = f"""
     SELECT s.student_id AS student, a.name AS assignment, n.name AS notebook, b.name AS cell,
         g.auto_score AS judged, g.manual_score AS by_hand, g.extra_credit AS extra,
-        g.needs_manual_grade AS waits, COALESCE(gc.max_score, tc.max_score, 0) AS most,
-        (SELECT c.manual_comment FROM comment c WHERE c.notebook_id = sn.id AND c.cell_id = b.id) AS said
+        g.needs_manual_grade AS waits, COALESCE(gc.max_score, tc.max_score, 0) AS most
     FROM {_FROM} JOIN submitted_notebook sn ON sn.assignment_id = s.id JOIN notebook n ON n.id = sn.notebook_id
         JOIN grade g ON g.notebook_id = sn.id JOIN base_cell b ON b.id = g.cell_id
         LEFT JOIN grade_cells gc ON gc.id = b.id LEFT JOIN task_cells tc ON tc.id = b.id
 """
+# A question that a person grades is two cells of one name to nbgrader: one has the points, the other the comment.
 _COMMENTS = f"""
     SELECT s.student_id AS student, a.name AS assignment, n.name AS notebook, b.name AS cell,
         c.manual_comment AS said
     FROM {_FROM} JOIN submitted_notebook sn ON sn.assignment_id = s.id JOIN notebook n ON n.id = sn.notebook_id
         JOIN comment c ON c.notebook_id = sn.id JOIN base_cell b ON b.id = c.cell_id
-    WHERE c.manual_comment IS NOT NULL AND NOT EXISTS
-        (SELECT 1 FROM grade g WHERE g.notebook_id = sn.id AND g.cell_id = c.cell_id)
+    WHERE c.manual_comment IS NOT NULL
 """
 _SUBMISSIONS = f"""
     SELECT s.student_id AS student, a.name AS assignment, s.timestamp AS timestamp, a.duedate AS duedate,
@@ -117,17 +116,18 @@ def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entrie
     narrow = "(:student = '' OR s.student_id = :student) AND (:assignment = '' OR a.name = :assignment)"
     cells: dict[tuple[str, str], dict[str, dict[str, CellEntry]]] = {}
     found: dict[tuple[str, str], SubmissionEntry] = {}
-    with gradebook.opened(url) as book:
-        if not gradebook.has_tables(book):
+    with opened(url) as book:
+        if not has_tables(book):
             return {}
-        for row in book.execute(gradebook.sql(f"{_CELLS} WHERE {narrow}"), names):
+        for row in book.execute(sql(f"{_CELLS} WHERE {narrow}"), names):
             of_notebook = cells.setdefault((row.student, row.assignment), {}).setdefault(row.notebook, {})
             of_notebook[row.cell] = CellEntry(
-                row.most, row.judged, row.by_hand, row.extra or 0.0, bool(row.waits), row.said or ""
+                row.most, row.judged, row.by_hand, row.extra or 0.0, bool(row.waits)
             )
-        for row in book.execute(gradebook.sql(f"{_COMMENTS} AND {narrow}"), names):
+        for row in book.execute(sql(f"{_COMMENTS} AND {narrow}"), names):
             of_notebook = cells.setdefault((row.student, row.assignment), {}).setdefault(row.notebook, {})
-            of_notebook[row.cell] = CellEntry(0.0, comment=row.said)
+            known = of_notebook.get(row.cell, CellEntry(0.0))
+            of_notebook[row.cell] = replace(known, comment=row.said)
         for row in book.execute(
             sqlalchemy.text(f"{_SUBMISSIONS} WHERE {narrow}").columns(
                 timestamp=sqlalchemy.DateTime(),
@@ -146,8 +146,8 @@ def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entrie
 
 def read_students(url: str) -> dict[str, str]:
     """The students that the gradebook knows: their names, empty where it has none, by id."""
-    with gradebook.opened(url) as book:
-        if not gradebook.has_tables(book):
+    with opened(url) as book:
+        if not has_tables(book):
             return {}
-        rows = book.execute(gradebook.sql("SELECT id, first_name, last_name FROM student")).all()
+        rows = book.execute(sql("SELECT id, first_name, last_name FROM student")).all()
     return {row.id: " ".join(part for part in (row.first_name, row.last_name) if part) for row in rows}

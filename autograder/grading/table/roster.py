@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import ClassDirectory, reason_against_name
-from autograder.grading.entering import gradebook
+from autograder.grading.entering.database import has_tables, opened, sql
 from autograder.grading.errors import GradingError
 
 if TYPE_CHECKING:
@@ -182,10 +182,10 @@ def enter_roster(directory: ClassDirectory) -> None:
     students = read_students_csv(directory)
     if not students:
         return
-    with gradebook.opened(directory.gradebook_url) as book:
-        if not gradebook.has_tables(book):
+    with opened(directory.gradebook_url) as book:
+        if not has_tables(book):
             return  # whoever needs the gradebook says so
-        known = set(book.execute(gradebook.sql("SELECT id FROM student")).scalars())
+        known = set(book.execute(sql("SELECT id FROM student")).scalars())
         for student in students:
             values = {
                 "id": student.id,
@@ -194,9 +194,9 @@ def enter_roster(directory: ClassDirectory) -> None:
                 "email": student.email or None,
             }
             if student.id not in known:
-                book.execute(gradebook.sql("INSERT INTO student (id) VALUES (:id)"), {"id": student.id})
+                book.execute(sql("INSERT INTO student (id) VALUES (:id)"), {"id": student.id})
             book.execute(
-                gradebook.sql(
+                sql(
                     "UPDATE student SET first_name = COALESCE(:first, first_name),"
                     " last_name = COALESCE(:last, last_name), email = COALESCE(:email, email) WHERE id = :id"
                 ),
@@ -205,10 +205,10 @@ def enter_roster(directory: ClassDirectory) -> None:
 
 
 def _in_gradebook(url: str) -> list[Student]:
-    with gradebook.opened(url) as book:
-        if not gradebook.has_tables(book):
+    with opened(url) as book:
+        if not has_tables(book):
             return []
-        rows = book.execute(gradebook.sql("SELECT id, first_name, last_name, email FROM student")).all()
+        rows = book.execute(sql("SELECT id, first_name, last_name, email FROM student")).all()
     return [Student(row.id, row.first_name or "", row.last_name or "", row.email or "") for row in rows]
 
 

@@ -20,7 +20,7 @@ from autograder.judge.bench.service_client import RecordedCaller
 from autograder.judge.bench.service_server import Answer, RecordedServer
 from autograder.judge.bench.topics import LogReader, RecordedPublisher, RecordedSubscription
 from autograder.judge.bench.wire import JudgeFailed, Wire
-from autograder.kit.evidence import Evidence, Part, Reference
+from autograder.kit.evidence import INTERRUPTED, Evidence, Part, Reference
 from autograder.kit.giving_up import patience, spared, willing
 from autograder.kit.model import Look
 
@@ -118,7 +118,8 @@ class TestBench:
         self._presence.note_interface()
         self._presence.note_how_it_leaves()
         self._presence.note_whom_it_met()
-        self._clean = self._subject.ended
+        # What Ctrl-C has ended may be on the graph for a while; a new participant never hears of it.
+        self._clean = self._subject.ended and not self._recorder.part().of("subject", INTERRUPTED)
         self.parts.append(usable(self._recorder.part()))
         self._subject.stop()
         self._open.close()
@@ -169,6 +170,19 @@ class TestBench:
     def release(self) -> None:
         """Let a held subject spin."""
         self._subject.release()
+
+    def press_ctrl_c(self, within: float) -> bool:
+        """Interrupt the subject and wait until it has ended; what the graph tells is written down before."""
+        if self._subject.ended:
+            return False
+        self._presence.note_interface()
+        self._presence.note_how_it_leaves()
+        self._presence.note_whom_it_met()
+        if self._subject.ended:
+            return False
+        self._recorder.record("subject", INTERRUPTED)
+        self._subject.interrupt()
+        return self.await_end(within)
 
     def await_end(self, within: float) -> bool:
         """Wait until the subject has ended by itself."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rclpy.qos import qos_profile_parameters
+
 from autograder.judge.bench.interfaces import filled, interface, to_data
 
 if TYPE_CHECKING:
@@ -12,6 +14,9 @@ if TYPE_CHECKING:
     from autograder.judge.bench.recorder import Recorder
     from autograder.judge.bench.wire import Wire
 
+ROOM_FOR_ALL = qos_profile_parameters
+"""The profile of services with a queue of 1,000 (rclpy, ``qos.py``) instead of 10. Where two servers share a name, more
+than ten answers come at once, and those that find no room would be lost by chance."""
 GRAPH_POLL = 0.004
 """Seconds between two looks for a server."""
 
@@ -34,7 +39,7 @@ class RecordedCaller:
         self._type = interface(type_name)
         self._server_is_gone = server_is_gone
         self._calls = 0
-        self._client = wire.node.create_client(self._type, service)
+        self._client = wire.node.create_client(self._type, service, qos_profile=ROOM_FOR_ALL)
 
     def await_server(self, within: float) -> bool:
         """Wait until a server is matched, and write down how many there are."""

@@ -6,12 +6,14 @@ import contextlib
 import hashlib
 from typing import TYPE_CHECKING
 
+from msgspec.structs import replace
+
 from autograder import exercises
 from autograder.judge.bench.wire import JudgeFailed
 from autograder.judge.serving import domain
 from autograder.judge.subjects.path_subject import PathSubject
 from autograder.judge.subjects.remote_subject import RemoteSubject
-from autograder.judge.verdicts import record, reference, trial
+from autograder.judge.verdicts import keeping, record, reference, trial
 from autograder.messages.checks import Check, Judged, Refused
 from autograder.messages.lines import Hangup, Lines, NotUnderstood
 from autograder.messages.orders import Report
@@ -20,6 +22,7 @@ from autograder.verdict import Verdict, not_checked
 if TYPE_CHECKING:
     import socket
 
+    from autograder.judge.verdicts.trial import Checked
     from autograder.kit.model import Exercise
     from autograder.messages.lines import Message
 
@@ -30,7 +33,13 @@ MAX_NAME = 100
 
 
 def converse(
-    connection: socket.socket, *, seed: str, expected: str | None, recording: bool, workspaces: str = ""
+    connection: socket.socket,
+    *,
+    seed: str,
+    expected: str | None,
+    recording: bool,
+    workspaces: str = "",
+    evidence: bool = False,
 ) -> Report:
     """Hear which exercise is asked for, judge it and tell the notebook.
 
@@ -40,6 +49,7 @@ def converse(
         expected: The only exercise that may be asked for; None for any.
         recording: Record a reference output instead of judging against the stored one.
         workspaces: The socket of the grader's side of checks of workspaces; empty where notebooks run these themselves.
+        evidence: Report what the verdict follows from, too.
 
     Returns:
         What came of it; nothing where nothing was asked, or something else than what is expected.
@@ -69,9 +79,10 @@ def converse(
         subject = PathSubject(lines, exercise.id, workspaces)
     else:
         subject = RemoteSubject(lines, is_class=first.kind == "class")
-    report = _report(exercise, subject, own_seed(seed, exercise.id), recording)
+    report, checked = _report(exercise, subject, own_seed(seed, exercise.id), recording)
     _tell(lines, Judged(_shown(exercise, report)))
-    return report
+    # Its notebook has its verdict already: nobody waits while the evidence is packed.
+    return replace(report, evidence=keeping.packed(checked)) if evidence and checked else report
 
 
 def own_seed(seed: str, exercise_id: str) -> str:
@@ -88,19 +99,22 @@ def _tell(lines: Lines, message: Message) -> None:
         lines.say(message)
 
 
-def _report(exercise: Exercise, subject: RemoteSubject | PathSubject, seed: str, recording: bool) -> Report:
+def _report(
+    exercise: Exercise, subject: RemoteSubject | PathSubject, seed: str, recording: bool
+) -> tuple[Report, Checked | None]:
     try:
         with domain.lease() as domain_id:
             if not recording:
                 stored = reference.load(exercise.id)
-                return Report(trial.check(exercise, subject, stored, seed=seed, domain_id=domain_id))
+                checked = trial.check(exercise, subject, stored, seed=seed, domain_id=domain_id)
+                return Report(checked.verdict), checked
             recorded = record.record(exercise, subject, domain_id=domain_id)
             verdict = trial.judge(exercise, record.as_evidence(recorded), seed)
-            return Report(verdict, reference.dump(recorded, exercise.recorded))
+            return Report(verdict, reference.dump(recorded, exercise.recorded)), None
     except (domain.NoFreeDomainError, reference.NoReference, record.NotRecordable, JudgeFailed) as error:
-        return Report(trouble=str(error))
+        return Report(trouble=str(error)), None
     except Hangup:
-        return Report()  # the notebook went away before it had sent its sources
+        return Report(), None  # the notebook went away before it had sent its sources
 
 
 def _shown(exercise: Exercise, report: Report) -> Verdict:

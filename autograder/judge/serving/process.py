@@ -59,6 +59,8 @@ class JudgeProcess:
         self._seed = seed
         self.workspaces = ""
         """The socket of the grader's side of checks of workspaces, as the judge sees it; empty where there is none."""
+        self.keeps_evidence = False
+        """Whether reports bring what their verdicts follow from."""
         self._start = start or _Child
         self._process: StartedJudge | None = None
         self._control: socket.socket | None = None
@@ -92,7 +94,8 @@ class JudgeProcess:
         Raises:
             JudgeDied: The judge is gone.
         """
-        self._order(Open(exercise_id, f"{self._seed}:{exercise_id}", record, self.workspaces))
+        seed = f"{self._seed}:{exercise_id}"
+        self._order(Open(exercise_id, seed, record, self.workspaces, self.keeps_evidence))
 
     def close(self) -> Verdict | None:
         """The verdict of the opened check; None where nobody asked for it or there is none.

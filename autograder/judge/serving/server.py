@@ -69,14 +69,19 @@ class JudgeServer:
                 return
             seed = order.seed if order else secrets.token_hex(8)
             expected, recording = (order.exercise, order.record) if order else (None, False)
-            workspaces = order.workspaces if order else ""
+            workspaces, evidence = (order.workspaces, order.evidence) if order else ("", False)
             limit = max(
                 (e.limit for e in exercises.unbroken() if expected in (None, e.id)), default=REFUSE_LIMIT
             )
             child = Child(
                 lambda: msgspec.json.encode(
                     conversation.converse(
-                        connection, seed=seed, expected=expected, recording=recording, workspaces=workspaces
+                        connection,
+                        seed=seed,
+                        expected=expected,
+                        recording=recording,
+                        workspaces=workspaces,
+                        evidence=evidence,
                     )
                 ),
                 limit + SPARE,

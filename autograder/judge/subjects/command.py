@@ -9,15 +9,19 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import msgspec
+
 from autograder import exercises
 from autograder.judge.serving.fork import Child
 from autograder.kit.runners import Launches
-from autograder.verdict import Verdict, from_json, not_checked, to_json
+from autograder.messages.orders import Report
+from autograder.verdict import Verdict, not_checked
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from autograder.judge.subjects.command_subject import Box
+    from autograder.judge.verdicts.trial import Checked
     from autograder.kit.model import Exercise
 
 
@@ -55,19 +59,39 @@ def check_command(
         UnknownExercise: No exercise has this id.
         CommandNotFound: There is no such program.
     """
+    return check_and_keep(exercise_id, command, seed=seed, cwd=cwd, box=box)[0]
+
+
+def check_and_keep(
+    exercise_id: str,
+    command: Sequence[str],
+    *,
+    seed: str | None = None,
+    cwd: Path | None = None,
+    box: Box | None = None,
+) -> tuple[Verdict, bytes]:
+    """Like :func:`check_command`, with the evidence as :mod:`autograder.judge.verdicts.keeping` packs it.
+
+    It is empty where the judge itself had trouble.
+    """
     exercise = exercises.get(exercise_id)
     if not is_path(exercise, command, cwd) and shutil.which(command[0], path=_search_path(cwd)) is None:
         raise CommandNotFound(
             f"there is no program {command[0]!r} to run here; is it spelt right, and executable?"
         )
     chosen = seed or secrets.token_hex(8)
-    child = Child(lambda: to_json(judged_here(exercise, command, chosen, cwd, box)), exercise.limit + SPARE)
-    outcome = child.result()
+
+    def report() -> bytes:
+        verdict, checked = checked_here(exercise, command, chosen, cwd, box)
+        return msgspec.json.encode(Report(verdict, evidence=_packed(checked)))
+
+    outcome = Child(report, exercise.limit + SPARE).result()
     if outcome.data is None:
-        return not_checked(
-            exercise.id, exercise.title, exercise.points, outcome.trouble, "Run `autograder doctor`."
-        )
-    return from_json(outcome.data)
+        advice = "Run `autograder doctor`."
+        return not_checked(exercise.id, exercise.title, exercise.points, outcome.trouble, advice), b""
+    said = msgspec.json.decode(outcome.data, type=Report)
+    assert said.verdict is not None
+    return said.verdict, said.evidence
 
 
 def as_run(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> Sequence[str]:
@@ -95,6 +119,19 @@ def judged_here(
     exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None, box: Box | None = None
 ) -> Verdict:
     """Judge a command in this very process, which is a fork made for it."""
+    return checked_here(exercise, command, seed, cwd, box)[0]
+
+
+def _packed(checked: Checked | None) -> bytes:
+    from autograder.judge.verdicts import keeping
+
+    return keeping.packed(checked) if checked else b""
+
+
+def checked_here(
+    exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None, box: Box | None = None
+) -> tuple[Verdict, Checked | None]:
+    """Like :func:`judged_here`, with the evidence; without it where the judge itself had trouble."""
     from autograder.judge import settings
 
     settings.prepare_judge(boxed=box is not None)
@@ -109,6 +146,7 @@ def judged_here(
         expected = reference.load(exercise.id)
         with domain.lease() as domain_id:
             subject = CommandSubject(as_run(exercise, command, cwd), cwd, box)
-            return trial.check(exercise, subject, expected, seed=seed, domain_id=domain_id)
+            checked = trial.check(exercise, subject, expected, seed=seed, domain_id=domain_id)
+            return checked.verdict, checked
     except (domain.NoFreeDomainError, reference.NoReference, JudgeFailed) as error:
-        return not_checked(exercise.id, exercise.title, exercise.points, str(error))
+        return not_checked(exercise.id, exercise.title, exercise.points, str(error)), None

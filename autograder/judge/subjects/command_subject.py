@@ -13,13 +13,12 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, Protocol
 
 from autograder.judge.settings import subject_environment
-from autograder.judge.subjects.subject import CannotStart
+from autograder.judge.subjects.subject import CannotStart, InOwnProcesses
 from autograder.short_lines import short_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from autograder.judge.bench.own_endpoints import Endpoint
     from autograder.judge.bench.recorder import Recorder
 
     Record = Callable[..., None]
@@ -89,12 +88,8 @@ class Box(Protocol):
         ...
 
 
-class CommandSubject:
+class CommandSubject(InOwnProcesses):
     """Runs a command in a session of its own, reads all it prints and ends it with everything it started."""
-
-    shares_participant = False
-    keeper = ""
-    marker = None
 
     def __init__(self, command: Sequence[str], cwd: Path | None = None, box: Box | None = None) -> None:
         self._command = list(command)
@@ -111,14 +106,6 @@ class CommandSubject:
     def begin(self, domain_id: int) -> None:
         """Remember the domain that the command's environment will name."""
         self._domain_id = domain_id
-
-    def renew(self) -> None:
-        """Each run of a command is a process of its own, with a participant of its own."""
-
-    def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
-        """Each run has a participant of its own, which has met nobody: it cannot know what is gone."""
-        del there, gone
-        return True
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
         """Start the command with the arguments appended.
@@ -167,6 +154,11 @@ class CommandSubject:
 
     def release(self) -> None:
         """A command runs from its start."""
+
+    def interrupt(self) -> None:
+        """SIGINT to its process group, as a terminal sends it."""
+        if self._process is not None and self._process.poll() is None:
+            _signal_group(self._process.pid, signal.SIGINT)
 
     @property
     def ended(self) -> bool:

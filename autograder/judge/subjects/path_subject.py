@@ -11,6 +11,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from autograder.judge.bench.wire import JudgeFailed
+from autograder.judge.subjects.subject import InOwnProcesses
 from autograder.kit.evidence import REPORTS
 from autograder.messages import workspaces
 from autograder.messages.checks import Collect, FromNotebook, Sources
@@ -21,7 +22,6 @@ from autograder.workspaces.sources.collecting import MAX_BYTES, MAX_FILES, BadSo
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from autograder.judge.bench.own_endpoints import Endpoint
     from autograder.judge.bench.recorder import Recorder
 
 STOP_LIMIT = 15.0
@@ -33,16 +33,12 @@ MAX_TEXT = 4_000
 """Characters that are kept of one line."""
 
 
-class PathSubject:
+class PathSubject(InOwnProcesses):
     """Implements :class:`autograder.judge.subjects.subject.Subject` on the grader's side.
 
     Attributes:
         trouble: Why nothing can be said about what was submitted, where the grader's side failed; else empty.
     """
-
-    shares_participant = False
-    keeper = ""
-    marker = None
 
     def __init__(self, notebook: Lines, exercise: str, socket_path: str) -> None:
         """Take over a conversation.
@@ -88,21 +84,13 @@ class PathSubject:
         self._ready.wait()
         self._check()
 
-    def renew(self) -> None:
-        """Each run is a process of its own, with a participant of its own."""
-
-    def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
-        """Each run has a participant of its own, which has met nobody: it cannot know what is gone."""
-        del there, gone
-        return True
-
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
         """Let it be built, where it is not yet, and run.
 
         Raises:
             JudgeFailed: The grader's side is gone.
         """
-        del arguments, options
+        del options
         self._run += 1
         self._recorder = recorder
         self._end = recorder.end_of_this_part()
@@ -110,10 +98,14 @@ class PathSubject:
         self._stopped.clear()
         self._built.clear()
         self._began = time.monotonic()
-        self._say(workspaces.Start(self._run))
+        self._say(workspaces.Start(self._run, tuple(map(str, arguments))))
 
     def release(self) -> None:
         """A program runs from its start."""
+
+    def interrupt(self) -> None:
+        """Let Ctrl-C be pressed on the grader's side."""
+        self._say(workspaces.Interrupt(self._run))
 
     @property
     def ended(self) -> bool:

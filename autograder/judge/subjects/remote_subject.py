@@ -93,14 +93,18 @@ class RemoteSubject:
         self._marker, self._ended = None, False
         self._stopped.clear()
         fresh, self._fresh = self._fresh, False
-        hurry, spare = options.pop("hurry", 1.0), options.pop("spare", 0.0)
-        self._tell(checks.Start(self._run, fresh, list(arguments), options, hurry, spare))
+        sleep_factor, spare = options.pop("sleep_factor", 1.0), options.pop("spare", 0.0)
+        self._tell(checks.Start(self._run, fresh, list(arguments), options, sleep_factor, spare))
         if self._is_class and not recorder.wait(
             lambda: self._marker is not None or self.ended, CONSTRUCT_LIMIT
         ):
             recorder.record("stack", "subject", text=self.stack())
             recorder.record("subject", "never_constructed")
             self._ended = True
+
+    def interrupt(self) -> None:
+        """Let the notebook press Ctrl-C at the process of a path; what runs in the kernel goes on."""
+        self._tell(checks.Interrupt(self._run))
 
     def release(self) -> None:
         """Let the made node spin."""

@@ -48,6 +48,10 @@ class Subject(Protocol):
         """Let a held run spin."""
         ...
 
+    def interrupt(self) -> None:
+        """Ctrl-C, as a terminal sends it. What ends by that has ended by itself."""
+        ...
+
     @property
     def ended(self) -> bool:
         """Whether this run has ended by itself."""
@@ -68,6 +72,22 @@ class Subject(Protocol):
     def stop(self) -> None:
         """End the run, whatever it takes. Afterwards nothing of it lives."""
         ...
+
+
+class InOwnProcesses:
+    """What subjects have in common of which each run is a process of its own, with a ROS participant of its own."""
+
+    shares_participant = False
+    keeper = ""
+    marker = None
+
+    def renew(self) -> None:
+        """The next run has a participant of its own in any case."""
+
+    def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
+        """A participant of its own has met nobody: it cannot know what is gone."""
+        del there, gone
+        return True
 
 
 class CannotStart(RuntimeError):

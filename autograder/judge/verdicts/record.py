@@ -10,6 +10,7 @@ from autograder.judge.verdicts.trial import look
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.launch_report import processes
 from autograder.kit.model import Exercise, Look
+from autograder.kit.runners import RunsPrograms
 from autograder.kit.workspace_report import report_of
 
 if TYPE_CHECKING:
@@ -55,16 +56,25 @@ def as_evidence(recorded: Reference) -> Evidence:
 def _interface(exercise: Exercise, subject: Subject, domain_id: int) -> dict[str, dict[str, str]]:
     bench = TestBench(subject, domain_id, Reference(exercise.id, {}), Look.FAST, Random(SEED))
     try:
-        bench.part("interface")
-        bench.start(*exercise.sample_arguments)
-        if exercise.runner:
-            # A workspace is built first, and shows its face only then.
-            bench.wait_until(_is_at_work, exercise.limit)
-        found = bench.await_any_endpoint(exercise.roles)
+        found: dict[str, dict[str, str]] = {}
+        for program in _programs(exercise):
+            bench.part("interface")
+            bench.start(*program, *exercise.sample_arguments)
+            if exercise.runner:
+                # A workspace is built first, and shows its face only then.
+                bench.wait_until(_is_at_work, exercise.limit)
+            shown = bench.await_any_endpoint(exercise.roles)
+            found |= {role: shown[role] for role in shown if shown[role] or role not in found}
         # Several programs are not all there at once: only what was waited for is sure to be the same each time.
         return {role: found[role] for role in exercise.roles} if exercise.runner else found
     finally:
         bench.close()
+
+
+def _programs(exercise: Exercise) -> list[tuple[str, ...]]:
+    """What says which program is meant, once for each; a single time nothing where there is but one subject."""
+    runner = exercise.runner
+    return [(name,) for name in runner.programs] if isinstance(runner, RunsPrograms) else [()]
 
 
 def _is_at_work(evidence: Evidence) -> bool:

@@ -6,6 +6,7 @@ times, node names made up by chance, the order of log lines between two channels
 
 from __future__ import annotations
 
+import hashlib
 import json
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -46,6 +47,19 @@ def load(exercise_id: str) -> Reference:
         raise NoReference(
             f"{file} is not a reference output ({error}): run `autograder record {exercise_id}`"
         ) from error
+
+
+def digest(exercise_id: str) -> str:
+    """The SHA-256 of a reference output as it lies on the disk.
+
+    Raises:
+        NoReference: It does not exist.
+    """
+    file = reference_path(exercise_id)
+    try:
+        return hashlib.sha256(file.read_bytes()).hexdigest()
+    except OSError as error:
+        raise NoReference(f"{file} cannot be read: run `autograder record {exercise_id}`") from error
 
 
 def parse(data: Mapping[str, Any]) -> Reference:

@@ -37,9 +37,22 @@ class Seen:
     doubtful: bool
 
 
+@dataclass(frozen=True)
+class Checked:
+    """What a check brought.
+
+    Attributes:
+        verdict: What the judge found.
+        evidence: What that follows from.
+    """
+
+    verdict: Verdict
+    evidence: Evidence
+
+
 def check(
     exercise: Exercise, subject: Subject, reference: Reference, *, seed: str, domain_id: int
-) -> Verdict:
+) -> Checked:
     """Judge a subject.
 
     A fast pass counts; what fails fast is looked at again in real time, unless the evidence proves the failure whatever
@@ -48,18 +61,28 @@ def check(
     began = time.monotonic()
     subject.begin(domain_id)
     seen = look(exercise, subject, reference, Look.FAST, seed=seed, domain_id=domain_id)
+    evidence = seen.evidence
     try:
         with limited():
-            verdict = judge(exercise, seen.evidence, seed)
+            verdict = judge(exercise, evidence, seed)
             again = exercise.second_look and (seen.doubtful or not verdict.passed)
-            again = again and not _is_certain(exercise, seen.evidence)
+            again = again and not _is_certain(exercise, evidence)
         if again:
-            with_both = _look_again(exercise, subject, reference, seen, seed=seed, domain_id=domain_id)
+            evidence = _look_again(exercise, subject, reference, seen, seed=seed, domain_id=domain_id)
             with limited():
-                verdict = judge(exercise, with_both, seed)
+                verdict = judge(exercise, evidence, seed)
     except Undecided:
         verdict = undecidable(exercise, seed)
-    return replace(verdict, seconds=round(time.monotonic() - began, 3))
+    return Checked(replace(verdict, seconds=round(time.monotonic() - began, 3)), evidence)
+
+
+def decide(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
+    """The verdict that follows from evidence that is there already, within the judge's limit."""
+    try:
+        with limited():
+            return judge(exercise, evidence, seed)
+    except Undecided:
+        return undecidable(exercise, seed)
 
 
 def _look_again(

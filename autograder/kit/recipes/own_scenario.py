@@ -1,4 +1,4 @@
-"""A subject for which the exercise writes its own scenario: the recipe has the ladder of common mistakes around it."""
+"""Subjects for which the exercise writes its own scenario: the recipe has the ladder of common mistakes around it."""
 
 from __future__ import annotations
 
@@ -66,3 +66,28 @@ class OwnScenario:
             OWN_LATE,
             *common.NOTHING_THERE,
         )
+
+
+class OwnLadder:
+    """The recipe for a subject without an endpoint: the exercise says which common mistakes it may show, too.
+
+    Its view is all that was seen.
+
+    Args:
+        scenario: Drives the bench.
+        ladder: The common mistakes, most telling first, with the places of the exercise's own among them.
+    """
+
+    roles = ()
+
+    def __init__(self, scenario: Callable[[Bench], None], *ladder: Mistake) -> None:
+        self.scenario = scenario
+        self.ladder = ladder
+
+    def seen(self, evidence: Evidence) -> Evidence:
+        """What was seen of the subject."""
+        return evidence
+
+    def expected(self, evidence: Evidence) -> Evidence:
+        """The same: nothing is recorded of a subject without an endpoint."""
+        return evidence

@@ -259,6 +259,7 @@ class Calls:
             common.endpoint_name("client"),
             common.message_type("client"),
             *OTHER_SLIPS,
+            common.NOT_BEGUN,
             common.usage_message(),
             Mistake("waits_forever", calls_seen.waits_for_nobody, certain=True),
             Mistake("waits_forever", calls_seen.waits_forever),

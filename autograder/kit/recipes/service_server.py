@@ -85,12 +85,15 @@ class Server:
     def all_right(self, calls: Sequence[Event], objection: Objection, expected: str) -> Finding:
         """Whether these calls were made and each was answered as it should be.
 
+        Where two servers share the name, chance decides which of them answers a call. So one wrong answer counts
+        against all calls: each of them could have had it.
+
         Args:
             calls: Some of :attr:`asked`.
             objection: What is wrong about one answer.
             expected: What is expected of all of them, in words.
         """
-        wrong = self.objections(calls, objection)
+        wrong = self.objections(self.asked if self.count > 1 else calls, objection)
         right = f"{len(calls)} right" if calls else "not asked any more" if self.asked else "not asked"
         return Finding(bool(calls) and not wrong, expected, wrong[0] if wrong else right)
 

@@ -35,7 +35,7 @@ _NAME = "ros2-course-autograder"
 
 
 class GivenUp(RuntimeError):
-    """Whoever wanted an entry does not want it any more."""
+    """The entry is not needed any more: whoever asked for it has given up."""
 
 
 @dataclass(frozen=True)

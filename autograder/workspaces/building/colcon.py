@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.workspaces.building import cache, client
+from autograder.workspaces.building.alone import or_alone
 from autograder.workspaces.building.failures import telling_line
 from autograder.workspaces.building.result import Build
 from autograder.workspaces.running.own_session import OwnSession
@@ -40,12 +41,15 @@ def build(workspace: Path, targets: Targets | None = None) -> Build:
 
     Args:
         workspace: The folder that holds ``src``.
-        targets: Which packages are needed; they are built with what they depend on. None for all.
+        targets: Which packages are needed; they are built with what they depend on, or without it where only that
+            fails. None for all.
     """
-    began = time.monotonic()
     found = look(workspace)
-    if found.trouble:
-        return found
+    return found if found.trouble else or_alone(found, targets, lambda there: _build(there, targets))
+
+
+def _build(found: Build, targets: Targets | None) -> Build:
+    began = time.monotonic()
     chosen, found = choose(found, targets)
     if found.trouble:
         return found

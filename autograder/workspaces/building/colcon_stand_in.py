@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from autograder.workspaces.building.result import Build, Targets
 
-SELECT, UP_TO = "--packages-select", "--packages-up-to"
+UP_TO = "--packages-up-to"
 
 
 def main(arguments: Sequence[str]) -> int:

@@ -20,8 +20,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.workspaces.building import artefacts, cache
+from autograder.workspaces.building.alone import or_alone
 from autograder.workspaces.building.colcon import choose, command, failed
-from autograder.workspaces.grading.jobs import BUILD_SECONDS
+from autograder.workspaces.grading.jobs import BUILD_SECONDS, BuildJob
 from autograder.workspaces.running.plans import course_interfaces
 from autograder.workspaces.sources.interface_packages import DEFINITIONS, holds_only_interfaces, simplify
 from autograder.workspaces.sources.packages import BadPackage, Package, key
@@ -108,6 +109,11 @@ class TrustedBuilds:
         Raises:
             BuildTookTooLong: It was ended for that.
         """
+        return or_alone(found, targets, lambda there: self._build(there, targets, name, cancelled))
+
+    def _build(
+        self, found: Build, targets: Targets | None, name: str, cancelled: Callable[[], bool]
+    ) -> Build:
         began = time.monotonic()
         chosen, found = choose(found, targets)
         if found.trouble:
@@ -183,7 +189,8 @@ class TrustedBuilds:
         words = command(seen, place, ONLY_PYTHON if light else ())
         hidden = _hidden_from(staged.packages)
         try:
-            return self._jobs.build(name, entry, words, ONLY_FAST_DDS if light else {}, cancelled, hidden)
+            variables = ONLY_FAST_DDS if light else {}
+            return self._jobs.build(BuildJob(name, entry, words, variables, cancelled, hidden))
         finally:
             shutil.rmtree(entry / "src", ignore_errors=True)
 

@@ -8,6 +8,7 @@ import os
 import select
 import shlex
 import shutil
+import signal
 import tempfile
 import time
 from dataclasses import replace
@@ -21,11 +22,13 @@ from autograder.boxes.limits import Limits
 from autograder.boxes.mounts import HOME, WORK
 from autograder.boxes.sandbox import Bind, Enclosure
 from autograder.workspaces.grading.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, Built
+from autograder.workspaces.running.processes import descendants
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from autograder.boxes.boxed_command import Running
+    from autograder.workspaces.grading.jobs import BuildJob, ProgramJob
 
 BUILD_LIMITS = Limits(
     cpu_seconds=300.0,
@@ -42,7 +45,7 @@ PROGRAM_LIMITS = Limits(cpu_seconds=200.0, memory_bytes=1_500_000_000, processes
 LOOK_EVERY = 0.5
 """Seconds between two questions whether a build is still wanted."""
 _ITS_TIME = 1e6
-"""Seconds: a program runs as long as the judge wants it to."""
+"""Seconds, more than any check lasts: a program runs as long as the judge wants it to."""
 
 
 class BoxedJobs:
@@ -74,24 +77,15 @@ class BoxedJobs:
         del sources
         return WORK
 
-    def build(
-        self,
-        name: str,
-        entry: Path,
-        command: Sequence[str],
-        variables: Mapping[str, str],
-        cancelled: Callable[[], bool],
-        hidden: Sequence[Path],
-    ) -> Built:
+    def build(self, job: BuildJob) -> Built:
         """Build in an enclosure of its own; pack what is there with nothing of the student's alive any more.
 
         One that needs more memory than most do is built again, when no other of these is.
         """
-        built, needs_room = self._build(name, entry, command, variables, cancelled, hidden, BUILD_LIMITS)
+        built, needs_room = self._build(job, BUILD_LIMITS)
         if needs_room:
             with self._turn():
-                alone = replace(BUILD_LIMITS, beside=False)
-                built, _ = self._build(name, entry, command, variables, cancelled, hidden, alone)
+                built, _ = self._build(job, replace(BUILD_LIMITS, beside=False))
         return built
 
     @contextlib.contextmanager
@@ -104,21 +98,12 @@ class BoxedJobs:
         finally:
             os.close(folder)
 
-    def _build(
-        self,
-        name: str,
-        entry: Path,
-        command: Sequence[str],
-        variables: Mapping[str, str],
-        cancelled: Callable[[], bool],
-        hidden: Sequence[Path],
-        limits: Limits,
-    ) -> tuple[Built, bool]:
+    def _build(self, job: BuildJob, limits: Limits) -> tuple[Built, bool]:
         """The build, and whether it came to the end of its share of memory."""
-        place = self.place(name, entry)
+        place = self.place(job.name, job.entry)
         folder = Path(tempfile.mkdtemp(prefix="build-", dir=self._folder))
-        binds = [Bind(entry / "src", place / "src"), *_covers(hidden, folder)]
-        environment = box_environment({"COLCON_DEFAULTS_FILE": os.devnull, **variables})
+        binds = [Bind(job.entry / "src", place / "src"), *_covers(job.hidden, folder)]
+        environment = box_environment({"COLCON_DEFAULTS_FILE": os.devnull, **job.variables})
         guard = BoxGuard(limits)
         try:
             with Enclosure(
@@ -126,11 +111,11 @@ class BoxedJobs:
                 scratch_bytes=limits.scratch_bytes, scratch_inodes=limits.scratch_files,
             ) as enclosure:  # fmt: skip
                 with enclosure.start(
-                    command, binds=binds, environment=environment, cwd=HOME,
+                    job.command, binds=binds, environment=environment, cwd=HOME,
                     output_bytes=MAX_LOG_BYTES,
                 ) as running:  # fmt: skip
                     guard.watch(running.pid)
-                    returncode, late = _wait(running, lambda: cancelled() or bool(guard.exceeded()))
+                    returncode, late = _wait(running, lambda: job.cancelled() or bool(guard.exceeded()))
                     output = running.said
                 if returncode != 0:
                     needs_room = limits.beside and guard.reason() is Ended.OUT_OF_MEMORY
@@ -145,22 +130,14 @@ class BoxedJobs:
             guard.close()
             shutil.rmtree(folder, ignore_errors=True)
 
-    def start(
-        self,
-        command: Sequence[str],
-        environment: Mapping[str, str],
-        *,
-        sources: Path,
-        entries: Mapping[str, Path],
-        hidden: Sequence[Path],
-    ) -> BoxedProgram:
+    def start(self, job: ProgramJob) -> BoxedProgram:
         """Start it in a box of that network."""
-        binds = [Bind(sources, WORK)]
-        binds += [Bind(entry / "install", HOME / name / "install") for name, entry in entries.items()]
+        binds = [Bind(job.sources, WORK)]
+        binds += [Bind(entry / "install", HOME / name / "install") for name, entry in job.entries.items()]
         running = self._network.start(
-            command,
-            binds=[*binds, *_covers(hidden, self._folder)],
-            environment=environment,
+            job.command,
+            binds=[*binds, *_covers(job.hidden, self._folder)],
+            environment=job.environment,
             cwd=WORK,
             scratch=False,
         )
@@ -195,6 +172,12 @@ class BoxedProgram:
     def exit_code(self) -> int | None:
         """Of the first process of the box."""
         return self._code
+
+    def interrupt(self) -> None:
+        """Ctrl-C at everything below the first process of the box, which only waits for the others."""
+        for pid in descendants(self.pid):
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGINT)
 
     def end(self) -> None:
         """Kill the box."""

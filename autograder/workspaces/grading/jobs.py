@@ -1,4 +1,4 @@
-"""What a grader's trusted side lets others do for it: build sources of a student's, run what was built.
+"""The jobs that the grader's trusted side has done for it: build a student's sources, run what was built.
 
 Whatever a job does, it only ever yields bytes: output, and the files that it left in its install folder. Nothing of
 it is executed or unpickled by who has asked for it.
@@ -20,6 +20,47 @@ MAX_LOG_BYTES = 1_000_000
 """Output that is kept of a build."""
 MAX_ARCHIVE_BYTES = 64_000_000
 """All that a build may have made, as an archive; an interface package has 1.3 million."""
+
+
+@dataclass(frozen=True)
+class BuildJob:
+    """A build that is wanted.
+
+    Attributes:
+        name: See :meth:`Jobs.place`.
+        entry: Holds ``src``, which the build may read. All that it writes is gone afterwards, but for what is in the
+            archive: ``install`` of the place.
+        command: Names everything as it is seen from the job.
+        variables: More variables of its environment.
+        cancelled: Asked now and then; the build is ended when it says so.
+        hidden: Files and folders of the environment that the build must not find.
+    """
+
+    name: str
+    entry: Path
+    command: Sequence[str]
+    variables: Mapping[str, str]
+    cancelled: Callable[[], bool]
+    hidden: Sequence[Path]
+
+
+@dataclass(frozen=True)
+class ProgramJob:
+    """A program that is to run.
+
+    Attributes:
+        command: Names everything as it is seen from the job.
+        environment: Its whole environment.
+        sources: What was submitted; seen at :meth:`Jobs.tree`, which is where the program starts.
+        entries: Builds that it may read, by the names of their places.
+        hidden: Files and folders of the environment that the program must not find.
+    """
+
+    command: Sequence[str]
+    environment: Mapping[str, str]
+    sources: Path
+    entries: Mapping[str, Path]
+    hidden: Sequence[Path]
 
 
 @dataclass(frozen=True)
@@ -58,13 +99,17 @@ class Program(Protocol):
         """How it ended, once it has; negative for a signal."""
         ...
 
+    def interrupt(self) -> None:
+        """Ctrl-C, as a terminal sends it: to the program and to what it has started."""
+        ...
+
     def end(self) -> None:
         """Kill it and all that it has started; may be called twice."""
         ...
 
 
 class Jobs(Protocol):
-    """Somebody who builds and runs. For one submission."""
+    """Builds and runs for one submission."""
 
     @property
     def environment(self) -> Mapping[str, str]:
@@ -84,44 +129,10 @@ class Jobs(Protocol):
         """Where programs see the folder with what was submitted."""
         ...
 
-    def build(
-        self,
-        name: str,
-        entry: Path,
-        command: Sequence[str],
-        variables: Mapping[str, str],
-        cancelled: Callable[[], bool],
-        hidden: Sequence[Path],
-    ) -> Built:
-        """Run colcon.
-
-        Args:
-            name: See :meth:`place`.
-            entry: Holds ``src``, which the build may read. All that it writes is gone afterwards, but for what is
-                in the archive: ``install`` of the place.
-            command: Names everything as it is seen from the job.
-            variables: More variables of its environment.
-            cancelled: Asked now and then; the build is ended when it says so.
-            hidden: Files and folders of the environment that the build must not find.
-        """
+    def build(self, job: BuildJob) -> Built:
+        """Run colcon."""
         ...
 
-    def start(
-        self,
-        command: Sequence[str],
-        environment: Mapping[str, str],
-        *,
-        sources: Path,
-        entries: Mapping[str, Path],
-        hidden: Sequence[Path],
-    ) -> Program:
-        """Run a program where the judge can see it on the wire, and the notebook cannot.
-
-        Args:
-            command: Names everything as it is seen from the job.
-            environment: Its whole environment.
-            sources: What was submitted; seen at :meth:`tree`, which is where it starts.
-            entries: Builds that it may read, by the names of their places.
-            hidden: See :meth:`build`.
-        """
+    def start(self, job: ProgramJob) -> Program:
+        """Run a program where the judge can see it on the wire, and the notebook cannot."""
         ...

@@ -16,8 +16,10 @@ from autograder.workspaces.grading.jobs import BUILD_SECONDS, MAX_LOG_BYTES, Bui
 from autograder.workspaces.running.own_session import OwnSession
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
+
+    from autograder.workspaces.grading.jobs import BuildJob, ProgramJob
 
 
 class PlainJobs:
@@ -32,7 +34,7 @@ class PlainJobs:
 
     @property
     def environment(self) -> Mapping[str, str]:
-        """What was given."""
+        """The environment that this was made with."""
         return self._environment
 
     def place(self, name: str, entry: Path) -> Path:
@@ -44,21 +46,12 @@ class PlainJobs:
         """The sources themselves."""
         return sources
 
-    def build(
-        self,
-        name: str,
-        entry: Path,
-        command: Sequence[str],
-        variables: Mapping[str, str],
-        cancelled: Callable[[], bool],
-        hidden: Sequence[Path],
-    ) -> Built:
+    def build(self, job: BuildJob) -> Built:
         """Build in the entry, pack what came of it and remove that again."""
-        del name, hidden
-        environment = {**self._environment, "COLCON_DEFAULTS_FILE": os.devnull, **variables}
-        program = PlainProgram(command, environment, entry)
+        environment = {**self._environment, "COLCON_DEFAULTS_FILE": os.devnull, **job.variables}
+        program = PlainProgram(job.command, environment, job.entry)
         try:
-            output, late = program.collect(BUILD_SECONDS, MAX_LOG_BYTES, cancelled)
+            output, late = program.collect(BUILD_SECONDS, MAX_LOG_BYTES, job.cancelled)
             code = program.exit_code()
         finally:
             program.end()
@@ -66,23 +59,14 @@ class PlainJobs:
             return Built(code, output, late=late)
         archive = io.BytesIO()
         with tarfile.open(fileobj=archive, mode="w") as tar:
-            tar.add(entry / "install", arcname=".")
+            tar.add(job.entry / "install", arcname=".")
         for made in ("install", "build", "log"):
-            subprocess.run(["rm", "-rf", str(entry / made)], check=True)
+            subprocess.run(["rm", "-rf", str(job.entry / made)], check=True)
         return Built(0, output, archive.getvalue())
 
-    def start(
-        self,
-        command: Sequence[str],
-        environment: Mapping[str, str],
-        *,
-        sources: Path,
-        entries: Mapping[str, Path],
-        hidden: Sequence[Path],
-    ) -> PlainProgram:
+    def start(self, job: ProgramJob) -> PlainProgram:
         """Start it as a process."""
-        del entries, hidden
-        return PlainProgram(command, environment, sources)
+        return PlainProgram(job.command, job.environment, job.sources)
 
 
 class PlainProgram(OwnSession):

@@ -29,7 +29,6 @@ from autograder.workspaces.grading.session import Session
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-    from types import TracebackType
 
     from autograder.workspaces.grading.jobs import Jobs
 
@@ -79,9 +78,7 @@ class WorkspaceService:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:

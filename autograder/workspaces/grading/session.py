@@ -11,6 +11,7 @@ from autograder.kit.runners import Launches, ServesInterface
 from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, NotUnderstood
 from autograder.workspaces.building.colcon import look
+from autograder.workspaces.grading.jobs import ProgramJob
 from autograder.workspaces.running.launching import watch_processes
 from autograder.workspaces.running.plans import (
     course_interfaces,
@@ -28,7 +29,6 @@ from autograder.workspaces.sources.finding import WORKSPACE, workspace_of
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
-    from types import TracebackType
 
     from autograder.kit.runners import Runner
     from autograder.messages.lines import Lines
@@ -69,9 +69,7 @@ class Session:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._stop()
 
     def serve(self) -> None:
@@ -87,9 +85,12 @@ class Session:
         variables = {**self._variables, "ROS_DOMAIN_ID": str(first.domain)}
         while True:
             order: messages.ToService = self._lines.hear(messages.ToService)
+            if isinstance(order, messages.Interrupt):
+                self._interrupt(order.run)
+                continue
             self._stop()
             if isinstance(order, messages.Start):
-                self._run = _Run(self, runner, first.path, trouble, order.run, variables)
+                self._run = _Run(self, runner, first.path, trouble, order, variables)
             else:
                 self._lines.say(messages.Stopped(order.run))
 
@@ -107,6 +108,10 @@ class Session:
             return "a file has not the form of one"
         return ""
 
+    def _interrupt(self, number: int) -> None:
+        if self._run is not None and self._run.number == number:
+            self._run.interrupt()
+
     def _stop(self) -> None:
         run, self._run = self._run, None
         if run is not None:
@@ -122,14 +127,14 @@ class _Run(threading.Thread):
         runner: Runner | None,
         path: str,
         trouble: str,
-        number: int,
+        order: messages.Start,
         variables: Mapping[str, str],
     ) -> None:
         super().__init__(daemon=True)
         self._lines, self._jobs, self._builds = session._lines, session._jobs, session._builds
         self._tree = session._tree
         self._runner, self._path, self._trouble = runner, path, trouble
-        self._number = number
+        self.number, self._arguments = order.run, order.arguments
         self._variables = dict(variables)
         self._cancelled = threading.Event()
         self._program: Program | None = None
@@ -140,6 +145,12 @@ class _Run(threading.Thread):
         """Kill what runs, and wait until nothing of it is left."""
         self._cancelled.set()
         self.join()
+
+    def interrupt(self) -> None:
+        """Press Ctrl-C at what runs, where it runs."""
+        with self._changing:
+            if self._program is not None:
+                self._program.interrupt()
 
     def run(self) -> None:
         """Look, build, report, run, tell."""
@@ -159,7 +170,7 @@ class _Run(threading.Thread):
         elif isinstance(self._runner, Launches):
             self._launch(self._tree / self._path)
         else:
-            self._workspace(plan_for(self._runner))
+            self._workspace(plan_for(self._runner, self._arguments))
 
     def _workspace(self, plan: Plan) -> None:
         found = look(self._tree / self._path)
@@ -168,7 +179,7 @@ class _Run(threading.Thread):
         if not found.trouble:
             made = self._builds.build(found, plan.targets, name=WORKSPACE, cancelled=self._cancelled.is_set)
         missing = plan.missing(made) if made.ok else ""
-        self._lines.say(messages.BuildEnded(self._number))
+        self._lines.say(messages.BuildEnded(self.number))
         self._report(built_line(made, missing))
         if not made.ok or missing:
             self._exited(1)
@@ -177,7 +188,7 @@ class _Run(threading.Thread):
 
     def _launch(self, file: Path) -> None:
         if not file.is_file():
-            self._lines.say(messages.Output(self._number, f"there is no launch file {self._path}"))
+            self._lines.say(messages.Output(self.number, f"there is no launch file {self._path}"))
             self._exited(1)
             return
         entries = {COURSE: self._course_build()}
@@ -187,7 +198,7 @@ class _Run(threading.Thread):
             made = self._builds.build(
                 look(workspace), launch_targets(file), name=WORKSPACE, cancelled=self._cancelled.is_set
             )
-            self._lines.say(messages.BuildEnded(self._number))
+            self._lines.say(messages.BuildEnded(self.number))
             self._report(built_line(made))
             if not made.ok:
                 self._exited(1)
@@ -233,13 +244,10 @@ class _Run(threading.Thread):
     ) -> None:
         """Run a program to its end, or until nobody wants it any more."""
         folders = {name: made.install.parent for name, made in entries.items() if made.install is not None}
-        program = self._jobs.start(
-            command,
-            {**environment, **self._variables},
-            sources=self._tree,
-            entries=folders,
-            hidden=self._hidden(),
-        )
+        variables = {**environment, **self._variables}
+        program = self._jobs.start(ProgramJob(command, variables, self._tree, folders, self._hidden()))
+        with self._changing:
+            self._program = program
         ended = threading.Event()
         watcher = threading.Thread(
             target=watch_processes,
@@ -254,6 +262,8 @@ class _Run(threading.Thread):
             ended.set()
             if watch:
                 watcher.join()
+            with self._changing:
+                self._program = None
             program.end()
         if not self._cancelled.is_set():
             self._exited(program.exit_code())
@@ -273,11 +283,11 @@ class _Run(threading.Thread):
 
     def _say_output(self, line: bytes) -> None:
         text = line[:MAX_LINE].decode("utf-8", "replace").rstrip("\r")
-        self._lines.say(messages.Output(self._number, text))
+        self._lines.say(messages.Output(self.number, text))
 
     def _report(self, line: str) -> None:
         text = line.replace(f"{self._tree}/", "").replace(str(self._tree), ".")
-        self._lines.say(messages.ReportLine(self._number, text))
+        self._lines.say(messages.ReportLine(self.number, text))
 
     def _exited(self, code: int | None) -> None:
-        self._lines.say(messages.Exited(self._number, code))
+        self._lines.say(messages.Exited(self.number, code))

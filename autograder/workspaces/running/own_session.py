@@ -15,8 +15,6 @@ from autograder.workspaces.running.processes import descendants, started_at
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
-    from types import TracebackType
-
 LOOK_EVERY = 0.5
 """Seconds between two questions whether a program is still wanted."""
 
@@ -47,9 +45,7 @@ class OwnSession:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.end()
         self.output.close()
 
@@ -109,6 +105,11 @@ class OwnSession:
         """Its exit code, once it has ended."""
         return self._process.wait()
 
+    def interrupt(self) -> None:
+        """Ctrl-C, as a terminal sends it: to the process and to all of its group."""
+        if self.exit_code() is None:
+            _signal(-self.pid, signal.SIGINT)
+
     def end(self, polite: float = 0.0) -> None:
         """Kill it and all that it has started; may be called twice.
 
@@ -119,7 +120,7 @@ class OwnSession:
         """
         family = self._below()
         if polite > 0.0 and self.exit_code() is None:
-            _signal(-self.pid, signal.SIGINT)
+            self.interrupt()
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self._process.wait(timeout=polite)
             family |= self._below()

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder import course
-from autograder.kit.runners import RunsProgram, ServesInterface
+from autograder.kit.runners import RunsProgram, RunsPrograms, ServesInterface
 from autograder.workspaces.sources.finding import WORKSPACE
 
 if TYPE_CHECKING:
@@ -41,14 +41,23 @@ class Plan:
     command: Callable[[Build], Sequence[str]]
 
 
-def plan_for(runner: RunsProgram | ServesInterface) -> Plan:
-    """What is needed of a workspace for what an exercise runs in it."""
-    return _program_plan(runner) if isinstance(runner, RunsProgram) else _interface_plan(runner)
+def plan_for(runner: RunsProgram | RunsPrograms | ServesInterface, arguments: Sequence[str] = ()) -> Plan:
+    """What is needed of a workspace for what an exercise runs in it.
+
+    Args:
+        runner: What the exercise runs.
+        arguments: Of this start; where there are several programs, the first one says which.
+    """
+    match runner:
+        case RunsProgram(package=package, program=program):
+            return _program_plan(package, program, arguments)
+        case RunsPrograms(package=package):
+            return _program_plan(package, arguments[0], arguments[1:])
+        case ServesInterface():
+            return _interface_plan(runner)
 
 
-def _program_plan(runner: RunsProgram) -> Plan:
-    package, program = runner.package, runner.program
-
+def _program_plan(package: str, program: str, arguments: Sequence[str]) -> Plan:
     def missing(made: Build) -> str:
         programs = [prefix / "lib" / package / program for prefix in made.prefixes if prefix.name == package]
         if not programs:
@@ -58,7 +67,7 @@ def _program_plan(runner: RunsProgram) -> Plan:
     return Plan(
         targets=lambda found: [known.name for known in found.packages if known.name == package],
         missing=missing,
-        command=lambda _: [ros2(), "run", package, program],
+        command=lambda _: [ros2(), "run", package, program, *arguments],
     )
 
 

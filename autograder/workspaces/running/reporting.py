@@ -34,7 +34,7 @@ def built_line(made: Build, missing: str = "") -> str:
 
 
 def no_sources_line(trouble: str) -> str:
-    """What is to be said where there is nothing that could be built.
+    """The report where there is nothing that could be built.
 
     Args:
         trouble: Why, for the student.
@@ -64,6 +64,8 @@ def _described(package: Package) -> PackageReport:
         package.programs,
         [_interface(package, file) for file in package.interface_files],
         package.dependencies,
+        tuple(file.as_posix() for file in package.modules),
+        package.commented,
     )
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import exercises
-from autograder.kit.runners import Launches
+from autograder.kit.runners import Launches, RunsPrograms
 from autograder.workspaces.building.colcon import build, look
 from autograder.workspaces.running.launching import launch
 from autograder.workspaces.running.plans import plan_for, ros2
@@ -29,15 +29,18 @@ if TYPE_CHECKING:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """``python -m autograder.workspaces EXERCISE PATH``, or ``EXERCISE -- COMMAND`` for a launch command."""
+    """``python -m autograder.workspaces EXERCISE PATH``, or ``EXERCISE -- COMMAND`` for a launch command.
+
+    Where an exercise is about several programs, the path is followed by the name of one.
+    """
     exercise = exercises.get(arguments[0])
     end_with_the_parent()
     if isinstance(exercise.runner, Launches):
         return _launch(arguments[1:])
-    if exercise.runner is None or len(arguments) != 2:
+    if exercise.runner is None or (len(arguments) > 2) != isinstance(exercise.runner, RunsPrograms):
         print(f"{exercise.id} takes no path: give it the class or function, or a command", file=sys.stderr)
         return 2
-    return run(plan_for(exercise.runner), Path(arguments[1]))
+    return run(plan_for(exercise.runner, arguments[2:]), Path(arguments[1]))
 
 
 def run(plan: Plan, workspace: Path) -> int:

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 WORKSPACE = "ros2_ws"
-"""What the course calls a workspace."""
+"""The name that workspaces have in the course."""
 PACKAGE_VARIABLE = "AUTOGRADER_ROBOT_PACKAGE"
 """Names the folder of the course's own package where a grader has put it within reach of a notebook."""
 

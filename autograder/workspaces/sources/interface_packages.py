@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 DEFINITIONS = (".msg", ".srv", ".action")
 _PROSE = ("LICENSE", "README.md", "README.rst", "CHANGELOG.rst")
-"""Files that are for people."""
+"""Files that only people read, and no build."""
 _FOR_PEOPLE = {"description", "maintainer", "author", "license", "url"}
-"""Elements of package.xml that are for people; what is needed of them is put back."""
+"""Elements of package.xml that only people read. Those that package.xml must have are put back with a fixed text."""
 
 
 def holds_only_interfaces(package: Package) -> bool:

@@ -53,10 +53,23 @@ class Package:
     dependencies: tuple[str, ...] = ()
 
     @property
+    def commented(self) -> tuple[str, ...]:
+        """What it would depend on, too, if the lines in the comments of its package.xml counted."""
+        comments = re2.findall(r"(?s)<!--(.*?)-->", _text(self.folder / "package.xml"))
+        line = r"<(?:\w*depend|member_of_group)\b[^>]*>\s*([^<\s]+)\s*</"
+        return tuple(name for comment in comments for name in re2.findall(line, comment))
+
+    @property
     def interface_files(self) -> tuple[Path, ...]:
         """Its .msg, .srv and .action files, as paths inside the package."""
         found = (file for kind in ("msg", "srv", "action") for file in self.folder.rglob(f"*.{kind}"))
         return tuple(sorted(file.relative_to(self.folder) for file in found if file.is_file()))
+
+    @property
+    def modules(self) -> tuple[Path, ...]:
+        """Its Python files, as paths inside the package, those nearest to its folder first."""
+        found = [file.relative_to(self.folder) for file in self.folder.rglob("*.py") if file.is_file()]
+        return tuple(sorted(found, key=lambda file: (len(file.parts), file)))
 
     @property
     def cmake_lists(self) -> str:

@@ -122,13 +122,14 @@ def nothing_stayed(evidence: Evidence) -> Finding:
 
 
 def by_the_launch(evidence: Evidence) -> Finding:
-    """Both programs were given a rule for the name; their code was left as it is."""
+    """Both programs were given a rule for the name, and there is one talker; their code was left as it is."""
     topic, _ = evidence.reference.only("publisher")
-    ends = _ends(evidence.main)
-    sides = [{process for role, name, process in ends if (role, name) == (side, topic)} for side in _SIDES]
+    sides = _programs(evidence.main, topic)
     given = {_lower(process.pid) for process in processes(evidence.main) if _is_given_a_rule(process, topic)}
     # Where an endpoint does not tell whose it is, any process that was given a rule may have it.
     told = all(side and (side <= given or (0 in side and given)) for side in sides)
+    if told and _talkers(evidence) > 1:
+        return Finding(False, "one talker", f"{_talkers(evidence)} talkers on {topic}")
     count = len(given & (sides[0] | sides[1]))
     seen = (
         f"{count} of the programs on {topic} were given a rule"
@@ -148,6 +149,19 @@ def _ends(part: Part) -> set[tuple[str, str, int]]:
         for survey in part.of("interface")
         for role, name, process in survey.data.get("ends", ())
     }
+
+
+def _programs(part: Part, topic: str) -> list[set[int]]:
+    """The processes that publish on a topic, and those that subscribe; 0 for one that is not known."""
+    return [
+        {process for role, name, process in _ends(part) if (role, name) == (side, topic)} for side in _SIDES
+    ]
+
+
+def _talkers(evidence: Evidence) -> int:
+    """How many programs publish under the new name. One more listener, under a name of its own, is nobody's harm."""
+    topic, _ = evidence.reference.only("publisher")
+    return len(_programs(evidence.main, topic)[0])
 
 
 def _lower(pid: int) -> int:
@@ -238,6 +252,17 @@ def someone_stayed(evidence: Evidence) -> Advice | None:
     )
 
 
+def started_twice(evidence: Evidence) -> Advice | None:
+    """More than one talker speaks under the new name."""
+    if _talkers(evidence) < 2:
+        return None
+    topic, _ = evidence.reference.only("publisher")
+    return Advice(
+        f"There are {_talkers(evidence)} talkers on {topic}: the launch file starts that program more than once.",
+        "Start the talker once. A listener hears every talker of its topic, and cannot tell them apart.",
+    )
+
+
 def one_node_only(evidence: Evidence) -> Advice | None:
     """Only one of the two programs runs."""
     publishers, subscriptions, _, _ = _roles(evidence)
@@ -316,6 +341,7 @@ EXERCISE = Exercise(
         *workspace.BUILD,
         Mistake("only_one_remapped", only_one_remapped, certain=True),
         Mistake("not_remapped", not_remapped, certain=True),
+        Mistake("started_twice", started_twice, certain=True),
         Mistake("renamed_in_code", renamed_in_code),
         Mistake("someone_stayed", someone_stayed, certain=True),
         *common.CRASHES,

@@ -192,11 +192,9 @@ def status_misreported(evidence: Evidence) -> Advice | None:
     claim = false_claim(honoured, refused)
     if claim is None:
         return None
-    of_canceled = claim in after_result(honoured)
-    ended = "The goal was canceled" if of_canceled else "The goal succeeded in spite of the request"
+    words, ended = claim
     return Advice(
-        f"{ended}, but your client said “{claim}”.",
-        "Compare result.status with GoalStatus.STATUS_CANCELED before you say so: a cancel is a request, "
-        "and the "
-        "server may refuse it.",
+        f"One goal of your client {ended}, but your client said of it “{words}”.",
+        "A cancel is a request, and the server may refuse it. So look at the status of the result, and say how the "
+        "goal really ended.",
     )

@@ -312,8 +312,8 @@ def reports_the_status(evidence: Evidence) -> Finding:
         return Finding(False, expected, f"“{said[-1]}”" if said else "nothing was said after the result")
     claim = false_claim(part, refused)
     if claim:
-        ended = "was canceled" if claim in said else "succeeded"
-        return Finding(False, expected, f"“{claim}” about a goal that {ended}")
+        words, ended = claim
+        return Finding(False, expected, f"“{words}” about a goal that {ended}")
     return Finding(True, expected, f"“{said[-1]}”")
 
 

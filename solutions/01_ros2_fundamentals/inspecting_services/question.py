@@ -12,10 +12,12 @@ import re2
 
 from autograder.kit import common_mistakes as common
 from autograder.kit import giving_up
+from autograder.kit.draft import OWN, OWN_LATE, Draft
 from autograder.kit.giving_up import LATENESS
 from autograder.kit.lateness import SOON, was_patient
 from autograder.kit.meant_errors import OTHER_SLIPS, meant
-from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Look, Mistake
+from autograder.kit.model import Advice, Bench, Finding, Look
+from autograder.kit.recipes.own_scenario import OwnLadder
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -24,8 +26,8 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
 
 ADDER = "my_robot_interfaces/srv/AddTwoInts"
+"""The type that the notebook shows. Others have it, and nobody is asked for it."""
 TEMPTING = {
-    ADDER: "/add_two_ints",
     "std_srvs/srv/SetBool": "/set_bool",
     "std_srvs/srv/Empty": "/empty",
     "std_srvs/srv/Trigger": "/trigger",
@@ -54,15 +56,17 @@ _WORDS = ("kitchen", "garage", "tower", "harbour", "meadow", "attic", "bridge", 
 def scenario(bench: Bench) -> None:
     """Three runs, in an order that is drawn: a late service, one of another type, and none at all."""
     random = bench.random
-    asked = random.sample(sorted(TEMPTING), 3)
-    runs = [(LATE, asked[0]), (OTHER, asked[1]), (ABSENT, asked[2])]
-    for name, type_name in random.sample(runs, len(runs)):
-        others = [other for other in random.sample(sorted(TEMPTING), len(TEMPTING)) if other != type_name]
-        misleading = {TEMPTING[type_name]: others[0], _name(random): others[0], _name(random): others[1]}
+    asked = random.sample(sorted(TEMPTING), len(TEMPTING))
+    for name, type_name in zip(random.sample((LATE, OTHER, ABSENT), 3), asked, strict=True):
+        another = random.choice([other for other in asked if other != type_name])
+        # The graph tells of services in the order of their names: the right one is neither the first nor the last.
+        first, right, last = sorted(_name(random) for _ in range(3))
+        # Of the lab's own type in each run, so that who always looks for that one is wrong in each.
+        misleading = {TEMPTING[type_name]: ADDER, first: ADDER, last: another}
         if name == ABSENT:
             unserved(bench, type_name, misleading)
         else:
-            served(bench, name, type_name, misleading, late=name == LATE)
+            served(bench, name, {right: type_name}, misleading)
 
 
 def unserved(bench: Bench, type_name: str, others: Mapping[str, str]) -> None:
@@ -77,9 +81,10 @@ def unserved(bench: Bench, type_name: str, others: Mapping[str, str]) -> None:
     bench.stop()
 
 
-def served(bench: Bench, name: str, type_name: str, others: Mapping[str, str], *, late: bool) -> None:
+def served(bench: Bench, name: str, service: Mapping[str, str], others: Mapping[str, str]) -> None:
     """One run in which there is one service of the type."""
-    right = _name(bench.random)
+    late = name == LATE
+    right, type_name = next(iter(service.items()))
     patience = round(bench.random.uniform(*(PATIENCE_IN_LATE if late else PATIENCE_ELSEWHERE[bench.look])), 2)
     bench.part(name, type=type_name, right=right, others=dict(others), patience_sec=patience)
     looks_for(bench, patience, lateness=LATENESS if late else 0.0)
@@ -158,36 +163,11 @@ def gave_up_at_once(part: Part) -> bool:
     return seen is None or part.ending.t < seen.t + IMPATIENT
 
 
-def finds_the_late_one(evidence: Evidence) -> Finding:
-    """It goes on looking until the service is there."""
-    return _found(evidence.part(LATE))
-
-
-def finds_the_other_type(evidence: Evidence) -> Finding:
-    """It looks for the type that it is given."""
-    return _found(evidence.part(OTHER))
-
-
 def _found(part: Part) -> Finding:
     expected = "the one service of the type that was asked for"
     if names_it(part):
         return Finding(True, expected, part.inputs["right"])
     return Finding(False, expected, ", ".join(named(part)) or _how_it_went(part))
-
-
-def says_that_there_is_none(evidence: Evidence) -> Finding:
-    """Without such a service it ends by itself and says so."""
-    part = evidence.part(ABSENT)
-    expected = "says so and ends by itself"
-    if not any(names_it(evidence.part(name)) for name in (LATE, OTHER)):
-        # What finds nothing anywhere has not shown that it looked.
-        return Finding(False, expected, "found no service in the other runs")
-    said = part.said()
-    if part.ending and said and any(_mentions(said[-1], name) for name in part.inputs["others"]):
-        return Finding(False, expected, f"named {', '.join(named(part))}")
-    wrong = giving_up.objection(part)
-    seen = "says again and again that it looks" if giving_up.goes_on_waiting(part) else "it did"
-    return Finding(not wrong, expected, wrong or seen)
 
 
 def no_limit(evidence: Evidence) -> str:
@@ -203,25 +183,68 @@ def _how_it_went(part: Part) -> str:
     return f"“{part.said()[-1]}”" if part.said() else "named none"
 
 
-# --- known mistakes ----------------------------------------------------------------------------------------
+# --- what is asked, and known mistakes ----------------------------------------------------------------------
+
+question = Draft(
+    "inspecting_services.question",
+    "Inspecting services · Find it by its type",
+    "Find the service of a given type on the graph, and name it.",
+    OwnLadder(
+        scenario,
+        *common.CRASHES,
+        OWN,
+        *OTHER_SLIPS,
+        common.usage_message(),
+        OWN_LATE,
+        *common.OTHER_CRASHES,
+        *common.NOTHING_THERE,
+    ),
+)
+question.asks("late", 4, "Finds a service that comes late", lambda evidence: _found(evidence.part(LATE)))
 
 
-def not_written(evidence: Evidence) -> Advice | None:
+@question.criterion("other", 3, "Finds a service of another type")
+def finds_another(seen: Evidence, _: Evidence) -> Finding:
+    """It finds the service that is there from the start, and not only because its first look happened to."""
+    found = _found(seen.part(OTHER))
+    if found.passed and gave_up_at_once(seen.part(LATE)):
+        return Finding(False, found.expected, "it looks once, and what a first look finds is chance")
+    return found
+
+
+@question.criterion("none", 3, "Says so when there is none")
+def says_that_there_is_none(seen: Evidence, _: Evidence) -> Finding:
+    """Without such a service it ends by itself and says so."""
+    part = seen.part(ABSENT)
+    expected = "says so and ends by itself"
+    if not names_it(seen.part(LATE)) and not finds_another(seen, seen).passed:
+        # What finds nothing anywhere has not shown that it looked.
+        return Finding(False, expected, "found no service in the other runs")
+    said = part.said()
+    if part.ending and said and any(_mentions(said[-1], name) for name in part.inputs["others"]):
+        return Finding(False, expected, f"named {', '.join(named(part))}")
+    wrong = giving_up.objection(part)
+    it_did = "says again and again that it looks" if giving_up.goes_on_waiting(part) else "it did"
+    return Finding(not wrong, expected, wrong or it_did)
+
+
+@question.mistake(
+    "not_written",
+    certain=True,
+    before="syntax_error",
+    says="Your function comes back at once and names no service.",
+    next_step="Find the TODO in your solution cell and write that step; the hints below it open one at a time.",
+)
+def not_written(seen: Evidence, _: Evidence) -> bool:
     """It comes back at once, with nothing, whatever it is asked."""
-    runs = [evidence.part(name) for name in (LATE, OTHER, ABSENT)]
-    if any(part.said() or part.traceback for part in runs):
-        return None
-    if not gave_up_at_once(runs[0]):
-        return None
-    return Advice(
-        "Your function comes back at once and names no service.",
-        "Find the TODO in your solution cell and write that step; the hints below it open one at a time.",
-    )
+    runs = [seen.part(name) for name in (LATE, OTHER, ABSENT)]
+    return not any(part.said() or part.traceback for part in runs) and gave_up_at_once(runs[0])
 
 
-def wrong_service(evidence: Evidence) -> Advice | None:
+@question.mistake("wrong_service", certain=True)
+def wrong_service(seen: Evidence, _: Evidence) -> Advice | None:
     """It names a service of another type."""
-    for part in evidence:
+    for part in seen:
         others = [name for name in named(part) if name != part.inputs["right"]]
         if others:
             return Advice(
@@ -238,48 +261,61 @@ def _crashed(part: Part) -> bool:
     return bool(part.traceback) and "TimeoutError" not in part.traceback and not meant(part.traceback)
 
 
-def looked_once(evidence: Evidence) -> Advice | None:
+@question.mistake(
+    "looked_once",
+    certain=True,
+    says="You looked once, at once. A node that was just made knows hardly anything of the graph, and a service may "
+    "start later than whoever looks for it.",
+    next_step="Look again and again, with a short pause, until the service is there or patience_sec seconds have "
+    "passed.",
+)
+def looked_once(seen: Evidence, _: Evidence) -> bool:
     """It has given up before the late service was there."""
-    part = evidence.part(LATE)
-    if not gave_up_at_once(part) or _crashed(part):
-        return None
-    return Advice(
-        "You looked once, at once. A node that was just made knows hardly anything of the graph, and a service may "
-        "start later than whoever looks for it.",
-        "Look again and again, with a short pause, until the service is there or patience_sec seconds have passed.",
-    )
+    return gave_up_at_once(seen.part(LATE)) and not _crashed(seen.part(LATE))
 
 
-def type_never_matches(evidence: Evidence) -> Advice | None:
+@question.mistake(
+    "type_never_matches",
+    says="The service was on the graph, and you looked, but never found it.",
+    next_step="get_service_names_and_types() gives pairs of a name and a *list* of types, each written like "
+    "std_srvs/srv/Empty. Ask with `type_name in types`.",
+)
+def type_never_matches(seen: Evidence, _: Evidence) -> bool:
     """It looks long enough and finds nothing, although it is there."""
-    runs = [evidence.part(LATE), evidence.part(OTHER)]
-    if gave_up_at_once(runs[0]):
-        return None
-    if any(named(part) for part in runs) or not all(part.events for part in runs):
-        return None
-    if any(map(_crashed, runs)):
-        return None
-    return Advice(
-        "The service was on the graph, and you looked, but never found it.",
-        "get_service_names_and_types() gives pairs of a name and a *list* of types, each written like "
-        "std_srvs/srv/Empty. Ask with `type_name in types`.",
-    )
+    runs = [seen.part(LATE), seen.part(OTHER)]
+    looked = not gave_up_at_once(runs[0]) and all(part.events for part in runs)
+    return looked and not any(named(part) or _crashed(part) for part in runs)
 
 
-def waits_forever(evidence: Evidence) -> Advice | None:
+@question.mistake(
+    "waits_forever",
+    late=True,
+    says="When no service has the type, you look for it without end.",
+    next_step="Note the time at the start (time.monotonic()), and raise TimeoutError when patience_sec seconds have "
+    "passed.",
+)
+def waits_forever(seen: Evidence, _: Evidence) -> bool:
     """Without such a service it never ends, and does not say that it looks."""
-    part = evidence.part(ABSENT)
-    if not part.events or part.ending is not None or giving_up.goes_on_waiting(part):
-        return None
-    return Advice(
-        "When no service has the type, you look for it without end.",
-        "Note the time at the start (time.monotonic()), and raise TimeoutError when patience_sec seconds have passed.",
-    )
+    part = seen.part(ABSENT)
+    return bool(part.events) and part.ending is None and not giving_up.goes_on_waiting(part)
 
 
-def patience_not_kept(evidence: Evidence) -> Advice | None:
+@question.mistake(
+    "silent_end",
+    certain=True,
+    late=True,
+    says="When no service has the type, you end without a word.",
+    next_step="Raise TimeoutError, with a few words on what was not found.",
+)
+def silent_end(seen: Evidence, _: Evidence) -> bool:
+    """Without such a service it ends, and says nothing."""
+    return says_that_there_is_none(seen, seen).seen == "ended without a word"
+
+
+@question.mistake("patience_not_kept", late=True)
+def patience_not_kept(seen: Evidence, _: Evidence) -> Advice | None:
     """Without such a service it looks by a limit of its own."""
-    wrong = giving_up.broken_patience(evidence.part(ABSENT))
+    wrong = giving_up.broken_patience(seen.part(ABSENT))
     if not wrong:
         return None
     return Advice(
@@ -288,41 +324,7 @@ def patience_not_kept(evidence: Evidence) -> Advice | None:
     )
 
 
-def silent_end(evidence: Evidence) -> Advice | None:
-    """Without such a service it ends, and says nothing."""
-    if says_that_there_is_none(evidence).seen != "ended without a word":
-        return None
-    return Advice(
-        "When no service has the type, you end without a word.",
-        "Raise TimeoutError, with a few words on what was not found.",
-    )
-
-
-EXERCISE = Exercise(
-    id="inspecting_services.question",
-    title="Inspecting services · Find it by its type",
-    task="Find the service of a given type on the graph, and name it.",
-    scenario=scenario,
-    criteria=(
-        Criterion("late", "Finds a service that comes late", 4, finds_the_late_one),
-        Criterion("other", "Finds a service of another type", 3, finds_the_other_type),
-        Criterion("none", "Says so when there is none", 3, says_that_there_is_none),
-    ),
-    mistakes=(
-        Mistake("not_written", not_written, certain=True),
-        *common.CRASHES,
-        Mistake("wrong_service", wrong_service, certain=True),
-        Mistake("looked_once", looked_once, certain=True),
-        Mistake("type_never_matches", type_never_matches),
-        *OTHER_SLIPS,
-        common.usage_message(),
-        Mistake("waits_forever", waits_forever),
-        Mistake("silent_end", silent_end, certain=True),
-        Mistake("patience_not_kept", patience_not_kept),
-        *common.OTHER_CRASHES,
-        *common.NOTHING_THERE,
-    ),
-    roles=(),
+EXERCISE = question.exercise(
     limit=90.0,
     arguments="the type of a service, such as std_srvs/srv/Empty",
     sample_arguments=(ADDER,),

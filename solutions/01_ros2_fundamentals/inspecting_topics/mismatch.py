@@ -11,11 +11,13 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit import common_mistakes as common
+from autograder.kit.draft import OWN, Draft
 from autograder.kit.evidence import Evidence
-from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Look, Mistake
+from autograder.kit.model import Advice, Bench, Finding, Look
+from autograder.kit.recipes.own_scenario import OwnLadder
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Iterator, Mapping
     from random import Random
 
     from autograder.kit.evidence import Part
@@ -146,59 +148,106 @@ def _named(evidence: Evidence, case: str, keys: tuple[str, ...]) -> tuple[bool, 
     return right, wanted, seen
 
 
-def _criterion(name: str, title: str, points: float, keys: tuple[str, ...]) -> Criterion:
+def _finds(*keys: str) -> Callable[[Evidence], Finding]:
     def judge(evidence: Evidence) -> Finding:
         results = [_named(evidence, case, keys) for case in CASES]
         _, wanted, seen = next((result for result in results if not result[0]), results[0])
         return Finding(all(result[0] for result in results), wanted, seen)
 
-    return Criterion(name, title, points, judge)
+    return judge
 
 
-def _wrong_cases(evidence: Evidence) -> list[Part]:
-    """The parts that were run and not answered right."""
-    return [part for part in evidence if part.inputs and not _named(evidence, part.name, KEYS)[0]]
+def _wrong(evidence: Evidence) -> Iterator[tuple[Part, Mapping[str, Any] | None]]:
+    """The parts that were run and not answered right, each with its answer."""
+    for part in evidence:
+        if part.inputs and not _named(evidence, part.name, KEYS)[0]:
+            yield part, answer(part)
 
 
-def swapped(evidence: Evidence) -> Advice | None:
-    """What is published is given as what is subscribed to."""
-    for part in _wrong_cases(evidence):
-        given = answer(part) or {}
-        crossed = {
-            key: key.replace("published", "#").replace("subscribed", "published").replace("#", "subscribed")
-            for key in KEYS
-        }
-        if given and all(_same(key, given.get(crossed[key]), str(part.inputs[key])) for key in KEYS):
+mismatched = Draft(
+    "inspecting_topics.mismatch",
+    "Inspecting topics · Why they do not meet",
+    "Find out which topic and type each of two nodes uses.",
+    OwnLadder(scenario, *common.CRASHES, *common.OTHER_CRASHES, OWN),
+)
+mismatched.asks("topic_published", 2.5, "Finds the talker's topic", _finds("topic_published"))
+mismatched.asks("topic_subscribed", 2.5, "Finds the listener's topic", _finds("topic_subscribed"))
+mismatched.asks("type_published", 2.5, "Finds the talker's type", _finds("type_published"))
+mismatched.asks("type_subscribed", 2.5, "Finds the listener's type", _finds("type_subscribed"))
+
+
+@mismatched.mistake(
+    "looked_too_early",
+    before="syntax_error",
+    says="Your function asked the graph before it had met the two nodes: a node that was just made knows nobody yet.",
+    next_step="Wait, with a limit, until both names are in node.get_node_names_and_namespaces(); then ask what they "
+    "have.",
+)
+def looked_too_early(seen: Evidence, _: Evidence) -> bool:
+    """A node was asked about before it was met."""
+    missing = any("NodeNameNonExistentError" in part.traceback for part in seen)
+    return missing or any(given is not None and not any(given.values()) for _, given in _wrong(seen))
+
+
+@mismatched.mistake(
+    "invented_answer",
+    says="Your answer is the same each time, but each pair of nodes is another one.",
+    next_step="The names of the two nodes are the arguments of your function: look these nodes up.",
+)
+def invented_answer(seen: Evidence, _: Evidence) -> bool:
+    """The same answer whatever was planted."""
+    given = [answer(seen.part(case)) for case in CASES]
+    return None not in given and all(one == given[0] for one in given)
+
+
+@mismatched.mistake(
+    "not_written",
+    certain=True,
+    says="Your function ends and returns nothing: a step is not written yet.",
+    next_step="Find the TODO in your solution cell and write that step. Its last line returns the four answers as a "
+    "dictionary; the hints below the cell open one at a time.",
+)
+def not_written(seen: Evidence, _: Evidence) -> bool:
+    """Each time it returned, with nothing."""
+    endings = [part.ending for part in seen]
+    returned = [
+        end for end in endings if end is not None and end.name == "returned" and end.data.get("value") is None
+    ]
+    return bool(returned) and len(returned) == len(endings) and not any(part.said() for part in seen)
+
+
+@mismatched.mistake("no_answer")
+def no_answer(seen: Evidence, _: Evidence) -> Advice | None:
+    """Something came back, and it is no dictionary with the four keys."""
+    for part, given in _wrong(seen):
+        if part.ending is not None and (given is None or not set(KEYS) <= set(given)):
+            missing = ", ".join(key for key in KEYS if key not in (given or {}))
             return Advice(
-                "The two sides are mixed up: what you give as published is what the listener subscribes to.",
-                "Look at the publishers of the first node, and at the subscriptions of the second.",
+                f"Your answer lacks {missing}." if given else "Your function ended without an answer.",
+                "Return a dictionary with the keys " + ", ".join(KEYS) + " (a program prints it).",
             )
     return None
 
 
-def one_side_only(evidence: Evidence) -> Advice | None:
-    """One side's answer is given for both."""
-    for part in _wrong_cases(evidence):
-        given = answer(part) or {}
-        for what in ("topic", "type"):
-            one, two = given.get(f"{what}_published"), given.get(f"{what}_subscribed")
-            if (
-                one is not None
-                and one == two
-                and part.inputs[f"{what}_published"] != part.inputs[f"{what}_subscribed"]
-            ):
-                return Advice(
-                    f"Your answer has the same {what} on both sides, {one}; the two nodes use different ones.",
-                    "Ask the graph about each node by itself: the publishers of the first, the subscriptions of the "
-                    "second.",
-                )
-    return None
+@mismatched.mistake(
+    "sides_swapped",
+    says="The two sides are mixed up: what you give as published is what the listener subscribes to.",
+    next_step="Look at the publishers of the first node, and at the subscriptions of the second.",
+)
+def swapped(seen: Evidence, _: Evidence) -> bool:
+    """What is published is given as what is subscribed to."""
+    crossed = dict(zip(KEYS, (KEYS[1], KEYS[0], KEYS[3], KEYS[2]), strict=True))
+    return any(
+        given and all(_same(key, given.get(crossed[key]), str(part.inputs[key])) for key in KEYS)
+        for part, given in _wrong(seen)
+    )
 
 
-def wrong_node(evidence: Evidence) -> Advice | None:
+@mismatched.mistake("wrong_node")
+def wrong_node(seen: Evidence, _: Evidence) -> Advice | None:
     """What a node has that every node has, or what another node has, is given as the answer."""
-    for part in _wrong_cases(evidence):
-        given = {str(value) for value in (answer(part) or {}).values()}
+    for part, answered in _wrong(seen):
+        given = {str(value) for value in (answered or {}).values()}
         if given & {"/rosout", "/parameter_events", "/clock"}:
             return Advice(
                 "Your answer names /rosout or /parameter_events: every node has these, for its log and its parameters.",
@@ -213,51 +262,27 @@ def wrong_node(evidence: Evidence) -> Advice | None:
     return None
 
 
-def looked_too_early(evidence: Evidence) -> Advice | None:
-    """A node was asked about before it was met."""
-    missing = any("NodeNameNonExistentError" in part.traceback for part in evidence)
-    empty = any(
-        (given := answer(part)) is not None and not any(given.values()) for part in _wrong_cases(evidence)
-    )
-    if not (missing or empty):
-        return None
-    return Advice(
-        "Your function asked the graph before it had met the two nodes: a node that was just made knows nobody yet.",
-        "Wait, with a limit, until both names are in node.get_node_names_and_namespaces(); then ask what they have.",
-    )
-
-
-def no_answer(evidence: Evidence) -> Advice | None:
-    """Something came back, and it is no dictionary with the four keys."""
-    for part in _wrong_cases(evidence):
-        given = answer(part)
-        ended = part.ending is not None
-        if ended and (given is None or not set(KEYS) <= set(given)):
-            missing = ", ".join(key for key in KEYS if key not in (given or {}))
-            return Advice(
-                f"Your answer lacks {missing}." if given else "Your function ended without an answer.",
-                "Return a dictionary with the keys " + ", ".join(KEYS) + " (a program prints it).",
-            )
+@mismatched.mistake("one_side_only")
+def one_side_only(seen: Evidence, _: Evidence) -> Advice | None:
+    """One side's answer is given for both."""
+    for part, answered in _wrong(seen):
+        for what in ("topic", "type"):
+            sides = (f"{what}_published", f"{what}_subscribed")
+            one, two = ((answered or {}).get(side) for side in sides)
+            if one is not None and one == two and part.inputs[sides[0]] != part.inputs[sides[1]]:
+                return Advice(
+                    f"Your answer has the same {what} on both sides, {one}; the two nodes use different ones.",
+                    "Ask the graph about each node by itself: the publishers of the first, the subscriptions of the "
+                    "second.",
+                )
     return None
 
 
-def invented_answer(evidence: Evidence) -> Advice | None:
-    """The same answer whatever was planted."""
-    given = [answer(evidence.part(case)) for case in CASES]
-    if None in given or any(one != given[0] for one in given):
-        return None
-    return Advice(
-        "Your answer is the same each time, but each pair of nodes is another one.",
-        "The names of the two nodes are the arguments of your function: look these nodes up.",
-    )
-
-
-def type_missing(evidence: Evidence) -> Advice | None:
+@mismatched.mistake("wrong_type")
+def type_missing(seen: Evidence, _: Evidence) -> Advice | None:
     """The names are right, and a type is not."""
-    for part in _wrong_cases(evidence):
-        given = answer(part) or {}
-        names = all(_same(key, given.get(key), str(part.inputs[key])) for key in KEYS[:2])
-        if names and given:
+    for part, given in _wrong(seen):
+        if given and all(_same(key, given.get(key), str(part.inputs[key])) for key in KEYS[:2]):
             return Advice(
                 f"The topics are right, but not the types: you give {given.get(KEYS[2])} and {given.get(KEYS[3])}.",
                 "A topic's type stands beside its name, in get_publisher_names_and_types_by_node as in `ros2 topic "
@@ -266,40 +291,17 @@ def type_missing(evidence: Evidence) -> Advice | None:
     return None
 
 
-def never_ended(evidence: Evidence) -> Advice | None:
+@mismatched.mistake(
+    "never_ended",
+    says="Your function was still busy when the time was over.",
+    next_step="Looking at the graph needs no spin. Wait for the two nodes with a limit, and return.",
+)
+def never_ended(seen: Evidence, _: Evidence) -> bool:
     """No answer came in time."""
-    if all(_is_answered(Evidence([part], evidence.reference)) for part in evidence):
-        return None
-    return Advice(
-        "Your function was still busy when the time was over.",
-        "Looking at the graph needs no spin. Wait for the two nodes with a limit, and return.",
-    )
+    return not all(_is_answered(Evidence([part], seen.reference)) for part in seen)
 
 
-EXERCISE = Exercise(
-    id="inspecting_topics.mismatch",
-    title="Inspecting topics · Why they do not meet",
-    task="Find out which topic and type each of two nodes uses.",
-    scenario=scenario,
-    criteria=(
-        _criterion("topic_published", "Finds the talker's topic", 2.5, KEYS[:1]),
-        _criterion("topic_subscribed", "Finds the listener's topic", 2.5, KEYS[1:2]),
-        _criterion("type_published", "Finds the talker's type", 2.5, KEYS[2:3]),
-        _criterion("type_subscribed", "Finds the listener's type", 2.5, KEYS[3:]),
-    ),
-    mistakes=(
-        Mistake("looked_too_early", looked_too_early),
-        *common.CRASHES,
-        *common.OTHER_CRASHES,
-        Mistake("invented_answer", invented_answer),
-        Mistake("no_answer", no_answer),
-        Mistake("sides_swapped", swapped),
-        Mistake("wrong_node", wrong_node),
-        Mistake("one_side_only", one_side_only),
-        Mistake("wrong_type", type_missing),
-        Mistake("never_ended", never_ended),
-    ),
-    roles=(),
+EXERCISE = mismatched.exercise(
     limit=120.0,
     arguments="the full names of the talker and of the listener",
     sample_arguments=("/nobody", "/nobody_else"),

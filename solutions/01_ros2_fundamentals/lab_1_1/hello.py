@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit import common_mistakes as common
+from autograder.kit import package_programs as programs
 from autograder.kit import workspace_mistakes as workspace
 from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Look, Mistake
 from autograder.kit.runners import RunsProgram
-from autograder.kit.workspace_report import report_of
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
@@ -19,10 +19,6 @@ if TYPE_CHECKING:
 PACKAGE = "my_robot_pkg"
 PROGRAM = "simple_node"
 """What the task calls them: `ros2 run my_robot_pkg simple_node`."""
-BEGINNING = {Look.FAST: 4.0, Look.REAL_TIME: 15.0}
-"""Seconds of wall time in which a program or its build must have said its first word."""
-BUILDING = 180.0
-"""Seconds of wall time that a build may take; a Python package needs one."""
 SAYING = {Look.FAST: 2.0, Look.REAL_TIME: 5.0}
 """Seconds of wall time, after its node appeared, in which it must have said its line."""
 LATE = 0.3
@@ -37,9 +33,7 @@ def scenario(bench: Bench) -> None:
     for run in range(1, TRIES + 1 if bench.look is Look.REAL_TIME else 2):
         bench.part(PART if run == 1 else f"{PART}, run {run}")
         bench.start()
-        bench.wait_until(_has_begun, BEGINNING[bench.look])
-        if bench.wait_until(_is_to_be_built, 0.0):
-            bench.wait_until(_is_built, BUILDING)
+        programs.await_build(bench)
         there = bench.await_node()
         bench.wait_until(_says_it, SAYING[bench.look])
         if there:
@@ -48,18 +42,6 @@ def scenario(bench: Bench) -> None:
         bench.stop()
         if there:
             return
-
-
-def _has_begun(evidence: Evidence) -> bool:
-    return bool(evidence.main.of("output") or evidence.main.of("log"))
-
-
-def _is_to_be_built(evidence: Evidence) -> bool:
-    return report_of(evidence.main, "found") is not None
-
-
-def _is_built(evidence: Evidence) -> bool:
-    return report_of(evidence.main) is not None
 
 
 def _expected(evidence: Evidence) -> str:
@@ -115,50 +97,17 @@ def says_hello(evidence: Evidence) -> Finding:
 
 def entry_point(evidence: Evidence) -> Advice | None:
     """The package is there, and its setup.py does not name the program, or names what is not there."""
-    line = f"'{PROGRAM} = {PACKAGE}.{PROGRAM}:main',"
-    report = report_of(evidence.main)
-    if report is not None and report.built and report.missing == PROGRAM:
-        own = next((package for package in report.packages if package.name == PACKAGE), None)
-        named = ", ".join(own.programs) if own else ""
-        return Advice(
-            f"The package is built, but it has no program {PROGRAM}: "
-            + (f"setup.py names only {named}." if named else "setup.py names no entry point."),
-            f"In setup.py, 'console_scripts' must hold {line.rstrip(',')}. Then build again.",
-        )
-    found = re2.search(
-        rf"No module named '{PACKAGE}\.(?P<module>\w+)'|module '{PACKAGE}\.\w+' has no attribute '(?P<name>\w+)'",
-        "\n".join(part.traceback for part in evidence),
-    )
-    if found is None:
-        return None
-    what = f"the module {found['module']}" if found["module"] else f"the function {found['name']}"
-    return Advice(
-        f"The entry point in setup.py leads to {what}, which is not there.",
-        f"It must read {line}: the file without .py, a colon, and the function.",
-    )
+    return programs.entry_point(evidence, PACKAGE, PROGRAM)
 
 
 def package_name(evidence: Evidence) -> Advice | None:
     """The workspace holds packages, and none of the task's name."""
-    report = report_of(evidence.main)
-    if report is None or not report.built or report.missing != PACKAGE:
-        return None
-    names = ", ".join(package.name for package in report.packages)
-    return Advice(
-        f"The workspace was built, but the package {PACKAGE} is not in it; there is {names}.",
-        f"Make it in src with `ros2 pkg create --build-type ament_python {PACKAGE} …`; <name> in package.xml counts, "
-        "and setup.py must have the same.",
-    )
+    return programs.package_name(evidence, PACKAGE)
 
 
 def no_executable(evidence: Evidence) -> Advice | None:
     """`ros2 run` knows the package and finds no such program in it."""
-    if not any("No executable found" in str(event.data["text"]) for event in evidence.main.of("output")):
-        return None
-    return Advice(
-        "ros2 run found the package, but no program of that name in it.",
-        f"Name the entry point in setup.py: '{PROGRAM} = {PACKAGE}.{PROGRAM}:main'. Then build and source again.",
-    )
+    return programs.no_executable(evidence, PACKAGE, PROGRAM)
 
 
 def no_node(evidence: Evidence) -> Advice | None:

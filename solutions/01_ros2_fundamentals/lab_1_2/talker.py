@@ -75,7 +75,8 @@ def field_typo(seen: Publisher, _: Publisher) -> bool:
     "counter_stuck",
     certain=True,
     says="Every message carries the number {seen.counters[0]}: the counter is never counted up.",
-    next_step="Add self.count += 1 at the end of the method. A plain count = count + 1 counts a local variable.",
+    next_step="Add self.count += 1 at the end of the method. Without self. in front, another variable is changed, not "
+    "the node's count.",
 )
 def counter_stuck(seen: Publisher, _: Publisher) -> bool:
     """The number never changes."""

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 INTERFACE_FILE = "AddTwoInts.srv"
 """What the task calls the file."""
+GROUP = "rosidl_interface_packages"
+"""The group of packages that define interfaces; a package.xml says with it that its package is one."""
 SERVICE = "/interface_of_the_workspace"
 """The service that a program of the judge's serves with the built interface, so that its type is on the wire."""
 BEGINNING = 15.0
@@ -169,22 +171,24 @@ def interface_in_python_package(evidence: Evidence) -> Advice | None:
 
 
 def member_of_group(evidence: Evidence) -> Advice | None:
-    """The one line of package.xml that marks an interface package is missing."""
+    """The one line of package.xml that marks an interface package is missing, or is inside a comment."""
     holders = _holders(evidence)
     if builds(evidence).passed or not holders:
         return None
     report = report_of(evidence.main)
-    marked = any("rosidl_interface_packages" in p.dependencies for p, _ in holders)
-    if (
-        report is None
-        or report.built
-        or marked
-        or "rosidl_interface_packages" not in report.line + report.log
-    ):
+    marked = any(GROUP in p.dependencies for p, _ in holders)
+    if report is None or report.built or marked or GROUP not in report.line + report.log:
         return None
+    hidden = next((p for p, _ in holders if GROUP in p.commented), None)
+    if hidden is not None:
+        return Advice(
+            f"package.xml of {hidden.name} has the line <member_of_group>{GROUP}</member_of_group>, but inside a "
+            "comment (<!-- … -->), where it does not count.",
+            "Move it below the -->, with all other tags that you wrote in that comment. Then check again.",
+        )
     return Advice(
         f"package.xml of {holders[0][0].name} does not say that it is an interface package.",
-        "Add <member_of_group>rosidl_interface_packages</member_of_group> to package.xml, above <export>.",
+        f"Add <member_of_group>{GROUP}</member_of_group> to package.xml, above <export>.",
     )
 
 

@@ -274,6 +274,7 @@ MISTAKES = (
     *OTHER_SLIPS,
     Mistake("field_typo", order_never_filled, certain=True),
     Mistake("wrong_order", wrong_order, certain=True),
+    common.NOT_BEGUN,
     common.usage_message(),
     Mistake("gave_up_too_early", gave_up_too_early),
     Mistake("ended_too_early", ended_before_its_answers),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import TYPE_CHECKING
 
 from lab_1_4._goals import (
@@ -28,7 +29,23 @@ from autograder.kit.goals_seen import CANCELED, Goal, all_goals, goal, servers, 
 from autograder.kit.model import Finding
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from autograder.kit.evidence import Evidence
+
+
+def of_one_server(judge: Callable[[Evidence], Finding]) -> Callable[[Evidence], Finding]:
+    """A criterion about goals that fails where two servers share the action's name.
+
+    Each goal reaches both of them, and chance decides whose answers the client takes.
+    """
+
+    @functools.wraps(judge)
+    def judged(evidence: Evidence) -> Finding:
+        found, count = judge(evidence), servers(evidence.main)
+        return found if count < 2 else Finding(False, found.expected, f"each goal reached {count} servers")
+
+    return judged
 
 
 def serves(evidence: Evidence) -> Finding:
@@ -44,10 +61,15 @@ def serves(evidence: Evidence) -> Finding:
         return Finding(False, expected, f"{name} is a {made[name]}")
     if servers(part) > 1:
         return Finding(False, expected, f"{servers(part)} servers of {name}")
-    taken = bool(goal(part, ALONE).accepted)
-    return Finding(taken, expected, "it accepts goals" if taken else objection(evidence, goal(part, ALONE)))
+    first = goal(part, ALONE)
+    if part.ending is not None and not first.over and not first.feedback:
+        # The answer of a program that exits with it may or may not get out of it.
+        return Finding(False, expected, "it ended with the first goal")
+    taken = bool(first.accepted)
+    return Finding(taken, expected, "it accepts goals" if taken else objection(evidence, first))
 
 
+@of_one_server
 def counts(evidence: Evidence) -> Finding:
     """Every good goal succeeds with the reference's sequence."""
     wrong = [text for seen in good_goals(evidence) if (text := objection(evidence, seen))]
@@ -58,6 +80,7 @@ def counts(evidence: Evidence) -> Finding:
     )
 
 
+@of_one_server
 def gives_feedback(evidence: Evidence) -> Finding:
     """The feedback of every good goal grows by one number."""
     wrong = [text for seen in paced_goals(evidence) if (text := feedback_objection(evidence, seen))]
@@ -66,6 +89,7 @@ def gives_feedback(evidence: Evidence) -> Finding:
     return Finding(asked and not wrong, "one more number in each feedback message", seen)
 
 
+@of_one_server
 def serves_two_at_once(evidence: Evidence) -> Finding:
     """Both of two goals at once are right."""
     two = [goal(evidence.part(GOALS), number) for number in (FIRST_OF_TWO, SECOND_OF_TWO)]
@@ -75,6 +99,7 @@ def serves_two_at_once(evidence: Evidence) -> Finding:
     return Finding(asked and not wrong, "each of two goals at once ends with its own sequence", seen)
 
 
+@of_one_server
 def lets_cancel(evidence: Evidence) -> Finding:
     """A cancel is accepted, ends the goal soon, and the part that was computed comes back."""
     long = goal(evidence.part(GOALS), LONG)
@@ -112,6 +137,7 @@ def is_the_part(evidence: Evidence, long: Goal) -> bool:
     )
 
 
+@of_one_server
 def refuses_bad_orders(evidence: Evidence) -> Finding:
     """Negative and too large orders are refused, and a good goal after them succeeds."""
     part, expected = (

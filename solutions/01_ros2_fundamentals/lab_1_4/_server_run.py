@@ -31,7 +31,7 @@ CANCEL_AFTER = 2
 THREADS = 4
 """Threads that spin a notebook's class: with one, no cancel is read while a goal is executed."""
 
-HURRY = {Look.FAST: 0.04, Look.REAL_TIME: 1.0}
+SLEEP_FACTOR = {Look.FAST: 0.04, Look.REAL_TIME: 1.0}
 """What a sleep of a notebook's server is multiplied with: it may pace its work as it likes, and nobody need wait."""
 
 SERVER_LIMIT = {Look.FAST: 3.0, Look.REAL_TIME: 6.0}
@@ -58,7 +58,7 @@ def run(bench: Bench, name: str, goals: Callable[[Bench, ActionCaller], bool]) -
     action, type_name = bench.reference.only("action_server")
     bench.part(name)
     caller = bench.call_action(action, type_name)
-    bench.start(threads=THREADS, hurry=HURRY[bench.look])
+    bench.start(threads=THREADS, sleep_factor=SLEEP_FACTOR[bench.look])
     there = bench.await_endpoint("action_server", action)
     bench.release()
     there = there and caller.await_server(SERVER_LIMIT[bench.look])

@@ -149,12 +149,14 @@ def wrong_feedback(seen: Evidence, _: Evidence) -> Advice | None:
     )
 
 
-@server.mistake("done_at_once", before="cancel_ignored")
+@server.mistake("done_at_once", before="cancel_not_accepted")
 def done_at_once(seen: Evidence, _: Evidence) -> Advice | None:
-    """The long goal was over before anybody could cancel it."""
+    """The long goal was over before anybody could cancel it, or nearly so."""
     long = sends.canceled(seen)
     quick = long.status == SUCCEEDED and not long.cancel_accepted and is_quick(long)
-    if not quick and not (long.status == CANCELED and takes_no_time(seen.part(GOALS))):
+    # Whether the cancel got in between, and whether the result was seen, is then up to the machine.
+    ended = long.cancelled_too_late or long.status is not None
+    if not quick and not (ended and takes_no_time(seen.part(GOALS))):
         return None
     return Advice(
         f"A goal of order {long.order} was done at once: there was no time to cancel it.",

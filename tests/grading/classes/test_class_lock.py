@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from conftest import LISTENER, TALKER, FakeEngine, TinyClass
-from nbgrader.converters import GenerateFeedback, NbGraderException
-from nbgrader.coursedir import CourseDirectory
-from test_doors import nbgrader_autograde
+from nbgrader.converters import NbGraderException
+from test_doors import nbgrader_autograde, nbgrader_generate_feedback
 from tiny_class import GRADE
 
 from autograder.grading.classes.class_directory import ClassDirectory
@@ -116,16 +115,7 @@ def test_the_lock_is_free_after_a_run_that_failed(tiny: TinyClass, fake_engine: 
 # ------------------------------------------------------------------------------------------------------
 
 
-def generate_feedback(tiny: TinyClass) -> None:
-    config = ClassDirectory(tiny.path).config
-    course = CourseDirectory(config=config)
-    course.assignment_id = "lab_1_2"
-    converter = GenerateFeedback(coursedir=course, config=config)
-    converter.force = True
-    converter.start()
-
-
-@pytest.mark.parametrize("conversion", [nbgrader_autograde, generate_feedback])
+@pytest.mark.parametrize("conversion", [nbgrader_autograde, nbgrader_generate_feedback])
 def test_formgraders_buttons_do_nothing_while_a_batch_runs(
     tiny: TinyClass, fake_engine: FakeEngine, conversion: Any
 ) -> None:
@@ -167,14 +157,14 @@ def test_a_batch_does_nothing_while_nbgrader_grades(
     tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tiny.submit("ada", 3, 4)
-    usual = engine.execute_one
+    usual = engine.execute_all
 
     def meanwhile(*args: Any, **kw: Any) -> Any:
         with pytest.raises(ClassBusy, match=WHO):
             tiny.grade()
         return usual(*args, **kw)
 
-    monkeypatch.setattr(engine, "execute_one", meanwhile)
+    monkeypatch.setattr(engine, "execute_all", meanwhile)
     nbgrader_autograde(tiny)
     assert tiny.scores("ada") == {TALKER: 3, LISTENER: 4}
     assert tiny.grade().executed == 0

@@ -13,8 +13,10 @@ from conftest import QUIET
 from nbgrader.api import Gradebook
 
 from autograder import exercises
+from autograder.appeals import appeal_file, replaying
+from autograder.grading.appealing.appeal import write_appeal
 from autograder.grading.classes.sample_class import demo, sample_notebooks
-from autograder.grading.errors import ClassExists
+from autograder.grading.errors import ClassExists, GradingError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -68,6 +70,28 @@ def test_gradebook_csv_and_feedback_say_the_same(graded: GradeReport) -> None:
 
 @pytest.mark.ros
 @pytest.mark.slow
+def test_each_check_that_began_can_be_appealed_and_is_judged_the_same_again(graded: GradeReport) -> None:
+    refused, appealed = dict[str, str](), 0
+    for row in graded.rows:
+        if row.state not in ("passed", "failed"):
+            continue
+        try:
+            file = write_appeal(graded.path, row.student, row.exercise)
+        except GradingError as error:
+            refused[row.diagnosis] = str(error)
+            continue
+        seen = appeal_file.read(file).appeal.seen
+        again = replaying.replay(seen)
+        assert (again.differences, again.notes) == ([], []), row
+        diagnosis = seen.verdict.diagnosis.key if seen.verdict.diagnosis else ""
+        assert (seen.verdict.score, seen.verdict.state, diagnosis) == (row.score, row.state, row.diagnosis)
+        appealed += 1
+    assert appealed > len(refused) > 0
+    assert all(words.startswith("Nothing that a judge saw") for words in refused.values())
+
+
+@pytest.mark.ros
+@pytest.mark.slow
 def test_a_second_run_takes_what_is_known(graded: GradeReport) -> None:
     again = demo(graded.path, console=QUIET)
     assert (again.executed, again.written) == (0, 0)
@@ -90,7 +114,7 @@ def test_plain_nbgrader_gives_the_same_points(graded: GradeReport, tmp_path: Pat
     with Gradebook(f"sqlite:///{path / 'gradebook.db'}") as book:
         notebook = book.find_submission_notebook("lab_1_2", "lab_1_2", "partly-right")
         scores = {grade.name: grade.auto_score for grade in notebook.grades}
-    assert scores == {"lab_1_2-talker": 8, "lab_1_2-listener": 10}
+    assert scores == {"lab_1_2-talker": 8, "lab_1_2-listener": 10, "lab_1_2-programs": 10}
     subprocess.run([*NBGRADER, "export"], cwd=path, check=True, capture_output=True)
     assert "partly-right" in (path / "nbgrader_export.csv").read_text()
 
@@ -103,7 +127,8 @@ def test_validate_tells_a_student_the_truth(graded: GradeReport) -> None:
     for student in ("all-right", "partly-right"):
         notebook = graded.path / "submitted" / student / "lab_1_2" / "lab_1_2.ipynb"
         result = subprocess.run(
-            [*NBGRADER, "validate", str(notebook)],
+            # Beside other work a build and two programs may take longer than the 30 s that nbgrader gives a cell.
+            [*NBGRADER, "validate", "--Execute.timeout=300", str(notebook)],
             cwd=graded.path,
             capture_output=True,
             text=True,

@@ -20,12 +20,25 @@ zoe,Zoë,Zuse,zoe@uni.example,105,zz-top
 """
 
 
+class Link(str):
+    """What a file of a zip is that leads to another one."""
+
+    __slots__ = ()
+
+
+BOMB = b" " * 60_000_000
+"""What unpacks to more than a notebook may have."""
+
+
 def zipped(files: Mapping[str, bytes | str]) -> bytes:
     """A zip with these files."""
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
-            archive.writestr(name, content)
+            entry = zipfile.ZipInfo(name)
+            if isinstance(content, Link):
+                entry.external_attr = 0o120777 << 16
+            archive.writestr(entry, content, zipfile.ZIP_DEFLATED)
     return data.getvalue()
 
 

@@ -1,7 +1,7 @@
-"""A class that hands in through four learning management systems, with every oddity that real downloads have.
+"""A class that hands in through four learning management systems and by hand, with every oddity that real work has.
 
-``python tests/grading/day/handed_in.py NOTEBOOK FOLDER --students 40`` makes the archives and the list of students
-from a notebook, so that a class can be collected by hand, too.
+``python tests/grading/day/handed_in.py NOTEBOOK FOLDER --students 40`` makes the archives, the list of students and
+what is put by hand into ``submitted`` from a notebook, so that a class can be collected by hand, too.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 sys.path.insert(0, str(Path(__file__).parent))
-from downloads import write_zip, zipped
+from downloads import BOMB, Link, write_zip, zipped
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,6 +24,15 @@ FIRST = ("Ada", "José", "Zoë", "Bär", "Søren", "Łucja", "Chloé", "Nguyễn
 LAST = ("Lovelace", "Núñez", "O'Neill", "Müller", "Ørsted", "Kowalska", "Dupont", "Anh")
 DUE = datetime(2026, 1, 10, 12)
 """In UTC, as all times here."""
+BY_HAND = {
+    "numbered beside": "",
+    "numbered alone": "",
+    "too high": "",
+    "decomposed": "José",
+    "small letters": "bob",
+    "capitals": "Bob",
+}
+"""How work lies in ``submitted`` that somebody has put there, and the student's id where that is the oddity."""
 
 
 @dataclass(frozen=True)
@@ -35,8 +44,9 @@ class Pupil:
         id: The student's id.
         first: First name.
         last: Last name.
-        lms: Through which system the work comes; empty for who hands in nothing.
+        lms: Through which system the work comes; empty for who hands in nothing, or by hand.
         late: Whether it comes after it was due.
+        habit: How it was put into ``submitted`` by hand, one of :data:`BY_HAND`; empty where it was not.
     """
 
     place: int
@@ -45,6 +55,12 @@ class Pupil:
     last: str
     lms: str
     late: bool
+    habit: str = ""
+
+    @property
+    def hands_in(self) -> bool:
+        """Whether there is any work."""
+        return bool(self.lms or self.habit)
 
     @property
     def when(self) -> datetime:
@@ -58,16 +74,41 @@ class Pupil:
 
 
 def pupils(count: int) -> list[Pupil]:
-    """The class; the last one hands in nothing, two of those whose systems say when are late."""
+    """The class; the last one hands in nothing, those before by hand; two of those whose systems say when are late."""
     found = []
+    habits = dict(enumerate(BY_HAND, count - 1 - len(BY_HAND)))
     for place in range(count):
-        lms = "" if place == count - 1 else ("moodle", "canvas", "blackboard", "brightspace")[place % 4]
+        habit = habits.get(place, "")
+        lms = "" if place >= min(habits) else ("moodle", "canvas", "blackboard", "brightspace")[place % 4]
         first, last = (
             FIRST[place % len(FIRST)],
             f"{LAST[place % len(LAST)]}{'' if place < 8 else ' ' + 'abcdefgh'[place // 8]}",
         )
-        found.append(Pupil(place, f"s{place:02}", first, last, lms, place in (2, 3)))
+        id_ = BY_HAND.get(habit) or f"s{place:02}"
+        found.append(Pupil(place, id_, first, last, lms, place in (2, 3), habit))
     return found
+
+
+def put_by_hand(submitted: Path, class_: list[Pupil], work: Callable[[Pupil, bool], str]) -> None:
+    """Put work into ``submitted`` as people do it: a little beside its place, and some that is nobody's.
+
+    Args:
+        submitted: That folder of a class.
+        class_: Of whom some hand in so.
+        work: A student's notebook; of an earlier attempt where the flag is set.
+    """
+    for pupil in class_:
+        if not pupil.habit:
+            continue
+        name = unicodedata.normalize("NFD", pupil.id) if pupil.habit == "decomposed" else pupil.id
+        folder = submitted / name if pupil.habit == "too high" else submitted / name / "lab_1_2"
+        folder.mkdir(parents=True)
+        file = "lab_1_2 (1).ipynb" if pupil.habit == "numbered alone" else "lab_1_2.ipynb"
+        (folder / file).write_text(work(pupil, False), encoding="utf-8")
+        if pupil.habit == "numbered beside":
+            (folder / "lab_1_2 (1).ipynb").write_text(work(pupil, True), encoding="utf-8")
+    (submitted / "lab_1_2.ipynb").write_text(work(class_[0], True), encoding="utf-8")
+    write_zip(submitted / "all.zip", {"lab_1_2.ipynb": work(class_[0], True)})
 
 
 def hand_in(folder: Path, class_: list[Pupil], work: Callable[[Pupil, bool], str]) -> list[Path]:
@@ -91,7 +132,11 @@ def hand_in(folder: Path, class_: list[Pupil], work: Callable[[Pupil, bool], str
         if pupil.lms:
             archives[pupil.lms] |= _FORMS[pupil.lms](pupil, work)
     archives["moodle"]["Guest User_999_assignsubmission_file_lab_1_2.ipynb"] = work(class_[0], False)
+    first, second = class_[:2]
+    bomb = f"{first.first} {first.last}_{500 + first.place}_assignsubmission_file_more.zip"
+    archives["moodle"][bomb] = zipped({"lab_1_2.ipynb": BOMB})
     archives["canvas"]["../../evil_1_2_lab_1_2.ipynb"] = "out"
+    archives["canvas"][f"x_{1000 + second.place}_9999_lab_1_2.ipynb"] = Link("/etc/passwd")
     return [write_zip(folder / f"{name}.zip", files) for name, files in archives.items()]
 
 
@@ -143,7 +188,7 @@ _FORMS = {"moodle": _moodle, "canvas": _canvas, "blackboard": _blackboard, "brig
 
 
 def main() -> None:
-    """Make the downloads of a class in which everybody hands in the same notebook."""
+    """Make the work of a class in which everybody hands in the same notebook."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("notebook", type=Path)
     parser.add_argument("folder", type=Path)
@@ -152,6 +197,7 @@ def main() -> None:
     given.folder.mkdir(parents=True, exist_ok=True)
     class_ = pupils(given.students)
     text = given.notebook.read_text(encoding="utf-8")
+    put_by_hand(given.folder / "submitted", class_, lambda *_: text)
     (given.folder / "students.csv").write_text(roster(class_), encoding="utf-8")
     for path in hand_in(given.folder, class_, lambda *_: text):
         sys.stdout.write(f"{path}\n")

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from click.testing import CliRunner
 from conftest import LISTENER, TALKER
-from test_true_table import by_person, shown
+from instructor import by_person
+from test_true_table import shown
 
 from autograder.cli import cli
 from autograder.grading import batch

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 import pytest
 from click.testing import CliRunner
 from downloads import ROSTER, write_zip
+from instructor import by_person, due, penalty
 from nbgrader.api import Gradebook
-from test_true_table import DUE, by_person, due, nbgraders_total, penalty
+from test_true_table import DUE, nbgraders_total
 
 from autograder.cli import cli
 from autograder.grading.collecting.collect import collect

@@ -55,6 +55,16 @@ def test_a_class_hears_of_a_task_that_was_changed(tiny: TinyClass, course: Path)
         assert f"./course renew-class {tiny.path} --assignment lab_1_2" in words
 
 
+def test_a_class_that_wrote_nothing_down_says_so_until_it_is_renewed(tiny: TinyClass, course: Path) -> None:
+    tiny.submit("ada", 4, 7)
+    (tiny.path / ".autograder" / "masters.json").unlink()
+    for words in said(tiny):
+        assert "made before classes wrote down what their sources were made of" in words
+        assert f"./course renew-class {tiny.path}" in words
+    renew(tiny.path, course)
+    assert "made before" not in "".join(said(tiny))
+
+
 def test_a_corrected_typo_is_no_news(tiny: TinyClass, course: Path) -> None:
     tiny.submit("ada", 4, 7)
     change(course, "Two answers, two checks.", "Two answers and two checks.")

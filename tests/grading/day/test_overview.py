@@ -10,7 +10,8 @@ import tiny_class
 from bs4 import BeautifulSoup
 from click.testing import CliRunner
 from downloads import ROSTER
-from test_true_table import by_person, nbgraders_total
+from instructor import by_person
+from test_true_table import nbgraders_total
 
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory

@@ -128,11 +128,3 @@ def test_a_value_is_worth_what_nbgrader_takes_it_for(value: str, score: float) -
     assert verdict is not None
     assert verdict.score == score
     assert verdict.passed is (score == 4)
-
-
-def test_nbgraders_own_conversion_gives_the_same_points(tiny: TinyClass, with_fake_judge: str) -> None:
-    tiny.configure_otherwise()
-    write_assignment(tiny)
-    hand_in(tiny, "ben", "def add(a, b):\n    return abs(a) - abs(b)")
-    tiny.grade(judge=with_fake_judge)
-    assert points(tiny, "ben") == {"small": 0, "noisy": 3, "partial": 0.5, "hidden": 0}

@@ -8,7 +8,8 @@ import nbformat
 import pytest
 from bs4 import BeautifulSoup
 from conftest import MASTER, FakeEngine, TinyClass, write_master
-from test_true_table import by_person, page, rows, total
+from instructor import by_person
+from test_true_table import page, rows, total
 
 from autograder.grading.classes.new_class import new_class
 from autograder.grading.returning.page_head import without_dead_links
@@ -77,14 +78,6 @@ def test_a_person_sees_what_earns_points_and_gives_them(asked: TinyClass) -> Non
     lines = [[cell.get_text() for cell in line.find_all("td")] for line in head.find_all("tr")]  # type: ignore[union-attr]
     assert [points for _, points, _ in lines] == ["0 of 10", "0 of 10", "3 of 5"]
     assert lines[2][0] == "why a topic"
-
-
-def test_nbgraders_own_conversion_shows_it_too(asked: TinyClass) -> None:
-    asked.configure_otherwise()
-    answer(asked, "ada", "Many listen.")
-    asked.grade(feedback=True)
-    assert row(asked, "ada") == ("waits", 0, "yes")
-    assert "Three points for the first" in page(asked, "ada")
 
 
 def test_a_question_that_somebody_has_answered_is_not_built_over(asked: TinyClass) -> None:

@@ -7,14 +7,11 @@ import io
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
-import nbformat
 import pytest
 from conftest import LISTENER, TALKER, FakeEngine, TinyClass
-from nbgrader.api import Gradebook
+from instructor import add_question, book, by_person, due, penalty
 from rich.console import Console
 
-from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.classes.new_class import release
 from autograder.grading.reporting.report_table import show
 
 if TYPE_CHECKING:
@@ -24,26 +21,6 @@ pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
 DUE = datetime(2026, 1, 10, 12)
 EARLY, LATE = "2026-01-09 12:00:00.000000 UTC", "2026-01-11 12:00:00.000000 UTC"
-
-
-def book(tiny: TinyClass) -> Gradebook:
-    return Gradebook(f"sqlite:///{tiny.path / 'gradebook.db'}")
-
-
-def by_person(
-    tiny: TinyClass, student: str, cell: str, points: float | None = None, extra: float = 0
-) -> None:
-    """What formgrader enters when somebody types points."""
-    with book(tiny) as gradebook:
-        grade = gradebook.find_grade(cell, "lab_1_2", "lab_1_2", student)
-        grade.manual_score, grade.extra_credit, grade.needs_manual_grade = points, extra, False
-        gradebook.db.commit()
-
-
-def due(tiny: TinyClass, at: datetime | None) -> None:
-    with book(tiny) as gradebook:
-        gradebook.find_assignment("lab_1_2").duedate = at
-        gradebook.db.commit()
 
 
 def nbgraders_total(tiny: TinyClass, student: str) -> float:
@@ -70,23 +47,6 @@ def shown(report: GradeReport) -> str:
 
 def page(tiny: TinyClass, student: str) -> str:
     return (tiny.path / "feedback" / student / "lab_1_2" / "lab_1_2.html").read_text()
-
-
-def penalty(tiny: TinyClass) -> None:
-    with (tiny.path / "nbgrader_config.py").open("a") as config:
-        config.write("c.LateSubmissionPlugin.penalty_method = 'zero'\n")
-
-
-def add_question(tiny: TinyClass) -> None:
-    """A question of five points that only a person can grade."""
-    source = tiny.path / "source" / "lab_1_2" / "lab_1_2.ipynb"
-    notebook = nbformat.read(source, as_version=4)
-    marks = {"grade": True, "solution": True, "locked": False, "schema_version": 3, "task": False}
-    question = nbformat.v4.new_markdown_cell("Why?")
-    question.metadata["nbgrader"] = {**marks, "grade_id": "why", "points": 5}
-    notebook.cells.append(question)
-    nbformat.write(notebook, source)
-    release(ClassDirectory(tiny.path))
 
 
 def test_points_by_hand_and_extra_points_are_in_the_table(tiny: TinyClass, fake_engine: FakeEngine) -> None:
@@ -250,6 +210,24 @@ def test_a_question_that_a_person_has_to_grade_is_in_the_table(
     why = next(row for row in rows(tiny) if row["exercise"] == "why")
     assert [why[name] for name in ("score", "state", "waits_for_a_person")] == ["4", "by_hand", ""]
     assert total(tiny, "ada") == nbgraders_total(tiny, "ada")
+
+
+def test_a_remark_beside_the_points_leaves_them_where_they_are(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    """To nbgrader, such a question is two cells of one name: one has the points, the other the remark."""
+    add_question(tiny)
+    tiny.submit("ada", 4, 7)
+    tiny.grade(feedback=True)
+    by_person(tiny, "ada", "why", 4)
+    with book(tiny) as gradebook:
+        gradebook.find_comment("why", "lab_1_2", "lab_1_2", "ada").manual_comment = "Well said."
+        gradebook.db.commit()
+    tiny.grade(feedback=True)
+    why = next(row for row in rows(tiny) if row["exercise"] == "why")
+    assert [why[name] for name in ("score", "max", "state")] == ["4", "5", "by_hand"]
+    assert total(tiny, "ada") == nbgraders_total(tiny, "ada") == 15
+    assert "Well said." in page(tiny, "ada")
 
 
 def test_a_folder_that_was_removed_keeps_its_points_in_the_table(

@@ -1,4 +1,4 @@
-"""What is written in this process is what nbgrader writes, and fails closed as it does."""
+"""The one conversion: what it leaves behind is what nbgrader's own steps would, and it fails closed."""
 
 from __future__ import annotations
 
@@ -7,19 +7,21 @@ import re
 import shutil
 import sqlite3
 from datetime import datetime
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
+import nbformat
 import pytest
 from bs4 import BeautifulSoup
+from nbgrader.preprocessors import AssignLatePenalties, GetGrades, SaveAutoGrades
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.timestamps import handed_in_at
-from autograder.grading.entering import conversion, gradebook
-from autograder.grading.returning import feedback
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from autograder.grading.entering import gradebook
+from autograder.grading.returning.page_exporter import PageExporter
+from autograder.grading.returning.page_head import mark_waiting
+from autograder.grading.returning.sanitize import make_harmless
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
@@ -64,25 +66,38 @@ def pages(path: Path) -> dict[str, str]:
     }
 
 
-def test_a_new_class_is_converted_here(tiny: TinyClass) -> None:
-    config = ClassDirectory(tiny.path).config
-    assert conversion.is_usual(config)
-    assert feedback.is_usual(config)
-    tiny.configure_otherwise()
-    config = ClassDirectory(tiny.path).config
-    assert not conversion.is_usual(config)
-    assert not feedback.is_usual(config)
+def enter_as_nbgrader_does(path: Path) -> None:
+    """Have nbgrader's own steps enter what lies in ``autograded/``."""
+    directory = ClassDirectory(path)
+    for file in sorted((path / "autograded").rglob("*.ipynb")):
+        names = {"student": file.parts[-3], "assignment": file.parts[-2], "notebook": file.stem}
+        resources = {"nbgrader": {**names, "db_url": directory.gradebook_url}}
+        notebook = nbformat.read(file, as_version=4)
+        for step in (SaveAutoGrades, AssignLatePenalties):
+            step(config=directory.config).preprocess(notebook, resources)
+
+
+def page_as_nbgrader_makes_it(path: Path, file: Path) -> str:
+    """A page by nbconvert's whole way, with what nbgrader's own step puts into the notebook."""
+    directory = ClassDirectory(path)
+    exporter: Any = PageExporter(config=directory.config)
+    exporter.register_filter("part_of_page", lambda render, _: render())
+    exporter.register_preprocessor(GetGrades, enabled=True)
+    names = {"student": file.parts[-3], "assignment": file.parts[-2], "notebook": file.stem}
+    notebook = nbformat.read(file, as_version=4)
+    mark_waiting(notebook, directory.gradebook_url, names)
+    resources = {"nbgrader": {**names, "db_url": directory.gradebook_url}}
+    page: str = exporter.from_notebook_node(make_harmless(notebook), resources)[0]
+    return page
 
 
 @pytest.mark.parametrize("penalty", ["none", "zero"])
-def test_both_ways_leave_the_same_behind(
+def test_nbgraders_own_steps_find_nothing_to_change(
     tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path, penalty: str
 ) -> None:
-    with (tiny.path / "nbgrader_config.py").open("a") as config:
-        config.write(f"c.LateSubmissionPlugin.penalty_method = {penalty!r}\n")
+    tiny.configure(f"c.LateSubmissionPlugin.penalty_method = {penalty!r}")
     with sqlite3.connect(tiny.path / "gradebook.db") as book:
         book.execute("UPDATE assignment SET duedate = '2026-01-02 03:04:05.000000'")
-    (tiny.path / "source" / "lab_1_2" / "data.csv").write_text("1,2\n")
     tiny.submit("ada", 10, 4)
     late = tiny.submit("ben", 7, 0).with_name("timestamp.txt")
     late.write_text("2026-01-02 05:04:05.000000 UTC")
@@ -91,21 +106,38 @@ def test_both_ways_leave_the_same_behind(
     # A notebook that its student never touched: nbgrader comments "No response." on it.
     released = tiny.path / "release" / "lab_1_2" / "lab_1_2.ipynb"
     tiny.hand_in("emil", released.read_text())
-    other = TinyClass(tmp_path / "other")
-    shutil.copytree(tiny.path, other.path)
-    other.configure_otherwise()
     tiny.grade(feedback=True)
-    other.grade(feedback=True)
-    # By hand, and once more: what a person entered has to survive both.
-    for which in (tiny, other):
-        with sqlite3.connect(which.path / "gradebook.db") as book:
+    # Entered once more by nbgrader, into a gradebook that says something else; what a person has given stays in both.
+    other = Path(shutil.copytree(tiny.path, tmp_path / "other"))
+    with sqlite3.connect(other / "gradebook.db") as book:
+        book.execute("UPDATE grade SET auto_score = 77, needs_manual_grade = NOT needs_manual_grade")
+        book.execute("UPDATE comment SET auto_comment = 'wrong'")
+        book.execute("UPDATE submitted_notebook SET late_submission_penalty = 5")
+    assert everything(tiny.path) != everything(other)
+    enter_as_nbgrader_does(other)
+    assert everything(tiny.path) == everything(other)
+    assert any("No response." in row for row in everything(tiny.path)["comment c"])
+    for path in (tiny.path, other):
+        with sqlite3.connect(path / "gradebook.db") as book:
             book.execute("UPDATE grade SET manual_score = 3, extra_credit = 1 WHERE auto_score = 4")
             book.execute("UPDATE comment SET manual_comment = 'well done'")
-        which.grade(again=True, feedback=True)
-    assert everything(tiny.path) == everything(other.path)
-    assert notebooks(tiny.path) == notebooks(other.path)
-    assert pages(tiny.path) == pages(other.path)
-    assert any("No response." in row for row in everything(tiny.path)["comment c"])
+    tiny.grade(again=True, feedback=True)
+    enter_as_nbgrader_does(other)
+    assert everything(tiny.path) == everything(other)
+    for file in sorted((tiny.path / "autograded").rglob("*.ipynb")):
+        page = pages(tiny.path)[str(file.relative_to(tiny.path / "autograded").with_suffix(".html"))]
+        theirs = str(BeautifulSoup(page_as_nbgrader_makes_it(tiny.path, file), features="html.parser"))
+        assert page == theirs
+
+
+def test_files_of_the_assignment_are_beside_the_graded_notebook(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    (tiny.path / "source" / "lab_1_2" / "data.csv").write_text("1,2\n")
+    tiny.submit("ada")
+    tiny.grade()
+    assert notebooks(tiny.path)["ada/lab_1_2/data.csv"] == (0o100444, b"1,2\n")
+    assert notebooks(tiny.path)["ada/lab_1_2/lab_1_2.ipynb"][0] == 0o100444
 
 
 def test_what_cannot_be_converted_leaves_zero_and_a_word(

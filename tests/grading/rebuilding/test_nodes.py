@@ -9,7 +9,7 @@ import msgspec
 import nbformat
 import pytest
 
-from autograder.boxes.execution import Kind
+from autograder.boxes.execution import CellType
 from autograder.boxes.outputs import Budget, OutputCollector
 from autograder.grading.rebuilding import nodes
 
@@ -60,7 +60,7 @@ def test_what_is_no_output_is_refused(changed: dict[str, Any]) -> None:
 
 
 def whole() -> Any:
-    cells = [nodes.cell(kind, f"{kind}\n\ntwo lines") for kind in Kind]
+    cells = [nodes.cell(kind, f"{kind}\n\ntwo lines") for kind in CellType]
     cells[0]["outputs"] = [nodes.output(**fields) for fields in collected()]
     cells[1].metadata["nbgrader"] = {"grade_id": "a", "points": 1.0, "solution": False}
     return nodes.notebook(cells, {"autograder": {"remarks": ["one", "two"]}})
@@ -90,5 +90,5 @@ def test_a_copy_shares_nothing_that_can_be_changed() -> None:
 
 
 def test_an_id_is_the_given_one_or_none_that_was_there_before() -> None:
-    assert nodes.cell(Kind.CODE, "", "own").id == "own"
-    assert len({nodes.cell(Kind.CODE, "").id for _ in range(100)}) == 100
+    assert nodes.cell(CellType.CODE, "", "own").id == "own"
+    assert len({nodes.cell(CellType.CODE, "").id for _ in range(100)}) == 100

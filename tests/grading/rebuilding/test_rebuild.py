@@ -4,7 +4,7 @@ import nbformat
 import pytest
 from nbformat import NotebookNode
 
-from autograder.boxes.execution import Kind
+from autograder.boxes.execution import CellType
 from autograder.grading.rebuilding.rebuild import rebuild, rebuild_unreadable
 from autograder.grading.rebuilding.submission import SubmittedCell
 
@@ -41,7 +41,7 @@ def as_submitted(master: NotebookNode, **answers: str) -> list[SubmittedCell]:
     cells = []
     for cell in master.cells:
         name = cell.metadata.get("nbgrader", {}).get("grade_id", "")
-        cells.append(SubmittedCell(Kind(cell.cell_type), answers.get(name, cell.source), name))
+        cells.append(SubmittedCell(CellType(cell.cell_type), answers.get(name, cell.source), name))
     return cells
 
 
@@ -76,7 +76,7 @@ def test_locked_and_check_cells_come_from_the_master(master: NotebookNode) -> No
 
 def test_a_deleted_check_cell_is_put_back_behind_the_students_own_cells(master: NotebookNode) -> None:
     cells = [cell for cell in as_submitted(master, **ANSWERS) if cell.grade_id != "check-talker"]
-    cells.insert(3, SubmittedCell(Kind.CODE, "helper = 1"))
+    cells.insert(3, SubmittedCell(CellType.CODE, "helper = 1"))
     rebuilt = rebuild(master, cells)
     found = sources(rebuilt.notebook)
     assert found.index("helper = 1") < found.index("check(Talker)") < found.index("class Listener: ...")
@@ -87,7 +87,7 @@ def test_the_stub_of_a_deleted_answer_does_not_overwrite_the_answer_in_another_c
     master: NotebookNode,
 ) -> None:
     cells = as_submitted(master, **ANSWERS)
-    cells[2] = SubmittedCell(Kind.CODE, "class Talker: 'in a cell of my own'")
+    cells[2] = SubmittedCell(CellType.CODE, "class Talker: 'in a cell of my own'")
     found = sources(rebuild(master, cells).notebook)
     assert (
         found.index("# TODO")
@@ -99,9 +99,9 @@ def test_the_stub_of_a_deleted_answer_does_not_overwrite_the_answer_in_another_c
 def test_of_a_duplicated_answer_the_last_changed_one_counts_and_all_run(master: NotebookNode) -> None:
     cells = as_submitted(master, **ANSWERS)
     cells[2:3] = [
-        SubmittedCell(Kind.CODE, "class Talker: 'first try'", "Talker"),
-        SubmittedCell(Kind.CODE, "class Talker: 'second try'", "Talker"),
-        SubmittedCell(Kind.CODE, "# TODO", "Talker"),
+        SubmittedCell(CellType.CODE, "class Talker: 'first try'", "Talker"),
+        SubmittedCell(CellType.CODE, "class Talker: 'second try'", "Talker"),
+        SubmittedCell(CellType.CODE, "# TODO", "Talker"),
     ]
     rebuilt = rebuild(master, cells)
     named = {
@@ -116,13 +116,13 @@ def test_of_a_duplicated_answer_the_last_changed_one_counts_and_all_run(master: 
 
 def test_a_duplicated_check_runs_once(master: NotebookNode) -> None:
     cells = as_submitted(master, **ANSWERS)
-    cells.insert(4, SubmittedCell(Kind.CODE, "check(Talker)", "check-talker"))
+    cells.insert(4, SubmittedCell(CellType.CODE, "check(Talker)", "check-talker"))
     assert sources(rebuild(master, cells).notebook).count("check(Talker)") == 1
 
 
 def test_cells_that_changed_places_are_in_order_again_with_their_neighbours(master: NotebookNode) -> None:
     cells = as_submitted(master, **ANSWERS)
-    cells = [*cells[4:], SubmittedCell(Kind.CODE, "after listener's check"), *cells[:4]]
+    cells = [*cells[4:], SubmittedCell(CellType.CODE, "after listener's check"), *cells[:4]]
     rebuilt = rebuild(master, cells)
     found = [source for source in sources(rebuilt.notebook) if source in WHOLE[1:]]
     assert found == WHOLE[1:]
@@ -131,13 +131,13 @@ def test_cells_that_changed_places_are_in_order_again_with_their_neighbours(mast
 
 def test_a_helper_cell_stays_before_the_answer_that_needs_it(master: NotebookNode) -> None:
     cells = as_submitted(master, **ANSWERS)
-    cells.insert(2, SubmittedCell(Kind.CODE, "def text(n): ..."))
+    cells.insert(2, SubmittedCell(CellType.CODE, "def text(n): ..."))
     found = sources(rebuild(master, cells).notebook)
     assert found.index("import rclpy") < found.index("def text(n): ...") < found.index("class Talker: ...")
 
 
-@pytest.mark.parametrize("kind", [Kind.MARKDOWN, Kind.RAW])
-def test_a_retyped_answer_is_code_again(master: NotebookNode, kind: Kind) -> None:
+@pytest.mark.parametrize("kind", [CellType.MARKDOWN, CellType.RAW])
+def test_a_retyped_answer_is_code_again(master: NotebookNode, kind: CellType) -> None:
     cells = as_submitted(master, **ANSWERS)
     cells[2] = SubmittedCell(kind, "class Talker: ...", "Talker")
     rebuilt = rebuild(master, cells)
@@ -148,7 +148,7 @@ def test_a_retyped_answer_is_code_again(master: NotebookNode, kind: Kind) -> Non
 
 
 def test_a_cell_that_claims_a_name_nobody_gave_is_the_students_own(master: NotebookNode) -> None:
-    cells = [*as_submitted(master, **ANSWERS), SubmittedCell(Kind.CODE, "99", "bonus")]
+    cells = [*as_submitted(master, **ANSWERS), SubmittedCell(CellType.CODE, "99", "bonus")]
     rebuilt = rebuild(master, cells)
     assert "nbgrader" not in rebuilt.notebook.cells[-1].metadata
     assert "no graded cell `bonus`" in " ".join(rebuilt.remarks)
@@ -169,14 +169,14 @@ def test_an_unreadable_submission_is_the_master_with_the_reason(master: Notebook
 
 
 def test_a_remark_cannot_carry_markup(master: NotebookNode) -> None:
-    cells = [*as_submitted(master), SubmittedCell(Kind.CODE, "1", "<script>alert(1)</script>")]
+    cells = [*as_submitted(master), SubmittedCell(CellType.CODE, "1", "<script>alert(1)</script>")]
     text = rebuild(master, cells).notebook.cells[0].source
     assert "<script" not in text
     assert "<img" not in rebuild_unreadable(master, "<img src=x onerror=alert(1)>").notebook.cells[0].source
 
 
 def test_the_same_submission_gives_the_same_bytes_and_a_valid_notebook(master: NotebookNode) -> None:
-    cells = [*as_submitted(master, **ANSWERS), SubmittedCell(Kind.RAW, "notes")]
+    cells = [*as_submitted(master, **ANSWERS), SubmittedCell(CellType.RAW, "notes")]
     first, second = (nbformat.writes(rebuild(master, cells).notebook) for _ in range(2))
     assert first == second
     nbformat.validate(nbformat.reads(first, as_version=4))

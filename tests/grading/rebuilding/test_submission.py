@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from autograder.boxes.execution import Kind
+from autograder.boxes.execution import CellType
 from autograder.grading.rebuilding import submission
 from autograder.grading.rebuilding.submission import SubmittedCell, UnreadableSubmission, parse, read_bytes
 
@@ -32,7 +32,7 @@ def test_takes_the_text_and_the_claimed_name_and_nothing_else() -> None:
         id="x",
     )
     cells, left_out = parse(notebook(tagged))
-    assert cells == [SubmittedCell(Kind.CODE, "a = 1\nb = 2", "Talker")]
+    assert cells == [SubmittedCell(CellType.CODE, "a = 1\nb = 2", "Talker")]
     assert left_out == 0
 
 
@@ -60,7 +60,7 @@ def test_metadata_of_any_form_is_no_name() -> None:
 
 def test_reads_a_notebook_of_format_3() -> None:
     old = {"nbformat": 3, "worksheets": [{"cells": [{"cell_type": "code", "input": ["x = 1"]}]}]}
-    assert parse(json.dumps(old).encode())[0] == [SubmittedCell(Kind.CODE, "x = 1")]
+    assert parse(json.dumps(old).encode())[0] == [SubmittedCell(CellType.CODE, "x = 1")]
 
 
 def test_a_byte_order_mark_is_no_obstacle() -> None:

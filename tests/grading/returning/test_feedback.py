@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from tiny_class import TALKER, TinyClass
 
-from autograder.boxes.execution import Kind
+from autograder.boxes.execution import CellType
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
 from autograder.grading.entering import gradebook
 from autograder.grading.entering.gradebook import CellState, NotebookState
-from autograder.grading.pages import POLICY
 from autograder.grading.rebuilding import nodes
 from autograder.grading.returning import feedback
+from autograder.grading.returning.page_exporter import POLICY, PageExporter
 from autograder.grading.returning.render_cache import Remembered
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def marked(cell: NotebookNode, **marks: object) -> NotebookNode:
 
 def one_of_each() -> list[NotebookNode]:
     """A cell of each kind that a graded notebook can have."""
-    answer = marked(nodes.cell(Kind.CODE, "def talk():\n    return 10", "1"), solution=True, locked=False)
+    answer = marked(nodes.cell(CellType.CODE, "def talk():\n    return 10", "1"), solution=True, locked=False)
     answer["outputs"] = [
         nodes.output(output_type="stream", name="stdout", text="\x1b[31mred\x1b[0m <b>\n"),
         nodes.output(
@@ -49,7 +49,7 @@ def one_of_each() -> list[NotebookNode]:
         ),
         nodes.output(output_type="error", ename="E", evalue="v", traceback=["line 1", "line 2"]),
     ]
-    check = marked(nodes.cell(Kind.CODE, "check()", "2"), grade=True, points=1.0)
+    check = marked(nodes.cell(CellType.CODE, "check()", "2"), grade=True, points=1.0)
     check["outputs"] = [
         nodes.output(
             output_type="display_data", data={"text/html": "<p>card</p>", "text/plain": "card"}, metadata={}
@@ -59,11 +59,11 @@ def one_of_each() -> list[NotebookNode]:
         ),
     ]
     return [
-        nodes.cell(Kind.MARKDOWN, "# Given\n\nwith *words*", "0"),
+        nodes.cell(CellType.MARKDOWN, "# Given\n\nwith *words*", "0"),
         answer,
         check,
-        marked(nodes.cell(Kind.CODE, "print(1)", "3")),
-        nodes.cell(Kind.RAW, "raw text", "4"),
+        marked(nodes.cell(CellType.CODE, "print(1)", "3")),
+        nodes.cell(CellType.RAW, "raw text", "4"),
     ]
 
 
@@ -185,7 +185,7 @@ def test_what_the_chapter_gives_is_rendered_once(pages: Pages, monkeypatch: pyte
     maker = feedback.FeedbackPages(pages.directory)
     pages.make(maker, keep)
     rendered = []
-    usual = feedback._PageExporter._part
+    usual = PageExporter._part
 
     def noting(self: Any, lexer: str, render: Callable[[], str], depends_on: Any) -> str:
         def noted() -> str:
@@ -194,7 +194,7 @@ def test_what_the_chapter_gives_is_rendered_once(pages: Pages, monkeypatch: pyte
 
         return usual(self, lexer, noted, depends_on)
 
-    monkeypatch.setattr(feedback._PageExporter, "_part", noting)
+    monkeypatch.setattr(PageExporter, "_part", noting)
     pages.make(maker, keep)
     assert [cell.id for cell in rendered] == ["2"], "only the check: its card is this student's"
     pages.make(maker, change_count)

@@ -11,7 +11,7 @@ import pytest
 from nbconvert.exporters import HTMLExporter
 from nbformat import NotebookNode
 
-from autograder.boxes.execution import Kind
+from autograder.boxes.execution import CellType
 from autograder.grading.pages import markdown_to_html
 from autograder.grading.rebuilding.rebuild import rebuild, rebuild_unreadable
 from autograder.grading.rebuilding.submission import SubmittedCell
@@ -37,7 +37,7 @@ def master() -> NotebookNode:
 
 
 def submitted(*texts: str) -> list[SubmittedCell]:
-    return [SubmittedCell(Kind.MARKDOWN, text) for text in texts]
+    return [SubmittedCell(CellType.MARKDOWN, text) for text in texts]
 
 
 @pytest.mark.parametrize("chapter", sorted(CHAPTERS.glob("*/lab_*.ipynb")), ids=lambda path: path.stem)
@@ -46,7 +46,7 @@ def test_a_page_shows_every_figure_of_the_chapter(chapter: Path) -> None:
     figures = [data["image/png"] for cell in notebook.cells for data in cell.get("attachments", {}).values()]
     cells = [
         SubmittedCell(
-            Kind(cell.cell_type), cell.source, cell.metadata.get("nbgrader", {}).get("grade_id", "")
+            CellType(cell.cell_type), cell.source, cell.metadata.get("nbgrader", {}).get("grade_id", "")
         )
         for cell in notebook.cells
     ]

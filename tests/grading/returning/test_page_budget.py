@@ -8,7 +8,7 @@ import nbformat
 import pytest
 from nbconvert.exporters import HTMLExporter
 
-from autograder.boxes.execution import Cell, Kind
+from autograder.boxes.execution import Cell, CellType
 from autograder.grading.returning.page_budget import SECONDS, too_costly
 from autograder.grading.returning.page_limits import HARMLESS_LENGTH
 from autograder.grading.returning.sanitize import make_harmless
@@ -53,13 +53,15 @@ CODE = {
         "other languages": "%%html\n<a ",
     }.items()
 }
-ALL = [(kind, name) for kind, texts in ((Kind.MARKDOWN, MARKDOWN), (Kind.CODE, CODE)) for name in texts]
+ALL = [
+    (kind, name) for kind, texts in ((CellType.MARKDOWN, MARKDOWN), (CellType.CODE, CODE)) for name in texts
+]
 
 
 def notebook_of(cells: list[Cell]) -> nbformat.NotebookNode:
-    make: dict[Kind, Any] = {
-        Kind.MARKDOWN: nbformat.v4.new_markdown_cell,
-        Kind.CODE: nbformat.v4.new_code_cell,
+    make: dict[CellType, Any] = {
+        CellType.MARKDOWN: nbformat.v4.new_markdown_cell,
+        CellType.CODE: nbformat.v4.new_code_cell,
     }
     new_notebook: Any = nbformat.v4.new_notebook
     made = new_notebook(cells=[make[cell.kind](cell.source) for cell in cells])
@@ -67,12 +69,12 @@ def notebook_of(cells: list[Cell]) -> nbformat.NotebookNode:
     return made
 
 
-def text_of(kind: Kind, name: str) -> str:
-    return (MARKDOWN if kind is Kind.MARKDOWN else CODE)[name]
+def text_of(kind: CellType, name: str) -> str:
+    return (MARKDOWN if kind is CellType.MARKDOWN else CODE)[name]
 
 
 @pytest.mark.parametrize(("kind", "name"), ALL)
-def test_what_is_shown_as_typed_is_short_on_the_page(kind: Kind, name: str) -> None:
+def test_what_is_shown_as_typed_is_short_on_the_page(kind: CellType, name: str) -> None:
     text = text_of(kind, name)
     notebook = make_harmless(notebook_of([Cell(text, kind, own=True) for _ in range(3)]), (0, 1, 2))
     assert text[: HARMLESS_LENGTH // 3] in notebook.cells[0].source
@@ -84,17 +86,17 @@ def test_what_is_shown_as_typed_is_short_on_the_page(kind: Kind, name: str) -> N
 @pytest.mark.parametrize("name", ["links", "brackets", "pictures"])
 def test_what_costs_a_filter_of_the_page_costs_the_trial(name: str) -> None:
     """Plain in the Markdown parser's eyes, and seconds in those of ``strip_files_prefix``."""
-    assert too_costly([Cell(MARKDOWN[name], Kind.MARKDOWN, own=True)], BUDGET) == (0,)
+    assert too_costly([Cell(MARKDOWN[name], CellType.MARKDOWN, own=True)], BUDGET) == (0,)
 
 
 FILTERS = {
-    Kind.MARKDOWN: "nbconvert.filters.strings.strip_files_prefix",
-    Kind.CODE: "nbconvert.filters.strings.clean_html",
+    CellType.MARKDOWN: "nbconvert.filters.strings.strip_files_prefix",
+    CellType.CODE: "nbconvert.filters.strings.clean_html",
 }
 
 
 @pytest.mark.parametrize("kind", FILTERS)
-def test_the_trial_takes_the_steps_of_the_page(kind: Kind, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_trial_takes_the_steps_of_the_page(kind: CellType, monkeypatch: pytest.MonkeyPatch) -> None:
     """A page is parsed once more when it is done, so the parser sees each text of the trial, too."""
     seen: list[str] = []
 
@@ -113,11 +115,11 @@ def test_the_trial_takes_the_steps_of_the_page(kind: Kind, monkeypatch: pytest.M
 def test_what_comes_behind_is_shown_as_typed_too_and_what_came_before_is_not() -> None:
     bomb = MARKDOWN["formulas that open"]
     cells = [
-        Cell("*fine*", Kind.MARKDOWN, own=True),
-        Cell("the master's", Kind.MARKDOWN),
-        Cell(bomb, Kind.MARKDOWN, own=True),
-        Cell("x = 1", Kind.CODE, own=True),
-        Cell("*late*", Kind.MARKDOWN, own=True),
+        Cell("*fine*", CellType.MARKDOWN, own=True),
+        Cell("the master's", CellType.MARKDOWN),
+        Cell(bomb, CellType.MARKDOWN, own=True),
+        Cell("x = 1", CellType.CODE, own=True),
+        Cell("*late*", CellType.MARKDOWN, own=True),
     ]
     assert too_costly(cells, 0.2) == (2, 3, 4)
     notebook = make_harmless(notebook_of(cells), (2, 3, 4))
@@ -136,9 +138,9 @@ def test_what_students_usually_write_is_within_it() -> None:
     )
     code = "class TalkerNode(Node):\n    def __init__(self):\n        super().__init__('talker')\n" * 50
     assert len(text) > HARMLESS_LENGTH
-    cells = [Cell(text, Kind.MARKDOWN, own=True), Cell(code, Kind.CODE, own=True)]
+    cells = [Cell(text, CellType.MARKDOWN, own=True), Cell(code, CellType.CODE, own=True)]
     assert too_costly(cells, SECONDS) == ()
 
 
 def test_a_masters_texts_cost_nothing() -> None:
-    assert too_costly([Cell(MARKDOWN["nested HTML"], Kind.MARKDOWN)], 0.0) == ()
+    assert too_costly([Cell(MARKDOWN["nested HTML"], CellType.MARKDOWN)], 0.0) == ()

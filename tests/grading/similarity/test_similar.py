@@ -16,6 +16,7 @@ from answers_of_students import ALSO_NEAR, COPIED, NEAR, OF_ONES_OWN, SOLUTION, 
 
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.collecting.tidying import tidy
 from autograder.grading.errors import GradingError
 from autograder.grading.similarity.finding import Similar, find_similar
 from autograder.grading.similarity.page import page
@@ -171,6 +172,30 @@ def test_what_cannot_be_read_has_a_line_and_stops_nothing(class_: TinyClass) -> 
     text = (class_.path / "similar.html").read_text()
     assert "broken/lab_1_2" in text
     assert "<b>/" not in text
+
+
+def test_what_lies_beside_its_place_is_named_and_stays_there(class_: TinyClass) -> None:
+    for student in ("ada", "ben", "eve", "zoe"):
+        hand_in(class_, student, OF_ONES_OWN)
+    submitted = class_.path / "submitted"
+    alone = (submitted / "eve" / "lab_1_2" / "lab_1_2.ipynb").rename(
+        submitted / "eve" / "lab_1_2" / "lab_1_2 (1).ipynb"
+    )
+    high = (submitted / "zoe" / "lab_1_2" / "lab_1_2.ipynb").rename(submitted / "zoe" / "lab_1_2.ipynb")
+    (submitted / "moodle.zip").write_bytes(b"PK")
+    code, output = run(class_)
+    assert code == 2
+    said = " ".join(output.split())
+    assert f"not compared {alone}: it belongs at {alone.with_name('lab_1_2.ipynb')}" in said
+    assert f"not compared {high}: it belongs at" in said
+    assert f"refused {submitted / 'moodle.zip'}: whose it is cannot be seen" in said
+    assert alone.is_file()
+    assert high.is_file()
+    assert students(found(class_)) == [("ada", "ben")]
+    (submitted / "moodle.zip").unlink()
+    tidy(ClassDirectory(class_.path))
+    assert len(found(class_).pairs) == 6
+    assert "not compared" not in run(class_)[1]
 
 
 def test_one_student_is_compared_with_nobody(class_: TinyClass) -> None:

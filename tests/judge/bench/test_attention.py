@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import sys
-from random import Random
 from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.judge.bench.bench import TestBench
-from autograder.judge.serving import domain
-from autograder.judge.subjects.command_subject import CommandSubject
 from autograder.kit.evidence import Evidence, Reference
-from autograder.kit.model import Look
 from autograder.kit.texts_said import is_said
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from collections.abc import Callable
+    from contextlib import AbstractContextManager
+
+    from autograder.judge.bench.bench import TestBench
+
+    BenchOf = Callable[[str, Reference], AbstractContextManager[TestBench]]
 
 pytestmark = pytest.mark.ros
 
@@ -35,19 +34,10 @@ rclpy.spin(node)
 """
 
 
-def test_a_best_effort_listener_hears_the_first_text_of_a_publisher_it_meets_last(tmp_path: Path) -> None:
-    program = tmp_path / "listener.py"
-    program.write_text(BEST_EFFORT_LISTENER)
-    reference = Reference("a test", {"subscription": {TOPIC: TYPE}})
-    with domain.lease() as domain_id:
-        subject = CommandSubject([sys.executable, str(program)])
-        subject.begin(domain_id)
-        bench = TestBench(subject, domain_id, reference, Look.REAL_TIME, Random("a seed"))
-        try:
-            for turn in range(TIMES):
-                assert _is_heard(bench, f"text {turn}")
-        finally:
-            bench.close()
+def test_a_best_effort_listener_hears_the_first_text_of_a_publisher_it_meets_last(bench_of: BenchOf) -> None:
+    with bench_of(BEST_EFFORT_LISTENER, Reference("a test", {"subscription": {TOPIC: TYPE}})) as bench:
+        for turn in range(TIMES):
+            assert _is_heard(bench, f"text {turn}")
 
 
 def _is_heard(bench: TestBench, text: str) -> bool:

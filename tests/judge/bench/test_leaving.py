@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import sys
-from random import Random
 from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.judge.bench.bench import TestBench
-from autograder.judge.serving import domain
-from autograder.judge.subjects.command_subject import CommandSubject
 from autograder.kit.evidence import Evidence, Reference
-from autograder.kit.model import Look
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+    from contextlib import AbstractContextManager
     from pathlib import Path
+
+    from autograder.judge.bench.bench import TestBench
+
+    BenchOf = Callable[[str, Reference], AbstractContextManager[TestBench]]
 
 pytestmark = pytest.mark.ros
 
@@ -41,24 +41,15 @@ print("last words", flush=True)
 """Without the wait its last words were lost, and that it ends by itself."""
 
 
-def test_what_a_program_says_after_it_left_the_graph_is_heard(tmp_path: Path) -> None:
-    program = tmp_path / "talker.py"
-    program.write_text(LEAVING_TALKER)
-    reference = Reference("a test", {"publisher": {TOPIC: TYPE}})
-    with domain.lease() as domain_id:
-        subject = CommandSubject([sys.executable, str(program)])
-        subject.begin(domain_id)
-        bench = TestBench(subject, domain_id, reference, Look.REAL_TIME, Random("a seed"))
-        try:
-            bench.part("leaving")
-            bench.listen(TOPIC, TYPE)
-            bench.start(str(sign := tmp_path / "leave now"))
-            assert bench.await_endpoint("publisher", TOPIC)
-            sign.touch()
-            bench.watch_graph(_has_left, 10.0)  # or until it has ended
-            bench.stop()
-        finally:
-            bench.close()
+def test_what_a_program_says_after_it_left_the_graph_is_heard(bench_of: BenchOf, tmp_path: Path) -> None:
+    with bench_of(LEAVING_TALKER, Reference("a test", {"publisher": {TOPIC: TYPE}})) as bench:
+        bench.part("leaving")
+        bench.listen(TOPIC, TYPE)
+        bench.start(str(sign := tmp_path / "leave now"))
+        assert bench.await_endpoint("publisher", TOPIC)
+        sign.touch()
+        bench.watch_graph(_has_left, 10.0)  # or until it has ended
+        bench.stop()
     (part,) = bench.parts
     assert part.ending is not None
     assert part.said() == ["last words"]

@@ -6,6 +6,10 @@ import json
 import os
 import signal
 import socket
+import sys
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import msgspec
@@ -14,13 +18,16 @@ import pytest
 from autograder.judge.serving.fork import Outcome
 from autograder.judge.serving.process import JudgeDied, JudgeProcess, _Child
 from autograder.judge.serving.server import JudgeServer
+from autograder.judge.verdicts import keeping
 from autograder.messages.orders import Report
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
     from autograder.judge.serving.fork import Child
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "notebook"))
+from checked import _Changed
 
 pytestmark = pytest.mark.ros
 
@@ -72,6 +79,33 @@ def test_a_check_that_nobody_opened_is_refused(judge: JudgeProcess) -> None:
     kernel.say(say="check", exercise="lab_1_2.talker")
     assert kernel.hear()["say"] == "refused"
     assert judge.close() is None
+
+
+def test_the_evidence_comes_with_the_verdict_where_it_is_asked_for(judge: JudgeProcess) -> None:
+    judge.open("lab_1_2.talker")
+    Kernel(judge).fail_at_once("lab_1_2.talker")
+    assert judge.close_report().evidence == b""
+    judge.keeps_evidence = True
+    judge.open("lab_1_2.talker")
+    told = Kernel(judge).fail_at_once("lab_1_2.talker")
+    report = judge.close_report()
+    kept = keeping.unpack(report.evidence)
+    assert "evidence" not in told
+    assert report.verdict == replace(kept.verdict, timeline=report.verdict.timeline if report.verdict else ())
+    (part,) = kept.looks[0].parts
+    assert "RuntimeError: no" in str([event.data for event in part.events if event.name == "raised"])
+
+
+def test_evidence_that_cannot_be_packed_costs_no_verdict(tmp_path: Path) -> None:
+    change = "import autograder.judge.verdicts.keeping as keeping; keeping.pack = lambda *_, **__: 1 / 0"
+    start = partial(_Changed, change)
+    with JudgeProcess(tmp_path / "judge", seed="s", start=start) as judge:
+        judge.keeps_evidence = True
+        judge.open("lab_1_2.talker")
+        Kernel(judge).fail_at_once("lab_1_2.talker")
+        report = judge.close_report()
+    assert report.verdict is not None
+    assert report.evidence == b""
 
 
 def test_an_opened_check_counts_and_a_second_one_does_not(judge: JudgeProcess) -> None:

@@ -56,6 +56,20 @@ def _await_ready_then_stop(subject: CommandSubject, recorder: Recorder) -> None:
     subject.stop()
 
 
+def _await_ready_then_press_ctrl_c(subject: CommandSubject, recorder: Recorder) -> None:
+    assert recorder.wait(lambda: recorder.part().said() != [], 60.0)
+    subject.interrupt()
+    _await_end(subject, recorder)
+
+
+def test_what_ends_on_ctrl_c_has_ended_by_itself() -> None:
+    program = "import signal\ntry:\n    print('ready')\n    signal.pause()\nexcept KeyboardInterrupt:\n    print('bye')"
+    part = _part(_await_ready_then_press_ctrl_c, program)
+    assert part.said() == ["ready", "bye"]
+    assert part.ending is not None
+    assert (part.ending.name, part.ending.data["code"]) == ("exited", 0)
+
+
 def test_all_that_it_printed_is_there_before_its_end() -> None:
     part = _part(_await_end, "import sys; print('out'); print('err', file=sys.stderr); sys.exit(3)")
     assert sorted(part.said()) == ["err", "out"]

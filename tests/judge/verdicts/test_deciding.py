@@ -65,7 +65,7 @@ def test_a_criterion_without_an_end_is_zero_with_a_reason(
         reference.load(usual.id),
         seed="s",
         domain_id=0,
-    )
+    ).verdict
     assert (verdict.state, verdict.score, verdict.max_score) == (State.FAILED, 0.0, 10.0)
     assert verdict.diagnosis
     assert verdict.diagnosis.key == "undecidable"

@@ -148,6 +148,20 @@ def test_a_package_is_built_with_what_it_depends_on(workspace: Path) -> None:
     assert [prefix.name for prefix in made.prefixes] == ["other_pkg", "tiny_pkg"]
 
 
+def test_what_a_package_depends_on_may_fail_where_it_is_not_asked_for(workspace: Path) -> None:
+    other = python_package(workspace / "src", "other_pkg")
+    (other / "setup.py").write_text("setup(")
+    file = workspace / "src" / "tiny_pkg" / "package.xml"
+    file.write_text(file.read_text().replace("<license>", "<depend>other_pkg</depend>\n  <license>"))
+    made = build(workspace, only_tiny)
+    assert made.ok, made.log
+    assert [prefix.name for prefix in made.prefixes] == ["tiny_pkg"]
+    assert [package.name for package in made.packages] == ["other_pkg", "tiny_pkg"]
+    assert build(workspace).package == "other_pkg"
+    (workspace / "src" / "tiny_pkg" / "setup.py").write_text("setup(")
+    assert not build(workspace, only_tiny).ok
+
+
 def test_a_package_that_may_be_the_one_that_is_needed_is_no_neighbour(workspace: Path) -> None:
     (python_package(workspace / "src", "other_pkg") / "package.xml").write_text("<package>")
     assert build(workspace, lambda _: []).trouble == "bad_package"

@@ -17,6 +17,7 @@ from autograder.boxes.sandbox import Enclosure, why_impossible
 from autograder.workspaces.building.colcon import look
 from autograder.workspaces.building.trusted import TrustedBuilds
 from autograder.workspaces.grading.boxed_jobs import BoxedJobs, BoxedProgram
+from autograder.workspaces.grading.jobs import ProgramJob
 from autograder.workspaces.running.plans import course_interfaces
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -74,11 +75,13 @@ def test_it_is_built_in_a_box_and_run_in_another(
     assert not build.install.is_relative_to(workspace)
     (tmp_path / "tree").mkdir()
     program = jobs.start(
-        [sys.executable, "/home/student/ros2_ws/install/tiny_pkg/lib/tiny_pkg/hello"],
-        {**jobs.environment, "PYTHONPATH": f"/home/student/ros2_ws/install/tiny_pkg/{_library()}"},
-        sources=tmp_path / "tree",
-        entries={"ros2_ws": build.install.parent},
-        hidden=(),
+        ProgramJob(
+            [sys.executable, "/home/student/ros2_ws/install/tiny_pkg/lib/tiny_pkg/hello"],
+            {**jobs.environment, "PYTHONPATH": f"/home/student/ros2_ws/install/tiny_pkg/{_library()}"},
+            sources=tmp_path / "tree",
+            entries={"ros2_ws": build.install.parent},
+            hidden=(),
+        )
     )
     assert said(program) == "hello from the workspace\n"
     assert program.exit_code() == 0
@@ -91,10 +94,20 @@ def test_a_program_sees_nothing_that_the_notebook_has_written(supervisors: str, 
         assert b"of-the-notebook" in submission.run(["/bin/sh", "-c", write], limit=20.0).output
         jobs = BoxedJobs(supervisors, submission, tmp_path)
         look_for = ["/bin/sh", "-c", "ls -R /home/student /tmp /dev/shm; touch /home/student/notebook/x"]
-        program = jobs.start(look_for, jobs.environment, sources=tmp_path / "tree", entries={}, hidden=())
+        program = jobs.start(ProgramJob(look_for, jobs.environment, tmp_path / "tree", entries={}, hidden=()))
         output = said(program)
     assert "of-the-notebook" not in output
     assert "Read-only file system" in output
+
+
+def test_ctrl_c_reaches_a_program_in_its_box(jobs: BoxedJobs, tmp_path: Path) -> None:
+    (tmp_path / "tree").mkdir()
+    wait = ["/bin/sh", "-c", "trap 'echo bye; exit 4' INT; echo ready; while :; do sleep 0.05; done"]
+    program = jobs.start(ProgramJob(wait, jobs.environment, tmp_path / "tree", entries={}, hidden=()))
+    assert program.read(60.0) == b"ready\n"
+    program.interrupt()
+    assert said(program) == "bye\n"
+    assert program.exit_code() == 4
 
 
 def _library() -> str:

@@ -11,7 +11,7 @@ import pytest
 
 from autograder import course
 from autograder.boxes.sandbox import why_impossible
-from autograder.execution.plan import Kind, plan
+from autograder.execution.plan import NotebookKind, plan
 from autograder.grading.running import engine
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -23,37 +23,43 @@ if TYPE_CHECKING:
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 needs_boxes = pytest.mark.skipif(bool(why_impossible()), reason=f"no boxes here: {why_impossible()}")
-NOTEBOOKS = ("lab_1_1", "lab_1_3", "exercise_1_1")
+NOTEBOOKS = ("lab_1_1", "lab_1_2", "lab_1_3", "exercise_1_1")
 ANSWERS = (
     "lab_1_1.hello/wrong/entry_point_module.workspace",
+    "lab_1_2.programs/right/the_labs_own.workspace",
+    "lab_1_2.programs/wrong/ignores_ctrl_c.workspace",
     "exercise_1_1.remap/wrong/only_one_remapped_listener.launch.xml",
 )
 
 
 @pytest.fixture(scope="module")
-def executions(tmp_path_factory: pytest.TempPathFactory) -> dict[tuple[Kind, str], Execution]:
+def executions(tmp_path_factory: pytest.TempPathFactory) -> dict[tuple[NotebookKind, str], Execution]:
     """What came of each notebook: of the masters, and of one as it is handed out."""
     planned = [
         one
         for one in plan(course.root(), NOTEBOOKS)
-        if one.kind is Kind.MASTER or one.task.notebook == "lab_1_1"
+        if one.kind is NotebookKind.MASTER or one.task.notebook == "lab_1_1"
     ]
     tasks = [replace(one.task, boxed=True) for one in planned]
     done = engine.execute_all(tasks, tmp_path_factory.mktemp("s"), 2)
-    return {(Kind(result.task.student), result.task.notebook): result.execution for result in done}
+    return {(NotebookKind(result.task.student), result.task.notebook): result.execution for result in done}
 
 
 @needs_boxes
 @pytest.mark.parametrize("notebook", NOTEBOOKS)
-def test_the_master_gets_full_marks(executions: dict[tuple[Kind, str], Execution], notebook: str) -> None:
-    execution = executions[Kind.MASTER, notebook]
+def test_the_master_gets_full_marks(
+    executions: dict[tuple[NotebookKind, str], Execution], notebook: str
+) -> None:
+    execution = executions[NotebookKind.MASTER, notebook]
     assert execution.trouble == ""
     assert [verdict for verdict in execution.verdicts.values() if verdict.score != verdict.max_score] == []
 
 
 @needs_boxes
-def test_the_chapter_as_it_is_handed_out_gets_none(executions: dict[tuple[Kind, str], Execution]) -> None:
-    execution = executions[Kind.CHAPTER, "lab_1_1"]
+def test_the_chapter_as_it_is_handed_out_gets_none(
+    executions: dict[tuple[NotebookKind, str], Execution],
+) -> None:
+    execution = executions[NotebookKind.CHAPTER, "lab_1_1"]
     assert execution.trouble == ""
     assert [verdict.score for verdict in execution.verdicts.values()] == [0]
 

@@ -20,7 +20,7 @@ from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, Lines
 from autograder.workspaces.building import client, colcon_stand_in
 from autograder.workspaces.grading import service, session
-from autograder.workspaces.grading.jobs import Built
+from autograder.workspaces.grading.jobs import BuildJob, Built, ProgramJob
 from autograder.workspaces.grading.plain_jobs import PlainProgram
 from autograder.workspaces.grading.service import ServiceSockets, WorkspaceService
 from autograder.workspaces.sources import collecting
@@ -55,23 +55,15 @@ class FakeJobs:
     def tree(self, sources: Path) -> Path:
         return Path("/home/student/notebook")
 
-    def build(
-        self,
-        name: str,
-        entry: Path,
-        command: Sequence[str],
-        variables: Mapping[str, str],
-        cancelled: Callable[[], bool],
-        hidden: Sequence[Path],
-    ) -> Built:
-        self.builds.append(sorted(path.name for path in (entry / "src").iterdir()))
-        self.sources.append("".join(path.read_text() for path in entry.rglob("*") if path.is_file()))
-        self.waiting(cancelled)
+    def build(self, job: BuildJob) -> Built:
+        self.builds.append(sorted(path.name for path in (job.entry / "src").iterdir()))
+        self.sources.append("".join(path.read_text() for path in job.entry.rglob("*") if path.is_file()))
+        self.waiting(job.cancelled)
         return self.built
 
-    def start(self, command: Sequence[str], environment: Mapping[str, str], **rest: Any) -> PlainProgram:
-        self.commands.append(command)
-        return PlainProgram(["/bin/sh", "-c", self.script], environment, rest["sources"])
+    def start(self, job: ProgramJob) -> PlainProgram:
+        self.commands.append(job.command)
+        return PlainProgram(["/bin/sh", "-c", self.script], job.environment, job.sources)
 
 
 def _packed(*names: str) -> bytes:
@@ -189,6 +181,27 @@ def test_a_failed_build_is_told_and_not_kept(sockets: ServiceSockets, jobs: Fake
     assert reports(judge.run(2))[-1]["built"]
 
 
+def test_what_fails_and_is_only_depended_on_takes_nothing_away(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
+) -> None:
+    interface_package(lab / "src" / "my_robot_interfaces")
+    file = lab / "src" / "my_robot_pkg" / "package.xml"
+    file.write_text(
+        file.read_text().replace("<license>", "<depend>my_robot_interfaces</depend>\n  <license>")
+    )
+    good, jobs.built = jobs.built, Built(1, b"no\nFailed   <<< my_robot_interfaces\n")
+
+    def mended(_: Callable[[], bool]) -> None:
+        if jobs.builds[-1] == ["my_robot_pkg"]:
+            jobs.built = good
+
+    jobs.waiting = mended
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    assert reports(judge.run())[-1]["built"]
+    assert jobs.builds == [["my_robot_interfaces", "my_robot_pkg"], ["my_robot_pkg"]]
+
+
 def test_what_a_failed_build_has_left_is_not_taken(
     sockets: ServiceSockets, jobs: FakeJobs, lab: Path
 ) -> None:
@@ -280,6 +293,56 @@ def test_a_run_is_ended_when_the_judge_says_so(sockets: ServiceSockets, jobs: Fa
         pass
     judge.lines.say(messages.Stop(1))
     assert judge.hear() == {"say": "stopped", "run": 1}
+
+
+TRAP = "trap 'echo bye; exit 4' INT; echo started; while :; do sleep 0.05; done"
+
+
+def test_ctrl_c_ends_the_program_that_the_judge_has_named(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
+) -> None:
+    jobs.built = Built(0, b"", _packed("my_robot_pkg/lib/my_robot_pkg/talker", "my_robot_pkg/share/x"))
+    jobs.script = TRAP
+    judge = FakeJudge(sockets)
+    judge.check(lab, "lab_1_2.programs")
+    judge.lines.say(messages.Start(1, ("talker", "7")))
+    while judge.hear().get("text") != "started":
+        pass
+    assert jobs.commands[0][-4:] == ["run", "my_robot_pkg", "talker", "7"]
+    judge.lines.say(messages.Interrupt(1))
+    assert judge.hear() == {"say": "output", "run": 1, "text": "bye"}
+    assert judge.hear() == {"say": "exited", "run": 1, "code": 4}
+
+
+def test_a_program_that_was_not_built_is_named_and_the_other_one_runs(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
+) -> None:
+    jobs.built = Built(0, b"", _packed("my_robot_pkg/lib/my_robot_pkg/talker", "my_robot_pkg/share/x"))
+    judge = FakeJudge(sockets)
+    judge.check(lab, "lab_1_2.programs")
+    missing = []
+    for run, program in enumerate(("talker", "listener"), 1):
+        judge.lines.say(messages.Start(run, (program,)))
+        heard: list[dict[str, Any]] = []
+        while not heard or heard[-1]["say"] != "exited":
+            heard.append(judge.hear())
+        missing.append(reports(heard)[-1]["missing"])
+    assert missing == ["", "listener"]
+    assert len(jobs.commands) == 1
+
+
+def test_ctrl_c_for_an_earlier_run_ends_no_later_one(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
+) -> None:
+    jobs.script = TRAP
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    judge.lines.say(messages.Start(2))
+    while judge.hear().get("text") != "started":
+        pass
+    judge.lines.say(messages.Interrupt(1))
+    judge.lines.say(messages.Stop(2))
+    assert judge.hear() == {"say": "stopped", "run": 2}
 
 
 def test_a_build_is_given_up_when_nobody_waits_for_it(

@@ -23,7 +23,15 @@ REPORT = WorkspaceReport(
     built=False,
     line="setup.py:7: “bad”",
     packages=[
-        PackageReport("a", "ament_cmake", ["p = a.b:c"], [Interface("srv/A.srv", "int64 a\n---\n", True)], [])
+        PackageReport(
+            "a",
+            "ament_cmake",
+            ["p = a.b:c"],
+            [Interface("srv/A.srv", "int64 a\n---\n", True)],
+            [],
+            ["a/b.py"],
+            ["a_group"],
+        )
     ],
 )
 

@@ -19,6 +19,15 @@ def test_a_package_is_read_and_not_run(workspace: Path) -> None:
     assert package.programs == ("hello = tiny_pkg.hello:main",)
 
 
+def test_a_line_inside_a_comment_is_no_dependency_and_is_told(workspace: Path) -> None:
+    file = workspace / "src" / "tiny_pkg" / "package.xml"
+    hidden = "<!--\n <depend> rclpy </depend>\n <member_of_group>a_group</member_of_group> -->"
+    file.write_text(file.read_text().replace("</package>", f"{hidden}</package>"))
+    (package,) = packages.find_packages(workspace / "src")
+    assert package.commented == ("rclpy", "a_group")
+    assert "a_group" not in package.dependencies
+
+
 def test_an_ignored_package_is_none(workspace: Path) -> None:
     ignored = workspace / "src" / "ignored_pkg"
     shutil.copytree(workspace / "src" / "tiny_pkg", ignored)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from autograder.boxes.execution import Ended
-from autograder.execution.plan import Kind
+from autograder.execution.plan import NotebookKind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 TRACEBACK = "Traceback (most recent call last)"
 _SHELL = re.compile(r"^\s*(%%|!)", re.MULTILINE)
-"""A cell that runs programs: these may use standard error for what is no error, as colcon and ros2 do."""
+"""Marks a cell that runs programs. Their standard error may hold more than errors, as that of colcon and ros2 does."""
 
 _HOW_IT_ENDED = {
     Ended.TIMED_OUT: "was stopped at its time limit",
@@ -32,7 +32,7 @@ _HOW_IT_ENDED = {
 
 
 @dataclass(frozen=True)
-class Finding:
+class Problem:
     """One thing that is wrong.
 
     Attributes:
@@ -44,18 +44,18 @@ class Finding:
     text: str
 
 
-def findings(planned: Planned, execution: Execution) -> list[Finding]:
+def problems_of(planned: Planned, execution: Execution) -> list[Problem]:
     """All that is wrong with a notebook, in the order of its cells; empty where all is well."""
     if execution.trouble:
-        return [Finding(None, f"the grader had trouble: {execution.trouble}")]
+        return [Problem(None, f"the grader had trouble: {execution.trouble}")]
     return [
-        Finding(index, text)
+        Problem(index, text)
         for index, (cell, run) in enumerate(zip(planned.task.cells, execution.cells, strict=True))
         for text in _of_cell(planned.kind, cell, run, execution.verdicts.get(index))
     ]
 
 
-def _of_cell(kind: Kind, cell: Cell, run: CellRun, verdict: Verdict | None) -> Iterator[str]:
+def _of_cell(kind: NotebookKind, cell: Cell, run: CellRun, verdict: Verdict | None) -> Iterator[str]:
     if run.ended is Ended.RAISED:
         yield f"raised {run.error}"
     elif run.ended is not Ended.DONE:
@@ -69,8 +69,8 @@ def _of_cell(kind: Kind, cell: Cell, run: CellRun, verdict: Verdict | None) -> I
         yield from _of_check(kind, cell.check.points, run, verdict)
 
 
-def _of_check(kind: Kind, points: float, run: CellRun, verdict: Verdict | None) -> Iterator[str]:
-    wanted = points if kind is Kind.MASTER else 0.0
+def _of_check(kind: NotebookKind, points: float, run: CellRun, verdict: Verdict | None) -> Iterator[str]:
+    wanted = points if kind is NotebookKind.MASTER else 0.0
     if verdict is None:
         yield "has no verdict"
         return

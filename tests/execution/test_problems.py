@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution
-from autograder.execution.findings import findings
-from autograder.execution.plan import Kind, Planned
+from autograder.execution.plan import NotebookKind, Planned
+from autograder.execution.problems import problems_of
 from autograder.grading.rebuilding import nodes
 from autograder.grading.task import Task
 from autograder.verdict import Diagnosis, State, Verdict
@@ -27,7 +27,9 @@ HALF = Verdict(
 NONE = replace(HALF, score=0.0)
 
 
-def found(kind: Kind, verdict: Verdict | None, value: str = "", ended: Ended = Ended.DONE) -> list[str]:
+def found(
+    kind: NotebookKind, verdict: Verdict | None, value: str = "", ended: Ended = Ended.DONE
+) -> list[str]:
     """What is found in a notebook of one check cell."""
     outputs: tuple[dict[str, object], ...] = ()
     if value:
@@ -35,41 +37,41 @@ def found(kind: Kind, verdict: Verdict | None, value: str = "", ended: Ended = E
     run = CellRun(ended, outputs)
     planned = Planned(kind, nodes.notebook([], {}), Task("s", "a", "n", (CELL,), "", ""))
     verdicts = {} if verdict is None else {0: verdict}
-    return [finding.text for finding in findings(planned, Execution((run,), verdicts))]
+    return [problem.text for problem in problems_of(planned, Execution((run,), verdicts))]
 
 
 def test_full_marks_for_a_master_and_none_for_a_chapter_are_right() -> None:
-    assert found(Kind.MASTER, FULL, "10.0") == []
-    assert found(Kind.CHAPTER, NONE, "0.0") == []
+    assert found(NotebookKind.MASTER, FULL, "10.0") == []
+    assert found(NotebookKind.CHAPTER, NONE, "0.0") == []
 
 
 def test_a_master_that_misses_points_says_which_and_why() -> None:
-    (text,) = found(Kind.MASTER, HALF, "5.0")
+    (text,) = found(NotebookKind.MASTER, HALF, "5.0")
     assert text.startswith("earns 5 of 10 points, and should earn 10")
     assert "topic_name: The topic is misspelt." in text
 
 
 def test_a_stub_that_earns_points_is_found() -> None:
-    (text,) = found(Kind.CHAPTER, HALF, "5.0")
+    (text,) = found(NotebookKind.CHAPTER, HALF, "5.0")
     assert text.startswith("earns 5 of 10 points, and should earn 0")
 
 
 def test_a_check_nobody_asked_for_is_found() -> None:
-    assert found(Kind.MASTER, None, "10.0") == ["has no verdict"]
+    assert found(NotebookKind.MASTER, None, "10.0") == ["has no verdict"]
 
 
 @pytest.mark.parametrize("value", ["", "9.0", "'ten'"])
 def test_the_value_of_the_cell_must_be_the_score(value: str) -> None:
-    (text,) = found(Kind.MASTER, FULL, value)
+    (text,) = found(NotebookKind.MASTER, FULL, value)
     assert text.endswith("instead of its score, 10")
 
 
 @pytest.mark.parametrize("ended", [Ended.TIMED_OUT, Ended.KERNEL_DIED, Ended.NOT_RUN, Ended.RAISED])
 def test_a_cell_that_does_not_end_well_is_found(ended: Ended) -> None:
-    assert len(found(Kind.CHAPTER, NONE, "", ended)) == 1
+    assert len(found(NotebookKind.CHAPTER, NONE, "", ended)) == 1
 
 
 def test_trouble_of_the_grader_is_not_called_a_fault_of_the_notebook() -> None:
-    planned = Planned(Kind.MASTER, nodes.notebook([], {}), Task("s", "a", "n", (CELL,), "", ""))
-    (finding,) = findings(planned, Execution((), trouble="no port"))
-    assert (finding.cell, finding.text) == (None, "the grader had trouble: no port")
+    planned = Planned(NotebookKind.MASTER, nodes.notebook([], {}), Task("s", "a", "n", (CELL,), "", ""))
+    (problem,) = problems_of(planned, Execution((), trouble="no port"))
+    assert (problem.cell, problem.text) == (None, "the grader had trouble: no port")

@@ -1,0 +1,146 @@
+"""An appeal file: one check of one student, as JSON that a person reads and ``autograder replay`` judges again."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from autograder.judge.verdicts.keeping import Kept, plain, restored
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+FORMAT = "ros2-course-appeal-1"
+ABOUT = "One check of one student. To judge it again: ./course replay FILE"
+MAX_BYTES = 64_000_000
+"""Bytes of a file that is read. The largest evidence takes a fifth of that."""
+_WIDTH = 120
+"""Characters of a line of JSON; what is longer is broken where it can be."""
+
+
+class BadAppeal(ValueError):
+    """The file is no appeal file, or not a whole one; the message says what to do."""
+
+
+class Cell(msgspec.Struct, frozen=True):
+    """What the student wrote into one cell.
+
+    Attributes:
+        cell: The cell's name; empty for a cell that the student has added.
+        text: Line by line.
+    """
+
+    cell: str
+    text: list[str]
+
+
+class Appeal(msgspec.Struct, frozen=True):
+    """What an appeal file holds.
+
+    Attributes:
+        student: The student's id.
+        assignment: The assignment's name.
+        notebook: The notebook's name.
+        task: What was asked for, in a sentence.
+        course: Stands for the version of the course that the check was made with.
+        solution: The student's cells that were run before the check, in order.
+        expected: The reference output that was expected; None where the course expects another one since.
+        seen: The evidence, with the verdict that was entered.
+    """
+
+    student: str
+    assignment: str
+    notebook: str
+    task: str
+    course: str
+    solution: list[Cell]
+    expected: Any
+    seen: Kept
+
+
+class Opened(msgspec.Struct, frozen=True):
+    """A file that was read.
+
+    Attributes:
+        appeal: What it holds.
+        edited: Whether it was changed after it was written.
+    """
+
+    appeal: Appeal
+    edited: bool
+
+
+def dump(appeal: Appeal) -> bytes:
+    """The file's content: JSON, an event a line."""
+    content = plain(msgspec.to_builtins(appeal))
+    head = {"format": FORMAT, "about": ABOUT, "mark": _mark(content)}
+    return ("\n".join(_lines({**head, **content}, "")) + "\n").encode()
+
+
+def read(path: Path) -> Opened:
+    """Read an appeal file.
+
+    Raises:
+        BadAppeal: It cannot be read, or is none.
+    """
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise BadAppeal(
+            f"{path} cannot be read: {error.strerror}. Name a file that `appeal` wrote."
+        ) from error
+    if len(data) > MAX_BYTES:
+        raise BadAppeal(f"{path} is larger than any appeal file")
+    try:
+        content = json.loads(data)
+    except (ValueError, RecursionError) as error:
+        raise BadAppeal(
+            f"{path} is no appeal file, or only a part of one ({error}). Write it again: "
+            "autograder appeal CLASS STUDENT EXERCISE"
+        ) from error
+    if not isinstance(content, dict) or content.pop("format", None) != FORMAT:
+        raise BadAppeal(
+            f"{path} is JSON, but not an appeal file of this version of the course ({FORMAT}). "
+            "`autograder appeal CLASS STUDENT EXERCISE` writes one."
+        )
+    content.pop("about", None)
+    mark = content.pop("mark", None)
+    try:
+        appeal = msgspec.convert(restored(content), type=Appeal)
+    except (ValueError, TypeError, RecursionError) as error:
+        raise BadAppeal(f"{path} was changed so that it is no appeal file any more: {error}") from error
+    return Opened(appeal, edited=mark != _mark(content))
+
+
+def _mark(content: Mapping[str, Any]) -> str:
+    """Changes with anything in the file, but not with its layout. It keeps nobody from writing a new one."""
+    text = json.dumps(content, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _lines(value: Any, indent: str, before: str = "", after: str = "") -> Iterator[str]:
+    """JSON in which what is short stands on one line."""
+    whole = json.dumps(value, ensure_ascii=False)
+    inside = (
+        (list(value.items()) if isinstance(value, dict) else value) if isinstance(value, (dict, list)) else ()
+    )
+    if not inside or _is_event(value) or len(indent) + len(before) + len(whole) <= _WIDTH:
+        yield f"{indent}{before}{whole}{after}"
+        return
+    yield f"{indent}{before}{'{' if isinstance(value, dict) else '['}"
+    for place, item in enumerate(inside):
+        comma = "," if place + 1 < len(inside) else ""
+        if isinstance(value, dict):
+            yield from _lines(item[1], f"{indent} ", f"{json.dumps(item[0], ensure_ascii=False)}: ", comma)
+        else:
+            yield from _lines(item, f"{indent} ", "", comma)
+    yield f"{indent}{'}' if isinstance(value, dict) else ']'}{after}"
+
+
+def _is_event(value: Any) -> bool:
+    return isinstance(value, dict) and {"t", "kind", "name"} <= value.keys()

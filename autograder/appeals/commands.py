@@ -1,0 +1,65 @@
+"""``autograder replay``, and the option of ``autograder check`` that writes the messages of a check."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+import click
+
+if TYPE_CHECKING:
+    from autograder.judge.verdicts.keeping import Kept
+
+
+def _fail(message: str) -> NoReturn:
+    click.echo(f"autograder: {message}", err=True)
+    sys.exit(2)
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option(
+    "--mcap",
+    type=click.Path(path_type=Path),
+    help="Also write the messages that the judge saw, for Foxglove and other programs that open MCAP.",
+)
+def replay(file: Path, mcap: Path | None) -> None:
+    """Judge the check in an appeal FILE again, from what was seen then and with the course as it is now.
+
+    Nothing of the student's is run, and no ROS node is started.
+
+    Exit code 0: the same verdict; 1: another one, or the file was edited; 2: it cannot be judged again.
+    """
+    from autograder.appeals import appeal_file, replaying, showing
+
+    try:
+        if mcap is not None:
+            check_name(mcap)
+        opened = appeal_file.read(file)
+        if mcap is not None:
+            click.echo(save_messages(opened.appeal.seen, mcap))
+        again = replaying.replay(opened.appeal.seen)
+    except (appeal_file.BadAppeal, replaying.CannotReplay) as error:
+        _fail(str(error))
+    for line in showing.lines(opened, again):
+        click.echo(line)
+    sys.exit(1 if again.differences or opened.edited else 0)
+
+
+def check_name(path: Path) -> None:
+    """End with exit code 2 where a file of messages has another ending than all of them."""
+    if path.suffix != ".mcap":
+        _fail(f"messages are written into a file such as check.mcap: {path.name} has another ending")
+
+
+def save_messages(seen: Kept, path: Path) -> str:
+    """Write the messages of a check as MCAP; a line that says so. Ends with exit code 2 where that cannot be."""
+    from autograder.appeals.messages_seen import write_messages
+
+    try:
+        with path.open("wb") as stream:
+            count = write_messages(seen, stream)
+    except OSError as error:
+        _fail(f"{path} cannot be written: {error.strerror}")
+    return f"{path}: {count} events, as JSON"

@@ -1,0 +1,113 @@
+"""A check judged again from its evidence, by the present code."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from autograder import exercises
+from autograder.judge.verdicts import reference, trial
+from autograder.judge.verdicts.keeping import NoEvidence, evidence_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from autograder.judge.verdicts.keeping import Kept
+    from autograder.verdict import Verdict
+
+
+class CannotReplay(ValueError):
+    """The check cannot be judged again; the message says why and what to do."""
+
+
+@dataclass(frozen=True)
+class Replay:
+    """What a second judging has brought.
+
+    Attributes:
+        then: The verdict that was given.
+        now: The verdict of the present code.
+        differences: A line for each thing in which they differ that counts: state, points, criteria, diagnosis.
+        notes: What may explain it, and what differs in words alone.
+    """
+
+    then: Verdict
+    now: Verdict
+    differences: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+def replay(kept: Kept) -> Replay:
+    """Decide the criteria and the diagnosis once more.
+
+    Raises:
+        CannotReplay: The exercise is gone, or the evidence is not enough.
+    """
+    then = kept.verdict
+    if kept.cut:
+        raise CannotReplay(
+            f"the judge saw more in this check than is kept, and no verdict follows from a part of it: {kept.cut}. "
+            "`autograder grade --student STUDENT --again` makes the check anew, with the same inputs."
+        )
+    try:
+        exercise = exercises.get(then.exercise)
+        expected = reference.load(exercise.id)
+        changed = reference.digest(exercise.id) != kept.reference
+    except (exercises.UnknownExercise, exercises.BrokenExercise, reference.NoReference) as error:
+        raise CannotReplay(f"{error} Use the version of the course that the check was made with.") from error
+    try:
+        now = trial.decide(exercise, evidence_of(kept, expected), then.seed)
+    except NoEvidence as error:
+        raise CannotReplay(f"{error} in this check, so there is nothing to judge again") from error
+    except Exception as error:  # evidence of another version, or written by hand, may lack anything
+        raise CannotReplay(
+            f"{exercise.id} cannot be decided from this evidence ({type(error).__name__}: {error}). It was edited, or "
+            "comes from another version of the course: use that one."
+        ) from error
+    notes = ["the reference output of this exercise has changed since"] if changed else []
+    return Replay(then, now, list(_differences(then, now)), notes + list(_other_words(then, now)))
+
+
+def _differences(then: Verdict, now: Verdict) -> Iterator[str]:
+    if then.state != now.state:
+        yield f"state: was {then.state}, is {now.state}"
+    if (then.score, then.max_score) != (now.score, now.max_score):
+        yield f"points: was {_points(then)}, is {_points(now)}"
+    before = {criterion.name: criterion for criterion in then.criteria}
+    after = {criterion.name: criterion for criterion in now.criteria}
+    for name in dict.fromkeys((*before, *after)):
+        old, new = before.get(name), after.get(name)
+        if old is None or new is None:
+            yield f"criterion {name}: {'there was none' if old is None else 'there is none any more'}"
+        elif (old.passed, old.points) != (new.passed, new.points):
+            yield f"criterion {name}: was {_held(old.passed, old.points)}, is {_held(new.passed, new.points)}"
+    if _key(then) != _key(now):
+        yield f"diagnosis: was {_key(then) or 'none'}, is {_key(now) or 'none'}"
+
+
+def _other_words(then: Verdict, now: Verdict) -> Iterator[str]:
+    """What a student reads and no grade depends on."""
+    before = {criterion.name: criterion for criterion in then.criteria}
+    for new in now.criteria:
+        old = before.get(new.name)
+        if old is not None and (old.expected, old.seen) != (new.expected, new.seen):
+            yield f"criterion {new.name} says it in other words now: {_quoted(new.expected)}, {_quoted(new.seen)}"
+    if then.diagnosis and now.diagnosis and _key(then) == _key(now) and then.diagnosis != now.diagnosis:
+        yield f"the diagnosis says it in other words now: {_quoted(now.diagnosis.text)}"
+
+
+def _points(verdict: Verdict) -> str:
+    return f"{verdict.score:g} of {verdict.max_score:g}"
+
+
+def _held(passed: bool, points: float) -> str:
+    return f"{'met' if passed else 'not met'} ({points:g} points)"
+
+
+def _key(verdict: Verdict) -> str:
+    return verdict.diagnosis.key if verdict.diagnosis else ""
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)

@@ -1,0 +1,114 @@
+"""The commands of whoever writes the course: build, execute and record it, and add an exercise."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from autograder.cli.ending import NO, fail
+
+
+@click.command()
+@click.option(
+    "--check", "only_check", is_flag=True, help="Write nothing; fail where a notebook is out of step."
+)
+def build(only_check: bool) -> None:
+    """Derive the chapter notebooks from their masters."""
+    from autograder import course, masters
+
+    sys.exit(masters.build_command(course.root(), check=only_check))
+
+
+@click.command()
+@click.argument("notebooks", nargs=-1, metavar="[NOTEBOOK]...")
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    help="Notebooks at once; as many as load and memory allow where not given.",
+)
+@click.option(
+    "--reports", type=click.Path(path_type=Path), help="Keep the pages about failed notebooks in this folder."
+)
+def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) -> None:
+    """Run every notebook: masters must earn full marks, chapters none, without an error."""
+    from autograder import course, masters
+    from autograder.execution import NothingToExecuteError, execute_command
+
+    try:
+        sys.exit(execute_command(course.root(), only=notebooks, jobs=jobs, reports=reports))
+    except (NothingToExecuteError, masters.MasterError) as error:
+        fail(str(error))
+
+
+@click.command()
+@click.argument("exercises", nargs=-1, metavar="[EXERCISE]...")
+@click.option("--check", "only_check", is_flag=True, help="Write nothing; fail where a recording differs.")
+def record(exercises: tuple[str, ...], only_check: bool) -> None:
+    """Record what the reference solutions do on the wire: the grader expects that from then on."""
+    from autograder import recording
+
+    try:
+        changed = recording.record(exercises, only_check=only_check, tell=click.echo)
+    except recording.CannotRecord as error:
+        fail(str(error))
+    sys.exit(NO if only_check and changed else 0)
+
+
+@click.command("new-exercise")
+@click.argument("exercise")
+@click.option("--recipe", default="publisher", show_default=True, help="The kind of subject that it judges.")
+@click.option("--chapter", help="The folder of its chapter in solutions/; the last one where not given.")
+def new_exercise(exercise: str, recipe: str, chapter: str | None) -> None:
+    """Make the folder of a new lab with one EXERCISE that works, for you to change.
+
+    \b
+    autograder new-exercise lab_9_1.battery --recipe publisher
+    """  # noqa: D301 (to click, the backspace keeps the lines below it apart)
+    from autograder import course
+    from autograder.authoring import new_exercise as making
+
+    root = course.root()
+    try:
+        made = making.new_exercise(root, exercise, recipe, chapter=chapter)
+    except (making.CannotMake, course.BrokenChapter) as error:
+        fail(str(error))
+    for file in made:
+        click.echo(f"written    {file.relative_to(root)}")
+    click.echo(f"\nNow: ./course try-exercise {exercise}")
+
+
+@click.command("try-exercise")
+@click.argument("exercise")
+@click.option(
+    "--only", multiple=True, help="Only answers with this in their names; may be given several times."
+)
+@click.option("--jobs", type=click.IntRange(min=1), default=4, show_default=True, help="Answers at once.")
+def try_exercise(exercise: str, only: tuple[str, ...], jobs: int) -> None:
+    """Record EXERCISE where it is new, judge its right and wrong answers, and show what is not as expected."""
+    from autograder import exercises, masters, recording
+    from autograder.authoring import trying
+    from autograder.authoring.answer_tables import BadTable
+
+    try:
+        fits = trying.try_exercise(exercise, only=only, jobs=jobs, tell=click.echo)
+    except (
+        BadTable,
+        exercises.BrokenExercise,
+        exercises.UnknownExercise,
+        masters.MasterError,
+        recording.CannotRecord,
+        trying.NothingToTry,
+    ) as error:
+        fail(str(error))
+    sys.exit(0 if fits else NO)
+
+
+COMMANDS = (
+    build,
+    execute,
+    record,
+    new_exercise,
+    try_exercise,
+)

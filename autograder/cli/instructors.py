@@ -1,0 +1,307 @@
+"""The commands of whoever teaches: a class from handing out to returning."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from autograder.cli.ending import INTERRUPTED, fail, grading_errors
+
+_only_assignments = click.option(
+    "--assignment", "assignments", multiple=True, help="Only this assignment; may be given several times."
+)
+
+
+@click.command("hand-out")
+@click.argument("place", type=click.Path(path_type=Path))
+@click.option("--zip", "as_zip", is_flag=True, help="Make PLACE a zip file.")
+@click.option(
+    "--with-solutions",
+    is_flag=True,
+    help="Cards with full marks offer the reference solution. Students can find it earlier, in the folder exercises.",
+)
+def hand_out(place: Path, as_zip: bool, with_solutions: bool) -> None:
+    """Make in PLACE what a class is handed: notebooks and judge, no solution, no answer, no grader."""
+    from autograder import course, handing_out
+
+    try:
+        made = handing_out.hand_out(place, course.root(), as_zip=as_zip, with_solutions=with_solutions)
+    except (handing_out.CannotHandOut, OSError) as error:
+        fail(str(error))
+    click.echo(
+        f"{made.place}: {made.files} files, {made.size / 1e6:.1f} MB. Try it: ./course lab, in that folder"
+    )
+
+
+@click.command("new-class")
+@click.argument("folder", type=click.Path(path_type=Path))
+@_only_assignments
+def new_class(folder: Path, assignments: tuple[str, ...]) -> None:
+    """Make an nbgrader course directory in FOLDER, ready for submissions."""
+    from autograder import course, grading
+
+    with grading_errors():
+        made = grading.new_class(folder, course.root(), assignments=assignments)
+    click.echo(made.summary())
+
+
+@click.command("renew-class")
+@click.argument("folder", type=click.Path(path_type=Path))
+@_only_assignments
+def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
+    """Bring the sources of the class FOLDER to what the course says now; the old ones are kept."""
+    from autograder import course, grading
+
+    with grading_errors():
+        for line in grading.renew_class(folder, course.root(), assignments=assignments):
+            click.echo(line)
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option(
+    "--assignment", default="", help="What all of it is for; told from names and contents where not given."
+)
+@click.option(
+    "--timezone", default="", metavar="Europe/Berlin", help="Of times in names and lists; this machine's."
+)
+@click.option(
+    "--from",
+    "form",
+    type=click.Choice(["moodle", "canvas", "blackboard", "brightspace", "google", "github"]),
+    default=None,
+    help="Which system it is from; told from the names where not given.",
+)
+def collect(folder: Path, files: tuple[Path, ...], assignment: str, timezone: str, form: str | None) -> None:
+    """Put FILES that an LMS let you download into the class directory FOLDER.
+
+    FILES are zips, folders and notebooks of Moodle, Canvas, Blackboard, Brightspace, Google Classroom or GitHub
+    Classroom, and lists (.csv) that come with them. Whose they are says students.csv in FOLDER.
+
+    Exit code 0: everything has its place; 2: the lines say what has not, and why.
+    """
+    from autograder import grading
+
+    with grading_errors():
+        report = grading.collect(folder, files, assignment=assignment, timezone=timezone, form=form or "")
+    sys.exit(report.exit_code)
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@_only_assignments
+@click.option("--student", "students", multiple=True, help="Only this student; may be given several times.")
+@click.option("--again", is_flag=True, help="Run unchanged submissions again.")
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    help="Notebooks at once; as many as load and memory allow where not given.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
+@click.option(
+    "--unsafe-no-sandbox",
+    is_flag=True,
+    help="Run submissions with all your rights where no sandbox is possible. They could change any grade.",
+)
+@click.option(
+    "--scheduler",
+    metavar="tcp://HOST:PORT",
+    help="Have the workers of this Dask scheduler run the submissions (see `autograder worker`).",
+)
+@click.option(
+    "--dry-run", is_flag=True, help="Enter nothing: run what has changed and say who would get other points."
+)
+def grade(
+    folder: Path,
+    assignments: tuple[str, ...],
+    students: tuple[str, ...],
+    again: bool,
+    jobs: int | None,
+    as_json: bool,
+    unsafe_no_sandbox: bool,
+    scheduler: str | None,
+    dry_run: bool,
+) -> None:
+    """Grade what was submitted in the class directory FOLDER."""
+    from autograder import grading
+
+    if scheduler is not None and jobs is not None:
+        fail("--jobs is for this machine; each worker of a cluster has its own: autograder worker --jobs")
+    try:
+        with grading_errors():
+            report = grading.grade(
+                folder,
+                assignments=assignments,
+                students=students,
+                again=again,
+                jobs=jobs,
+                unsafe_no_sandbox=unsafe_no_sandbox,
+                scheduler=scheduler,
+                dry_run=dry_run,
+                as_json=as_json,
+            )
+    except KeyboardInterrupt:
+        click.echo(
+            "autograder: stopped. What was graded is kept; the same command goes on from there.", err=True
+        )
+        sys.exit(INTERRUPTED)
+    sys.exit(report.exit_code)
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option(
+    "--to", type=click.Choice(["canvas", "moodle", "csv", "xlsx"]), required=True, help="Whose form."
+)
+@_only_assignments
+@click.option(
+    "--into", type=click.Path(path_type=Path), help="Fill in this list, as Moodle or Canvas has exported it."
+)
+@click.option(
+    "--output", type=click.Path(path_type=Path), help="Where to write; FOLDER/export where not given."
+)
+def export(
+    folder: Path, to: str, assignments: tuple[str, ...], into: Path | None, output: Path | None
+) -> None:
+    """Write the gradebook's points, and the feedback as a zip, in the form that an LMS takes."""
+    from autograder import grading
+
+    with grading_errors():
+        grading.export_points(folder, to, assignments=assignments, into=into, folder=output)
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option("--without-names", is_flag=True, help="Call students by numbers, without links to their pages.")
+@click.option(
+    "--output", type=click.Path(path_type=Path), help="The page; FOLDER/report.html where not given."
+)
+def report(folder: Path, without_names: bool, output: Path | None) -> None:
+    """Write one page about the class FOLDER: points, mistakes, exercises, who is where."""
+    from autograder import grading
+
+    with grading_errors():
+        click.echo(grading.write_report(folder, names=not without_names, to=output))
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.argument("assignment", required=False, default="")
+@click.option(
+    "--output", type=click.Path(path_type=Path), help="The page; FOLDER/similar.html where not given."
+)
+def similar(folder: Path, assignment: str, output: Path | None) -> None:
+    """Find pairs of submissions in the class FOLDER that are closer than the task explains.
+
+    A pair is a hint, not a proof. Only ASSIGNMENT is looked at where it is named.
+
+    Exit code 0: all was compared; 2: the lines say what was not, and why.
+    """
+    from autograder import grading
+
+    with grading_errors():
+        found = grading.similar(folder, assignment, to=output)
+    sys.exit(found.exit_code)
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.argument("before", required=False, default="")
+@click.argument("after", required=False, default="")
+def compare(folder: Path, before: str, after: str) -> None:
+    """Say who has other points after the last run of the class FOLDER than before it.
+
+    BEFORE and AFTER are runs, by the times in the first line that this prints.
+    """
+    from autograder import grading
+
+    with grading_errors():
+        for line in grading.compare(folder, before, after):
+            click.echo(line)
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.argument("student")
+def attempts(folder: Path, student: str) -> None:
+    """Say what came of each time that STUDENT was graded in the class FOLDER."""
+    from autograder import grading
+
+    with grading_errors():
+        for line in grading.attempts_of(folder, student):
+            click.echo(line)
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.argument("student")
+@click.argument("exercise")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="The file; FOLDER/appeals/STUDENT-EXERCISE.json where not given.",
+)
+def appeal(folder: Path, student: str, exercise: str, output: Path | None) -> None:
+    """Write down all about the check of EXERCISE by STUDENT in the class FOLDER.
+
+    What the student wrote, what was expected, what the judge saw, what it decided, and with which course. The file is
+    JSON to read, and `autograder replay` judges it again.
+    """
+    from autograder import grading
+
+    with grading_errors():
+        click.echo(grading.appeal(folder, student, exercise, to=output))
+
+
+@click.command()
+@click.argument("scheduler", required=False, metavar="[tcp://HOST:PORT]")
+@click.option(
+    "--jobs", type=click.IntRange(min=1), help="Submissions at once; as many as cores where not given."
+)
+@click.option("--name", help="What messages call this worker; host and process where not given.")
+@click.option(
+    "--unsafe-no-sandbox",
+    is_flag=True,
+    help="Also where no sandbox is possible. Submissions then run with all your rights.",
+)
+def worker(scheduler: str | None, jobs: int | None, name: str | None, unsafe_no_sandbox: bool) -> None:
+    """Work for `autograder grade --scheduler`, until Ctrl-C or until the scheduler ends."""
+    from autograder.grading.cluster import connection
+
+    with grading_errors():
+        connection.check_dask()
+        from autograder.grading.cluster.start_worker import start_worker
+
+        start_worker(scheduler, jobs=jobs, name=name, sandbox=not unsafe_no_sandbox, tell=click.echo)
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path), default=Path("demo-class"))
+def demo(folder: Path) -> None:
+    """Make a sample class, grade it and show the result."""
+    from autograder import grading
+
+    with grading_errors():
+        report = grading.demo(folder)
+    sys.exit(report.exit_code)
+
+
+COMMANDS = (
+    hand_out,
+    new_class,
+    renew_class,
+    collect,
+    grade,
+    export,
+    report,
+    similar,
+    compare,
+    attempts,
+    appeal,
+    worker,
+    demo,
+)

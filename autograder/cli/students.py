@@ -1,0 +1,163 @@
+"""The commands of whoever learns: check a program, open the course, see what is missing."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from autograder.appeals import commands as appeals
+from autograder.cli.ending import CANNOT, NO, fail
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from autograder.boxes.one_command import OneCommandBox
+    from autograder.verdict import Verdict
+
+
+@click.command()
+@click.argument("exercise", required=False)
+@click.argument("command", nargs=-1, type=click.UNPROCESSED)
+@click.option("--json", "as_json", is_flag=True, help="Print the verdict as one JSON object.")
+@click.option("--seed", help="Draw the random inputs from this: the same seed gives the same inputs.")
+@click.option(
+    "--box", "boxed", is_flag=True, help="Run COMMAND in a box as a class would: it sees this folder only."
+)
+@click.option(
+    "--mcap", type=click.Path(path_type=Path), help="Write the messages that the judge saw into this file."
+)
+def check(
+    exercise: str | None,
+    command: tuple[str, ...],
+    as_json: bool,
+    seed: str | None,
+    boxed: bool,
+    mcap: Path | None,
+) -> None:
+    """Run any COMMAND as the subject of EXERCISE and print the verdict.
+
+    \b
+    autograder check                               lists the exercises
+    autograder check lab_1_2.talker -- python3 talker.py
+    autograder check lab_1_2.talker --box -- python3 talker_of_somebody_else.py
+
+    Exit code 0: passed; 1: not passed; 2: could not be checked.
+    """  # noqa: D301 (to click, the backspace keeps the lines below it apart)
+    from autograder import exercises
+
+    if exercise is None:
+        list_exercises()
+        return
+    try:
+        wanted = exercises.get(exercise)
+    except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
+        fail(str(error))
+    if not command:
+        fail(
+            f"say which command to check, after two dashes: autograder check {exercise} -- python3 my_file.py"
+            + (f" (it is called with {wanted.arguments})" if wanted.arguments else "")
+        )
+    if mcap is not None:
+        appeals.check_name(mcap)
+    from autograder.judge.subjects.command import CommandNotFound, check_and_keep
+
+    try:
+        with _box(command) if boxed else nullcontext() as box:
+            verdict, evidence = check_and_keep(exercise, command, seed=seed, box=box)
+    except CommandNotFound as error:
+        fail(str(error))
+    if not boxed:  # what somebody else wrote is no progress of the user's
+        from autograder import journal
+
+        journal.note_check(verdict)
+    show(verdict, as_json=as_json)
+    if mcap is not None and evidence:
+        from autograder.judge.verdicts.keeping import unpack
+
+        click.echo(appeals.save_messages(unpack(evidence), mcap), err=as_json)
+    sys.exit({"passed": 0, "failed": NO}.get(verdict.state, CANNOT))
+
+
+@contextmanager
+def _box(command: Sequence[str]) -> Iterator[OneCommandBox]:
+    import tempfile
+    from contextlib import closing
+
+    from autograder.boxes.one_command import OneCommandBox
+    from autograder.boxes.sandbox import why_impossible
+
+    why = why_impossible()
+    if why:
+        fail(f"no box is possible here: {why}")
+    with tempfile.TemporaryDirectory(prefix="box-") as scratch:
+        try:
+            box = OneCommandBox(Path(scratch), Path.cwd(), command)
+        except ValueError as error:
+            fail(str(error))
+        with closing(box):
+            yield box
+
+
+def list_exercises() -> None:
+    """One line for each exercise: id, points, what is asked for."""
+    from autograder import exercises
+
+    for exercise_id in exercises.all_ids():
+        try:
+            exercise = exercises.get(exercise_id)
+        except exercises.BrokenExercise as error:
+            click.echo(f"autograder: {error}", err=True)
+            continue
+        click.echo(f"{exercise_id:<26} {exercise.points:>3g} points  {exercise.task}")
+
+
+def show(verdict: Verdict, *, as_json: bool) -> None:
+    """Print a verdict as a card or as JSON."""
+    if as_json:
+        from autograder.verdict import to_json
+
+        click.echo(to_json(verdict).decode())
+        return
+    from autograder.cards.text import card_text
+
+    click.echo(card_text(verdict, color=sys.stdout.isatty()))
+
+
+@click.command(context_settings={"ignore_unknown_options": True})
+@click.option(
+    "--folder", type=click.Path(path_type=Path), help="Open this folder of notebooks instead of the chapters."
+)
+@click.argument("arguments", nargs=-1, type=click.UNPROCESSED, metavar="[JUPYTERLAB'S OPTIONS]...")
+def lab(folder: Path | None, arguments: tuple[str, ...]) -> None:
+    """Open JupyterLab on the chapters, with a ROS domain of its own."""
+    from autograder import course
+    from autograder.lab import NoSuchFolderError, open_lab
+    from autograder.ros_domain import NoFreeDomainError
+
+    try:
+        open_lab(folder or course.root() / course.CHAPTERS, arguments)
+    except (NoSuchFolderError, NoFreeDomainError, ValueError) as error:
+        fail(str(error))
+
+
+@click.command()
+@click.option("--json", "as_json", is_flag=True, help="Print the findings as JSON.")
+def doctor(as_json: bool) -> None:
+    """Say what is there, what is missing and how to get it."""
+    from autograder import course
+
+    sys.path.insert(0, str(course.root()))
+    from environment import doctor as probes
+
+    sys.exit(probes.main(["--json"] if as_json else []))
+
+
+COMMANDS = (
+    check,
+    lab,
+    doctor,
+)

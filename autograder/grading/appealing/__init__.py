@@ -1,0 +1,1 @@
+"""Appeals: everything about one check of one student, taken from a class."""

@@ -1,0 +1,117 @@
+"""An appeal file from a class: what was handed in, what the judge saw of it, and what it decided."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from autograder import exercises
+from autograder.appeals.appeal_file import Appeal, Cell, dump
+from autograder.grading.classes.class_directory import ClassDirectory, Submission
+from autograder.grading.entering.evidence import EvidenceFolder
+from autograder.grading.entering.journal import write_whole
+from autograder.grading.entering.records import Records
+from autograder.grading.errors import GradingError, clear_disk_errors
+from autograder.judge.verdicts import reference
+from autograder.judge.verdicts.keeping import NoEvidence, unpack
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from autograder.grading.entering.evidence import RunCell
+
+FOLDER = "appeals"
+"""Where in a class the files are written."""
+
+
+def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = None) -> Path:
+    """Write the appeal file of one check; where it is.
+
+    Args:
+        path: The class directory.
+        student: The student's id.
+        exercise_id: Such as ``"lab_1_2.talker"``.
+        to: The file; one in the class by default.
+
+    Raises:
+        GradingError: There is no such check, or no evidence of it; the message says what to do.
+    """
+    directory = ClassDirectory(path)
+    try:
+        task = exercises.get(exercise_id).task
+    except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
+        raise GradingError(f"{error} `autograder check` lists the exercises.") from error
+    with clear_disk_errors(directory.path):
+        content = dump(_appeal(directory, student, exercise_id, task))
+        to = (to or directory.path / FOLDER / f"{student}-{exercise_id}.json").absolute()
+        try:
+            write_whole(to, content)
+        except (IsADirectoryError, NotADirectoryError, FileExistsError) as error:
+            raise GradingError(f"{to} cannot be written: {error.strerror}. Name a file with -o.") from error
+    return to
+
+
+def _appeal(directory: ClassDirectory, student: str, exercise_id: str, task: str) -> Appeal:
+    again = f"autograder grade {directory.path} --student {student}"
+    found = EvidenceFolder(directory).find(student, exercise_id)
+    if found is None:
+        raise GradingError(_why_nothing(directory, student, exercise_id, again))
+    assignment, notebook, kept = found
+    folder = directory.path / "submitted" / student / assignment
+    entered = Records(directory).get(Submission(student, assignment, folder))
+    if entered is None or entered.keys.get(notebook) != kept.key:
+        raise GradingError(
+            f"The gradebook does not have the points that the judge gave {student} in {notebook} when it saw this, as "
+            f"after `--dry-run` or after a run that could not check it. Enter them first: {again}"
+        )
+    try:
+        seen, cells = unpack(kept.checks[exercise_id]), kept.cells()
+    except (NoEvidence, ValueError) as error:
+        raise GradingError(
+            f"What is kept of {exercise_id} by {student} is damaged ({error}). Have it judged anew: {again} --again"
+        ) from error
+    return Appeal(
+        student=student,
+        assignment=assignment,
+        notebook=notebook,
+        task=task,
+        course=kept.course,
+        solution=list(_before(cells, exercise_id)),
+        expected=_expected(exercise_id, seen.reference),
+        seen=seen,
+    )
+
+
+def _before(cells: list[RunCell], exercise_id: str) -> Iterator[Cell]:
+    """What the student wrote above the check: all of it was run in the same kernel before."""
+    for cell in cells:
+        if cell.checks == exercise_id:
+            return
+        if not cell.checks:
+            yield Cell(cell.name, cell.text.splitlines())
+
+
+def _expected(exercise_id: str, digest: str) -> Any:
+    if reference.digest(exercise_id) != digest:
+        return None
+    return json.loads(exercises.reference_path(exercise_id).read_text(encoding="utf-8"))
+
+
+def _why_nothing(directory: ClassDirectory, student: str, exercise_id: str, again: str) -> str:
+    records = Records(directory)
+    for assignment in directory.assignments():
+        folder = directory.path / "submitted" / student / assignment
+        written = records.get(Submission(student, assignment, folder))
+        for row in written.rows if written else ():
+            if row.exercise == exercise_id:
+                return (
+                    f"Nothing that a judge saw of {exercise_id} by {student} is kept. The table says: {row.state}"
+                    f"{f', {row.diagnosis}' if row.diagnosis else ''}. {row.reason}".rstrip()
+                    + " Where a check never began, as behind a cell that raised an error, there is nothing to keep. "
+                    f"Where it was graded before evidence was kept, type: {again} --again"
+                )
+    return (
+        f"No check of {exercise_id} by {student!r} was graded here: the class has the assignments "
+        f"{', '.join(directory.assignments()) or 'none'}. `autograder attempts {directory.path} STUDENT` says what was."
+    )

@@ -1,0 +1,107 @@
+"""Which lines of ``nbgrader_config.py`` decide how a submission is converted, and which of them a class may have.
+
+There is one conversion into the gradebook, whoever starts it. An option of nbgrader's own conversion that it does not
+know is refused before anything is touched, so that nobody believes in a line without effect.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from autograder.grading.classes.class_directory import CONFIG_NAME
+from autograder.grading.errors import ClassIncomplete
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from traitlets.config import Config
+
+    from autograder.grading.classes.class_directory import ClassDirectory
+
+_EXPORTER = "autograder.grading.exporter.SubmissionExporter"
+_STEP = "autograder.grading.preprocessors.WireExecute"
+_EARLIER_STEPS = [
+    _STEP,
+    "nbgrader.preprocessors.LimitOutput",
+    "nbgrader.preprocessors.SaveAutoGrades",
+    "nbgrader.preprocessors.AssignLatePenalties",
+    "nbgrader.preprocessors.CheckCellMetadata",
+]
+"""In classes made before November 2026, with the hook and the sanitizing step below."""
+
+_ANYTHING = object()
+_MAY_BE: Mapping[str, Mapping[str, tuple[Any, ...]]] = {
+    "Autograde": {
+        "exporter_class": (_EXPORTER,),
+        "autograde_preprocessors": ([_STEP], _EARLIER_STEPS),
+        "pre_convert_hook": ("autograder.grading.hooks.before_autograde",),
+        "sanitize_preprocessors": (["nbgrader.preprocessors.CheckCellMetadata"],),
+    },
+    "GenerateFeedback": {"exporter_class": ("autograder.grading.pages.FeedbackExporter",)},
+    "HTMLExporter": {"filters": ({"markdown2html": "autograder.grading.pages.markdown_to_html"},)},
+    # The last three limit what nbgrader's exchange takes.
+    "CourseDirectory": dict.fromkeys(
+        ("root", "db_url", "course_id", "include", "max_file_size", "max_dir_size"), (_ANYTHING,)
+    ),
+    "WireExecute": dict.fromkeys(
+        (
+            "cell_seconds",
+            "notebook_seconds",
+            "cpu_seconds",
+            "memory_bytes",
+            "processes",
+            "scratch_bytes",
+            "unsafe_no_sandbox",
+            "demonstrations",
+        ),
+        (_ANYTHING,),
+    ),
+    # Of these, none has an effect.
+    **{
+        section: {}
+        for section in (
+            "BaseConverter",
+            "NbConvertBase",
+            "NbGraderPreprocessor",
+            "Exporter",
+            "NotebookExporter",
+            "TemplateExporter",
+            "SubmissionExporter",
+            "FeedbackExporter",
+            "SaveAutoGrades",
+            "GetGrades",
+            "CSSHTMLHeaderPreprocessor",
+            "FilesWriter",
+            "WriterBase",
+        )
+    },
+}
+"""What the options of each section may be; a section that is not here is not about the conversion, or is honoured."""
+
+
+def check_configuration(directory: ClassDirectory) -> None:
+    """See that the conversion honours all that the class's configuration says of it.
+
+    Raises:
+        ClassIncomplete: It does not; the message names the option and says what to do.
+    """
+    path = directory.path / CONFIG_NAME
+    for option in _not_honoured(directory.config):
+        raise ClassIncomplete(
+            f"{path} sets c.{option}, which has no effect on how submissions are graded here: delete that line, or "
+            "write it as in a class that `autograder new-class` makes."
+        )
+    for section in ("Autograde", "GenerateFeedback"):
+        if not directory.config[section].get("exporter_class"):
+            raise ClassIncomplete(
+                f"{path} does not set c.{section}.exporter_class, so that nbgrader's own commands would go past the "
+                "judge: copy the line from a class that `autograder new-class` makes."
+            )
+
+
+def _not_honoured(config: Config) -> Iterator[str]:
+    for section, options in _MAY_BE.items():
+        for option, value in config[section].items():
+            allowed = options.get(option, ())
+            if _ANYTHING not in allowed and value not in allowed:
+                yield f"{section}.{option}"

@@ -1,0 +1,98 @@
+"""A rebuilt notebook with what came of it: outputs of its cells, and at each check the card and the points."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from autograder.boxes.execution import Cell, CellRun, CellType, Check, Ended, Execution
+from autograder.cards.bundle import mimebundle
+from autograder.grading.entering.points import points
+from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding.demonstrations import LEFT_OUT
+from autograder.grading.returning.sanitize import harmless_output, make_harmless
+from autograder.grading.running import sandboxing
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from nbformat import NotebookNode
+
+    from autograder.boxes.limits import Limits
+    from autograder.grading.task import Task
+    from autograder.verdict import Verdict
+
+
+def with_results(nb: NotebookNode, task: Task, execution: Execution) -> NotebookNode:
+    """The notebook with the outputs of its cells; of a check cell they are the card and the points."""
+    count = 0
+    for index, (node, cell) in enumerate(zip(nb.cells, task.cells, strict=True)):
+        if node.cell_type != "code":
+            continue
+        run = execution.cells[index] if index < len(execution.cells) else CellRun(Ended.NOT_RUN)
+        if run.ended is not Ended.NOT_RUN:
+            count += 1
+            node.execution_count = count
+        if cell.check is not None:
+            node.outputs = _graded_outputs(cell.check, execution.verdicts[index], run.outputs)
+        else:
+            node.outputs = [nodes.output(**output) for output in run.outputs]
+            node.outputs += _remark(node, cell, run, task.limits) if execution.cells else []
+    # Here and not on the page: formgrader shows what lies in autograded/, and it cleans nothing.
+    make_harmless(nb, range(len(nb.cells)) if execution.trouble else execution.as_typed)
+    nb.cells = list(_with_rubrics(nb.cells))
+    if not task.boxed:
+        nb.cells.insert(0, nodes.cell(CellType.MARKDOWN, f"**{sandboxing.NOTE}**"))
+    return nb
+
+
+def _with_rubrics(cells: Sequence[NotebookNode]) -> Iterator[NotebookNode]:
+    """The cells, and below each question that a person grades what the instructor wrote for that person."""
+    for cell in cells:
+        rubric = cell.metadata.pop("autograder", {}).get("rubric", "")
+        yield cell
+        if rubric:
+            text = f"**How this answer is graded**\n\n{rubric}"
+            yield nodes.cell(CellType.MARKDOWN, text, f"rubric-{cell.id}"[:64])
+
+
+def _graded_outputs(
+    check: Check, verdict: Verdict, outputs: Sequence[Mapping[str, Any]]
+) -> list[NotebookNode]:
+    """The card, or what tests said, and as the cell's value the score: nbgrader gives a cell that number of points."""
+    score = points(check, verdict)
+    card = nodes.output(output_type="display_data", data=mimebundle(verdict), metadata={})
+    return [
+        *([card, *_of_tests(outputs)] if check.asserts else [card]),
+        nodes.output(
+            output_type="execute_result", data={"text/plain": f"{score:g}"}, metadata={}, execution_count=None
+        ),
+    ]
+
+
+def _of_tests(outputs: Sequence[Mapping[str, Any]]) -> Iterator[NotebookNode]:
+    """What tests printed or raised, in a form by which nbgrader decides nothing.
+
+    It takes an error and a line on standard error for zero points, and the first value for the points.
+    """
+    for one in outputs:
+        if one["output_type"] == "error":
+            text = "\n".join(one["traceback"]) or f"{one['ename']}: {one['evalue']}"
+            yield harmless_output(nodes.output(output_type="stream", name="stdout", text=text))
+        elif one["output_type"] == "stream":
+            yield harmless_output(nodes.output(output_type="stream", name="stdout", text=one["text"]))
+        elif one["output_type"] == "display_data":
+            yield harmless_output(nodes.output(**one))
+
+
+def _remark(node: NotebookNode, cell: Cell, run: CellRun, limits: Limits) -> list[NotebookNode]:
+    words = {
+        Ended.TIMED_OUT: f"[stopped: the cell had not ended after {run.seconds:.0f} s]",
+        Ended.KERNEL_DIED: "[the kernel ended in this cell]",
+        Ended.OUT_OF_MEMORY: f"[stopped: more than {limits.memory_bytes / 1e9:g} GB of memory]",
+        Ended.OUT_OF_CPU: f"[stopped: more than {limits.cpu_seconds:g} s of processor time]",
+        Ended.TOO_MANY_PROCESSES: f"[stopped: more than {limits.processes} processes and threads]",
+        Ended.TOO_MUCH_OUTPUT: f"[stopped: more than {limits.flood_bytes / 1e6:g} MB of output]",
+        Ended.NOT_RUN: "[this cell was not run]",
+    }
+    text = words.get(run.ended) if cell.source.strip() else LEFT_OUT if node.source.strip() else None
+    return [nodes.output(output_type="stream", name="stdout", text=f"{text}\n")] if text else []

@@ -1,0 +1,132 @@
+"""``nbgrader autograde`` and ``nbgrader generate_feedback`` on a class of ours, as commands or as formgrader's buttons.
+
+nbgrader's own conversion has no judge, and copies whatever lies in a submission: a pipe would hold it up for ever,
+and a file with a hole of a terabyte would fill the disk. So its steps are replaced by those of ``autograder grade``.
+The class's configuration names exporters of ours. nbgrader makes an exporter before it converts the first notebook, and
+ours hands the converter that made it to :func:`take_over`.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from nbgrader.converters import Autograde, BaseConverter, GenerateFeedback, NbGraderException
+from rich.console import Console
+
+from autograder.grading.batch import grade
+from autograder.grading.classes.class_directory import ClassDirectory, Submission, reason_against_name
+from autograder.grading.classes.configuration import check_configuration
+from autograder.grading.entering.records import Records
+from autograder.grading.entering.writer import Writer
+from autograder.grading.errors import GradingError, clear_disk_errors
+from autograder.grading.reporting.report_table import printable
+from autograder.grading.work import check_known
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+class _Ours(BaseConverter):
+    """A conversion of whole submissions by the engine.
+
+    nbgrader has listed in ``assignments`` the folders that it would convert.
+    """
+
+    def convert_notebooks(self) -> None:
+        """Convert the submissions that were asked for.
+
+        Raises:
+            NbGraderException: Not all of them could be; the log has a line for each.
+        """
+        try:
+            problems = self._convert(ClassDirectory(Path(self.coursedir.root)), self._chosen())
+        except GradingError as error:
+            problems = [str(error)]
+        problems = list(map(printable, problems))
+        for problem in problems:
+            self.log.error("%s", problem)
+        if problems:
+            raise NbGraderException("; ".join(problems))
+
+    def _chosen(self) -> dict[str, list[str]]:
+        """The students that were asked for, by assignment.
+
+        Raises:
+            GradingError: A single notebook of them was asked for.
+        """
+        if self.coursedir.notebook_id != "*":
+            raise GradingError(
+                "A submission is graded as a whole, with all of its notebooks: leave out --notebook."
+            )
+        chosen: dict[str, list[str]] = {}
+        for folder in sorted(map(Path, self.assignments)):
+            chosen.setdefault(folder.name, []).append(folder.parent.name)
+        return chosen
+
+    def _convert(self, directory: ClassDirectory, chosen: dict[str, list[str]]) -> list[str]:
+        """Convert submissions, and say what went wrong."""
+        raise NotImplementedError
+
+
+class _OurAutograde(_Ours, Autograde):
+    """``nbgrader autograde``: what ``autograder grade`` does, without pages of feedback."""
+
+    def _convert(self, directory: ClassDirectory, chosen: dict[str, list[str]]) -> list[str]:
+        problems: list[str] = []
+        for assignment, students in chosen.items():
+            everybody = self.coursedir.student_id == "*"
+            report = grade(
+                directory.path,
+                assignments=[assignment],
+                students=() if everybody else students,
+                feedback=False,
+                console=Console(quiet=True),
+            )
+            for notice in report.notices:
+                self.log.warning("%s", notice)
+            problems += [f"{refused.path}: {refused.reason}" for refused in report.refused]
+            problems += report.problems
+        return problems
+
+
+class _OurFeedback(_Ours, GenerateFeedback):
+    """``nbgrader generate_feedback``: the pages that ``autograder grade`` makes, for what is graded already."""
+
+    def _convert(self, directory: ClassDirectory, chosen: dict[str, list[str]]) -> list[str]:
+        check_configuration(directory)
+        records = Records(directory)
+        writer = Writer(directory, records)
+        problems = []
+        with directory.lock(), clear_disk_errors(directory.path):
+            for submission in self._submissions(directory, chosen):
+                name = f"{submission.student}/{submission.assignment}"
+                if reason := reason_against_name(submission.student):
+                    problems.append(f"{name}: {reason}; rename the folder")
+                    continue
+                writer.write_feedback(submission)
+                if not records.has_pages(submission, directory.notebooks(submission.assignment)):
+                    problems.append(
+                        f"{name}: its page could not be made (see {directory.state / 'nbgrader.log'})"
+                    )
+        return problems
+
+    @staticmethod
+    def _submissions(directory: ClassDirectory, chosen: dict[str, list[str]]) -> Iterator[Submission]:
+        check_known(list(chosen), directory.assignments(), "assignment")
+        for assignment, students in chosen.items():
+            for student in students:
+                folder = directory.path / "submitted" / student / assignment
+                yield Submission(student, assignment, folder)
+
+
+def take_over(converter: object) -> None:
+    """Have the engine do what a converter of nbgrader was made for.
+
+    Args:
+        converter: It has not yet begun to convert; anything else is left as it is.
+    """
+    ours = {Autograde: _OurAutograde, GenerateFeedback: _OurFeedback}.get(type(converter))
+    if ours is not None:
+        # nbgrader offers no way to say which class it shall make.
+        converter.__class__ = ours

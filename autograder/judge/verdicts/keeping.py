@@ -1,0 +1,237 @@
+"""The evidence of a check as bytes that can be kept: compressed, bounded in size, and read back as it was.
+
+It is JSON, a line for each event, under gzip. A flood is cut at the limit, and what was cut says so: from a part of the
+evidence no verdict follows.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+import traceback
+import zlib
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from autograder.judge.verdicts import reference
+from autograder.kit.evidence import Event, Evidence, Part
+from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.judge.verdicts.trial import Checked
+    from autograder.kit.evidence import Reference
+
+MAX_BYTES = 400_000
+"""Compressed bytes of the evidence of one check."""
+MAX_RAW_BYTES = 8_000_000
+"""Bytes before they are compressed: what says the same for ever is cut, too."""
+_GZIP = 31
+"""What zlib calls a gzip header with the largest window."""
+_FLOAT = "$float"
+"""Stands for a number that JSON has no word for, such as infinity; no field of a message can be called so."""
+
+
+class NoEvidence(ValueError):
+    """These bytes are no evidence; the message says why."""
+
+
+class KeptEvent(msgspec.Struct, frozen=True, omit_defaults=True):
+    """One event; see :class:`autograder.kit.evidence.Event`."""
+
+    t: float
+    kind: str
+    name: str
+    data: dict[str, Any] = {}
+    sim: float | None = None
+
+
+class KeptPart(msgspec.Struct, frozen=True):
+    """One run of the subject, with the inputs that were drawn for it."""
+
+    name: str
+    inputs: dict[str, Any]
+    events: list[KeptEvent]
+
+
+class KeptLook(msgspec.Struct, frozen=True):
+    """One run of the scenario."""
+
+    real_time: bool
+    parts: list[KeptPart]
+
+
+class Kept(msgspec.Struct, frozen=True):
+    """All that a verdict came from.
+
+    Attributes:
+        at: When the verdict was there, in seconds of Unix time.
+        reference: The SHA-256 of the reference output that was expected, as it lay on the disk.
+        verdict: What the judge found, without the timeline, which follows from the events.
+        looks: What was seen: in the quick look, and in the one in real time where there was one.
+        cut: What is missing, and why; empty where nothing is.
+    """
+
+    at: float
+    reference: str
+    verdict: Verdict
+    looks: list[KeptLook]
+    cut: str = ""
+
+
+def packed(checked: Checked) -> bytes:
+    """The evidence of a check, now; empty where it cannot be packed, which must not cost anybody a verdict."""
+    try:
+        digest = reference.digest(checked.verdict.exercise)
+        return pack(checked.verdict, checked.evidence, digest, at=time.time())
+    except Exception:
+        traceback.print_exc()
+        return b""
+
+
+def pack(verdict: Verdict, evidence: Evidence, digest: str, *, at: float) -> bytes:
+    """A check as bytes; :func:`unpack` reads them.
+
+    Args:
+        verdict: What the judge found.
+        evidence: What that follows from.
+        digest: The SHA-256 of the reference output.
+        at: When that was, in seconds of Unix time.
+    """
+    looks = [look for look in (evidence.before, evidence) if look is not None]
+    sheet = _Sheet()
+    told = msgspec.to_builtins(replace(verdict, timeline=()))
+    sheet.write({"at": at, "reference": digest, "verdict": told})
+    for look in looks:
+        sheet.write({"real_time": look.real_time})
+        for part in look:
+            sheet.write({"name": part.name, "inputs": part.inputs})
+            for event in part.events:
+                sheet.write([event.t, event.kind, event.name, event.data, event.sim])
+    cut = ""
+    if sheet.left_out:
+        cut = (
+            f"the last {sheet.left_out} of {sheet.lines} lines are missing: the evidence of one check may have "
+            f"{MAX_BYTES} bytes, or {MAX_RAW_BYTES} before it is compressed"
+        )
+    return sheet.end({"cut": cut})
+
+
+class _Sheet:
+    """Lines of JSON under gzip, until there is no room."""
+
+    def __init__(self) -> None:
+        self._zip = zlib.compressobj(1, zlib.DEFLATED, _GZIP)
+        self._written = bytearray()
+        self._pending = self._raw = 0
+        self.lines = self.left_out = 0
+
+    def write(self, row: Any) -> None:
+        """Add a line; nothing is added any more once one had no room."""
+        self.lines += 1
+        if self.left_out or not self._add(_line(row)):
+            self.left_out += 1
+
+    def end(self, row: Any) -> bytes:
+        """Everything, with a last line that always has room."""
+        return bytes(self._written) + self._zip.compress(_line(row)) + self._zip.flush()
+
+    def _add(self, line: bytes) -> bool:
+        # What the compressor still holds counts in full until it is known what has become of it.
+        if len(self._written) + self._pending + len(line) > MAX_BYTES:
+            self._written += self._zip.flush(zlib.Z_SYNC_FLUSH)
+            self._pending = 0
+        self._raw += len(line)
+        if self._raw > MAX_RAW_BYTES or len(self._written) + self._pending + len(line) > MAX_BYTES:
+            return False
+        self._written += self._zip.compress(line)
+        self._pending += len(line)
+        return True
+
+
+def unpack(data: bytes) -> Kept:
+    """Read evidence back.
+
+    Raises:
+        NoEvidence: It is none, or it is damaged.
+    """
+    try:
+        unzip = zlib.decompressobj(_GZIP)
+        text = unzip.decompress(data, 2 * MAX_RAW_BYTES)
+        if not unzip.eof:
+            raise NoEvidence("it is cut off, or longer than any evidence")
+        first, *rows, last = [restored(json.loads(line)) for line in text.splitlines()]
+        return msgspec.convert({**first, **last, "looks": _looks(rows)}, type=Kept)
+    except (zlib.error, ValueError, TypeError, LookupError, RecursionError) as error:
+        raise error if isinstance(error, NoEvidence) else NoEvidence(str(error)) from error
+
+
+def _looks(rows: Sequence[Any]) -> list[dict[str, Any]]:
+    looks: list[dict[str, Any]] = []
+    for row in rows:
+        if isinstance(row, list):
+            looks[-1]["parts"][-1]["events"].append(
+                dict(zip(("t", "kind", "name", "data", "sim"), row, strict=True))
+            )
+        elif "real_time" in row:
+            looks.append({**row, "parts": []})
+        else:
+            looks[-1]["parts"].append({**row, "events": []})
+    return looks
+
+
+def evidence_of(kept: Kept, expected: Reference) -> Evidence:
+    """The evidence as a judge decides from it.
+
+    Args:
+        kept: What was kept.
+        expected: The reference output.
+
+    Raises:
+        NoEvidence: There is no look in it.
+    """
+    evidence: Evidence | None = None
+    for look in kept.looks:
+        parts = [
+            Part(
+                part.name, part.inputs, tuple(Event(e.t, e.kind, e.name, e.data, e.sim) for e in part.events)
+            )
+            for part in look.parts
+        ]
+        evidence = Evidence(parts, expected, look.real_time, evidence)
+    if evidence is None:
+        raise NoEvidence("the judge saw nothing")
+    return evidence
+
+
+def _line(row: Any) -> bytes:
+    try:
+        text = json.dumps(row, allow_nan=False)
+    except (ValueError, TypeError):
+        text = json.dumps(plain(row))
+    return text.encode() + b"\n"
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON can say it: numbers that are none, such as infinity, become a word."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return {_FLOAT: str(value)}
+    if isinstance(value, Mapping):
+        return {str(key): plain(inner) for key, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(inner) for inner in value]
+    return value if isinstance(value, (str, int, float)) or value is None else repr(value)
+
+
+def restored(value: Any) -> Any:
+    """The value for which :func:`plain` has put something plain."""
+    if isinstance(value, dict):
+        if value.keys() == {_FLOAT}:
+            return float(value[_FLOAT])
+        return {key: restored(inner) for key, inner in value.items()}
+    return [restored(inner) for inner in value] if isinstance(value, list) else value

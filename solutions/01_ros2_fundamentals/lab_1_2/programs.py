@@ -1,0 +1,16 @@
+"""Lab 1.2, the programs: a talker and a listener that `ros2 run` starts from the student's package."""
+
+from lab_1_2 import listener, talker
+
+from autograder.kit.recipes.programs import Program, Programs
+
+EXERCISE = Programs(
+    "my_robot_pkg",
+    Program("talker", talker.EXERCISE, "The talker publishes its texts at their pace", 3),
+    Program("listener", listener.EXERCISE, "The listener says every text it hears", 3),
+    keeps=("simple_node",),
+).exercise(
+    "lab_1_2.programs",
+    "Lab 1.2 · The programs",
+    "Two programs of your package, a talker and a listener, that ros2 run starts and Ctrl-C ends.",
+)

@@ -1,0 +1,84 @@
+"""Appeal files: a person reads them, and what is no whole one is named."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.appeals import appeal_file
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from autograder.appeals.appeal_file import Appeal
+
+
+def test_what_was_written_is_read_back(file: Path, appeal: Appeal) -> None:
+    opened = appeal_file.read(file)
+    assert opened.appeal == appeal
+    assert not opened.edited
+
+
+def test_a_person_finds_each_thing_on_a_line(file: Path) -> None:
+    lines = file.read_text(encoding="utf-8").splitlines()
+    assert ' "student": "ada",' in lines
+    assert any('"text": ["class TalkerNode(Node):", "    pass"]' in line for line in lines)
+    messages = [line for line in lines if '"kind": "message"' in line]
+    assert len(messages) > 3
+    for line in messages:
+        assert json.loads(line.rstrip(","))["name"] == "/chatter"
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [('"student": "ada"', '"student": "ben"'), ("/chatter", "/chater"), ('"score": 10', '"score": 9')],
+)
+def test_an_edited_file_is_noticed_and_taken_as_what_it_says(file: Path, old: str, new: str) -> None:
+    text = file.read_text(encoding="utf-8")
+    assert old in text
+    file.write_text(text.replace(old, new), encoding="utf-8")
+    assert appeal_file.read(file).edited
+
+
+def test_another_layout_is_no_edit(file: Path) -> None:
+    file.write_text(json.dumps(json.loads(file.read_text(encoding="utf-8")), indent=4), encoding="utf-8")
+    assert not appeal_file.read(file).edited
+
+
+def test_a_cut_file_says_what_to_do(file: Path) -> None:
+    file.write_bytes(file.read_bytes()[:-200])
+    with pytest.raises(
+        appeal_file.BadAppeal, match=r"only a part of one.*autograder appeal CLASS STUDENT EXERCISE"
+    ):
+        appeal_file.read(file)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"\x89MCAP0\r\n", "is no appeal file"),
+        (b"", "is no appeal file"),
+        (b"[" * 100_000, "is no appeal file"),
+        (b"[]", "is JSON, but not an appeal file"),
+        (b'{"exercise": "lab_1_2.talker"}', "is JSON, but not an appeal file"),
+        (b'{"format": "ros2-course-appeal-1"}', "was changed so that it is no appeal file any more"),
+        (b'{"format": "ros2-course-appeal-0"}', "not an appeal file of this version"),
+    ],
+)
+def test_a_foreign_file_is_named(content: bytes, words: str, tmp_path: Path) -> None:
+    path = tmp_path / "foreign"
+    path.write_bytes(content)
+    with pytest.raises(appeal_file.BadAppeal, match=words):
+        appeal_file.read(path)
+
+
+def test_no_file_and_a_file_without_end_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(appeal_file.BadAppeal, match="cannot be read: No such file"):
+        appeal_file.read(tmp_path / "none.json")
+    monkeypatch.setattr(appeal_file, "MAX_BYTES", 10)
+    path = tmp_path / "large.json"
+    path.write_bytes(b"x" * 11)
+    with pytest.raises(appeal_file.BadAppeal, match="larger than any appeal file"):
+        appeal_file.read(path)

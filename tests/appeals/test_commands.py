@@ -1,0 +1,149 @@
+"""``autograder replay`` and ``autograder check --mcap``: what they print, and with which exit code they end."""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from click.testing import CliRunner
+from mcap.reader import make_reader
+
+from autograder.authoring.answers import folder_of
+from autograder.cli import cli
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+
+def run(*words: object) -> tuple[int, str]:
+    result = CliRunner().invoke(cli, [str(word) for word in words])
+    assert result.exception is None or isinstance(result.exception, SystemExit)
+    return result.exit_code, result.output
+
+
+def edit(file: Path, change: Callable[[dict[str, Any]], object]) -> None:
+    content = json.loads(file.read_text(encoding="utf-8"))
+    change(content)
+    file.write_text(json.dumps(content), encoding="utf-8")
+
+
+def test_the_same_verdict_ends_with_0(file: Path) -> None:
+    code, said = run("replay", file)
+    assert code == 0
+    assert said.splitlines() == [
+        "lab_1_2.talker by ada, checked 2027-01-15 08:00:00 UTC with course 01234567",
+        "then: passed, 10 of 10 points",
+        "now:  passed, 10 of 10 points",
+        "the same verdict, points and diagnosis",
+    ]
+
+
+def test_an_edited_verdict_is_not_the_one_that_follows(file: Path) -> None:
+    edit(file, lambda content: content["seen"]["verdict"].update(score=3.0, state="failed"))
+    code, said = run("replay", file)
+    assert code == 1
+    assert "state: was failed, is passed" in said
+    assert "points: was 3 of 10, is 10 of 10" in said
+    assert "this file was changed after it was written" in said
+
+
+def test_edited_evidence_is_judged_as_what_it_says(file: Path) -> None:
+    text = file.read_text(encoding="utf-8").replace('"Hello, world! 3"', '"Hello, world! 7"')
+    file.write_text(text, encoding="utf-8")
+    code, said = run("replay", file)
+    assert code == 1
+    assert "now:  failed" in said
+    assert "diagnosis: was none, is" in said
+    assert "was changed after it was written" in said
+
+
+def test_an_edit_that_changes_no_verdict_is_told_as_well(file: Path) -> None:
+    edit(file, lambda content: content.update(student="ben"))
+    code, said = run("replay", file)
+    assert code == 1
+    assert "the same verdict" in said
+    assert "was changed after it was written" in said
+
+
+def test_another_reference_output_is_told(file: Path) -> None:
+    edit(file, lambda content: content["seen"].update(reference="of long ago"))
+    assert "the reference output of this exercise has changed since" in run("replay", file)[1]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (
+            lambda c: c["seen"].update(cut="the last 9 lines are missing"),
+            "no verdict follows from a part of it",
+        ),
+        (lambda c: c["seen"].update(looks=[]), "the judge saw nothing in this check"),
+        (lambda c: c["seen"]["verdict"].update(exercise="lab_1_2.talkr"), "did you mean lab_1_2.talker"),
+        (
+            lambda c: [e.update(data={}) for p in c["seen"]["looks"][0]["parts"] for e in p["events"]],
+            "cannot be decided from this evidence",
+        ),
+    ],
+)
+def test_what_cannot_be_judged_again_ends_with_2(
+    file: Path, change: Callable[[dict[str, Any]], object], words: str
+) -> None:
+    edit(file, change)
+    code, said = run("replay", file)
+    assert code == 2
+    assert words in said
+    assert "Traceback" not in said
+
+
+def test_a_file_that_is_none_ends_with_2(tmp_path: Path) -> None:
+    code, said = run("replay", tmp_path / "none.json")
+    assert code == 2
+    assert said.startswith("autograder: ")
+
+
+def test_messages_are_written_as_mcap(file: Path, tmp_path: Path) -> None:
+    code, said = run("replay", file, "--mcap", tmp_path / "check.mcap")
+    assert code == 0
+    with (tmp_path / "check.mcap").open("rb") as stream:
+        reader = make_reader(stream)
+        texts = [json.loads(m.data)["data"] for _, _, m in reader.iter_messages(topics=["/chatter"])]
+        (about,) = [one.metadata for one in reader.iter_metadata()]
+    assert texts[:2] == ["Hello, world! 0", "Hello, world! 1"]
+    assert (about["exercise"], about["state"], about["score"]) == ("lab_1_2.talker", "passed", "10")
+    assert f"{len(texts) + 1} events" in said
+
+
+@pytest.mark.parametrize(
+    ("name", "words"), [("check.bag", "such as check.mcap"), ("none/check.mcap", "cannot be written")]
+)
+def test_a_place_for_messages_that_is_none_ends_with_2(
+    file: Path, tmp_path: Path, name: str, words: str
+) -> None:
+    code, said = run("replay", file, "--mcap", tmp_path / name)
+    assert code == 2
+    assert words in said
+
+
+@pytest.mark.ros
+def test_the_messages_of_a_check_in_a_terminal(tmp_path: Path) -> None:
+    program = folder_of("lab_1_2.talker") / "right" / "text_as_it_stands.py"
+    path = tmp_path / "check.mcap"
+    code, said = run("check", "lab_1_2.talker", "--mcap", path, "--", sys.executable, program)
+    assert code == 0, said
+    with path.open("rb") as stream:
+        found = list(make_reader(stream).iter_messages(topics=["/chatter"]))
+    schemas = {(schema.name, schema.encoding) for schema, _, _ in found if schema}
+    assert schemas == {("std_msgs/msg/String", "jsonschema")}
+    assert [json.loads(m.data)["data"] for _, _, m in found][:2] == ["Hello, world! 0", "Hello, world! 1"]
+
+
+def test_another_ending_is_said_before_anything_is_run(tmp_path: Path) -> None:
+    code, said = run(
+        "check", "lab_1_2.talker", "--mcap", tmp_path / "a.bag", "--", "touch", tmp_path / "it_ran"
+    )
+    assert code == 2
+    assert "such as check.mcap" in said
+    assert not (tmp_path / "it_ran").exists()

@@ -1,0 +1,58 @@
+"""Watch mode as a student uses it, with the real judge: a short card below the cell of the class follows each run."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+from open_notebook import OpenNotebook, look
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+pytestmark = [pytest.mark.browser, pytest.mark.ros, pytest.mark.slow]
+BANK = Path(__file__).parents[1] / "submissions/notebooks/lab_1_2.talker"
+WATCH = 'from autograder.notebook import watch\nwatch("lab_1_2.talker", TalkerNode)'
+
+
+def answer(file: str) -> str:
+    """What a student types into the solution cell."""
+    return (BANK / file).read_text().partition("# %% solution ")[2].partition("\n")[2].strip()
+
+
+def test_each_run_of_the_cell_shows_one_short_card_below_it(page: Page, lab: str) -> None:
+    from playwright.sync_api import expect
+
+    page.goto(lab.format("lab/tree/01_ros2_fundamentals/lab_1_2.ipynb"))
+    notebook = OpenNotebook(page)
+    expect(page.locator("#jp-main-statusbar")).to_contain_text("Python 3 (ipykernel) | Idle")
+    expect(notebook.run(r"^import time")).to_contain_text(re.compile(r"ROS 2 is up"))
+    notebook.write(r"^class TalkerNode", answer("wrong/topic_name.py"))
+    defined = notebook.run(r"^class TalkerNode")
+    # A cell of the student's own, below it.
+    page.keyboard.press("Escape")
+    page.keyboard.press("b")
+    page.keyboard.press("Enter")
+    page.keyboard.insert_text(WATCH)
+    page.keyboard.press("Control+Enter")
+    expect(notebook.cell(r"^watch\(")).to_contain_text(
+        "TalkerNode is checked again whenever its cell is run."
+    )
+    expect(defined.locator(".agc")).to_have_count(0)
+
+    notebook.run(r"^class TalkerNode")
+    expect(defined.locator(".agc-failed")).to_contain_text("chater")
+    expect(defined.locator(".agc")).to_have_count(1)
+    expect(defined.locator(".agc-table")).to_have_count(0)
+    look(page, "watched-not-yet")
+
+    notebook.write(r"^class TalkerNode", answer("right/as_hinted.py"))
+    notebook.run(r"^class TalkerNode")
+    expect(defined.locator(".agc-passed")).to_contain_text("10 of 10 points")
+    expect(defined.locator(".agc")).to_have_count(1)
+    look(page, "watched-passed")

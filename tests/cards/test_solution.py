@@ -1,0 +1,40 @@
+"""What a card offers with full marks: the reference solution, folded up."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from autograder.cards import bundle
+from autograder.cards.solution import HEADING, OTHER, Solution
+from autograder.verdict import State, Verdict
+
+FULL = Verdict("lab_9_1.battery", "The battery", State.PASSED, 10, 10)
+SOLUTION = Solution(
+    ("%%writefile a.xml\n<a/>", "x = 1"), "A `timer` keeps the pace.", "Or a loop:", "while True: ..."
+)
+
+
+def test_full_marks_offer_it_folded_up() -> None:
+    card = bundle.mimebundle(FULL, solution=SOLUTION)
+    html = card["text/html"]
+    assert f'<details class="agc-fold agc-solution">\n<summary>{HEADING}' in html
+    assert "&lt;a/&gt;" in html
+    assert "A <code>timer</code> keeps the pace." in html
+    assert html.index("x = 1") < html.index(f"{OTHER}.") < html.index("while True: ...")
+    for words in (HEADING, "  | <a/>", "  | x = 1", f"{OTHER}. Or a loop:", "  | while True: ..."):
+        assert words in card["text/plain"]
+
+
+def test_anything_less_does_not() -> None:
+    without = bundle.mimebundle(FULL)
+    assert HEADING not in str(without)
+    for state, score in ((State.FAILED, 9), (State.FAILED, 10), (State.NOT_CHECKED, 0)):
+        assert HEADING not in str(
+            bundle.mimebundle(replace(FULL, state=state, score=score), solution=SOLUTION)
+        )
+
+
+def test_where_there_is_no_other_way_none_is_mentioned() -> None:
+    card = bundle.mimebundle(FULL, solution=Solution(("x = 1",), "Because."))
+    assert OTHER not in card["text/html"]
+    assert OTHER not in card["text/plain"]

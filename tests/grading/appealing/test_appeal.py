@@ -1,0 +1,183 @@
+"""From a graded class to an appeal file: what the judge saw, for the points in the gradebook and nothing else."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from click.testing import CliRunner
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from conftest import QUIET
+
+from autograder import exercises
+from autograder.appeals import appeal_file
+from autograder.cli import cli
+from autograder.grading.appealing.appeal import write_appeal
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.entering.evidence import EvidenceFolder
+from autograder.grading.errors import GradingError
+from autograder.grading.running import sandboxing, worker
+from autograder.judge.verdicts import keeping, reference, trial
+from autograder.kit.evidence import Event, Evidence, Part
+from autograder.messages.orders import Report
+
+if TYPE_CHECKING:
+    from conftest import FakeEngine, TinyClass
+
+ID = "lab_1_2.talker"
+
+
+def evidence() -> bytes:
+    """What a judge may hand over of a talker that is right."""
+    stored = reference.load(ID)
+    graph = Event(0.1, "interface", "graph", stored.interface)
+    seen = Evidence([Part("talking", {}, [graph, *stored.parts[0].events])], stored)
+    return keeping.pack(trial.decide(exercises.get(ID), seen, "s"), seen, reference.digest(ID), at=1.8e9)
+
+
+@pytest.fixture
+def graded(tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch) -> TinyClass:
+    """A class with one submission, of which a check has evidence."""
+    monkeypatch.setattr(sandboxing, "require", lambda _: None)
+    tiny.submit("ada", 10, 7)
+    fake_engine.evidence[ID] = evidence()
+    tiny.grade()
+    return tiny
+
+
+def kept(tiny: TinyClass, student: str = "ada") -> dict[str, bytes]:
+    found = EvidenceFolder(ClassDirectory(tiny.path)).find(student, ID)
+    return found[2].checks if found else {}
+
+
+def test_everything_about_the_check_is_in_the_file_and_it_is_judged_the_same(graded: TinyClass) -> None:
+    file = write_appeal(graded.path, "ada", ID)
+    assert file == graded.path / "appeals" / "ada-lab_1_2.talker.json"
+    appeal = appeal_file.read(file).appeal
+    assert (appeal.student, appeal.assignment, appeal.notebook) == ("ada", "lab_1_2", "lab_1_2")
+    assert appeal.course == "test"
+    assert [(cell.cell, cell.text) for cell in appeal.solution] == [
+        ("Talker", ["def Talker():", "    return 10"])
+    ]
+    assert appeal.expected == json.loads(exercises.reference_path(ID).read_text(encoding="utf-8"))
+    assert appeal.seen == keeping.unpack(evidence())
+    done = CliRunner().invoke(cli, ["replay", str(file)])
+    assert done.exit_code == 0, done.output
+    assert "the same verdict" in done.output
+
+
+def test_the_journal_and_the_gradebook_have_no_evidence(graded: TinyClass) -> None:
+    (entry,) = (graded.path / ".autograder" / "journal").rglob("*.json")
+    assert json.loads(entry.read_bytes())["execution"]["evidence"] == {}
+    assert graded.scores("ada") == {"lab_1_2-talker": 10.0, "lab_1_2-listener": 7.0}
+
+
+def test_where_a_person_says_so_the_file_is_somewhere_else(graded: TinyClass, tmp_path: Path) -> None:
+    words = ["appeal", str(graded.path), "ada", ID, "-o", str(tmp_path / "here.json")]
+    done = CliRunner().invoke(cli, words)
+    assert (done.exit_code, done.output.strip()) == (0, str(tmp_path / "here.json"))
+    assert appeal_file.read(tmp_path / "here.json").appeal.student == "ada"
+    assert CliRunner().invoke(cli, [*words[:-1], str(tmp_path)]).exit_code == 2
+
+
+def test_a_course_that_expects_something_else_since_does_not_say_what_was_expected(
+    graded: TinyClass, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(reference, "digest", lambda _: "another")
+    assert appeal_file.read(write_appeal(graded.path, "ada", ID)).appeal.expected is None
+
+
+@pytest.mark.parametrize(
+    ("student", "exercise", "words"),
+    [
+        ("ada", "lab_1_2.talkr", "did you mean lab_1_2.talker"),
+        ("ben", ID, "No check of lab_1_2.talker by 'ben' was graded here"),
+        ("ada", "lab_1_2.listener", "The table says: failed, wrong_text. It says something else."),
+    ],
+)
+def test_what_is_not_there_is_named(graded: TinyClass, student: str, exercise: str, words: str) -> None:
+    done = CliRunner().invoke(cli, ["appeal", str(graded.path), student, exercise])
+    assert done.exit_code == 2
+    assert words in done.output
+    assert not (graded.path / "appeals").exists()
+
+
+def test_damaged_evidence_is_named(graded: TinyClass, fake_engine: FakeEngine) -> None:
+    fake_engine.evidence[ID] = b"no evidence"
+    graded.grade(again=True)
+    with pytest.raises(GradingError, match=r"is damaged .*--student ada --again"):
+        write_appeal(graded.path, "ada", ID)
+    (file,) = (graded.path / ".autograder" / "evidence").rglob("*.msgpack")
+    file.write_bytes(file.read_bytes()[:100])
+    with pytest.raises(GradingError, match=r"Nothing that a judge saw .*--student ada --again"):
+        write_appeal(graded.path, "ada", ID)
+
+
+def test_no_appeal_about_a_run_that_was_not_entered(graded: TinyClass) -> None:
+    graded.submit("ada", 3, 3)
+    graded.grade(dry_run=True)
+    with pytest.raises(GradingError, match=r"does not have the points .* Enter them first: .*--student ada"):
+        write_appeal(graded.path, "ada", ID)
+    graded.grade()
+    assert write_appeal(graded.path, "ada", ID).is_file()
+
+
+def test_evidence_of_a_run_before_does_not_stay_where_a_later_one_has_none(
+    graded: TinyClass, fake_engine: FakeEngine
+) -> None:
+    fake_engine.evidence.clear()
+    graded.grade(again=True)
+    assert not kept(graded)
+
+
+def test_trouble_of_the_graders_own_keeps_no_evidence(graded: TinyClass, fake_engine: FakeEngine) -> None:
+    fake_engine.evidence[ID] = b"half of it"
+    graded.submit("ada", "'die'")
+    graded.grade()
+    assert kept(graded) == {ID: evidence()}
+    with pytest.raises(GradingError, match="does not have the points"):
+        write_appeal(graded.path, "ada", ID)
+
+
+def test_what_a_judge_hands_over_comes_from_the_worker_and_from_no_notebook(
+    tiny: TinyClass, with_fake_judge: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Through real workers: the notebook writes where it can, and only the judge's words are kept."""
+    monkeypatch.setattr(sandboxing, "require", lambda _: None)
+    sandboxing.switch_off(tiny.path)
+    tiny.submit("ada", "10 if print('evidence') is None else 0", 1)
+    tiny.grade(jobs=1, judge=with_fake_judge, console=QUIET)
+    assert kept(tiny) == {ID: b"lab_1_2.talker said 10", "lab_1_2.listener": b"lab_1_2.listener said 1"}
+
+
+def test_the_verdict_of_the_evidence_is_the_present_one() -> None:
+    """Else the tests above would show nothing."""
+    found = keeping.unpack(evidence()).verdict
+    assert (found.score, replace(found, seconds=0.0).passed) == (10.0, True)
+
+
+def test_the_evidence_of_a_notebook_has_an_end_however_many_checks_are_flooded(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class Flooded(contextlib.nullcontext[None]):
+        def open(self, exercise_id: str) -> None:
+            pass
+
+        def close_report(self) -> Report:
+            return Report(evidence=bytes(40))
+
+        def __enter__(self) -> Any:
+            return self
+
+    monkeypatch.setattr(worker, "MOST_EVIDENCE", 100)
+    with worker._Judges(lambda _: Flooded(), (), "") as judges:
+        for number in range(5):
+            judges.open(f"lab.exercise_{number}")
+            judges.close()
+    assert list(judges.evidence) == ["lab.exercise_0", "lab.exercise_1"]

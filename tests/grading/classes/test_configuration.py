@@ -1,0 +1,105 @@
+"""An option that the conversion does not know is refused, in a sentence, before anything is touched."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from nbgrader.converters import NbGraderException
+from test_doors import nbgrader_autograde, nbgrader_generate_feedback
+from tiny_class import TALKER, FakeEngine, TinyClass
+
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.classes.configuration import check_configuration
+from autograder.grading.errors import ClassIncomplete
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+
+OF_AN_EARLIER_CLASS = """
+c.Autograde.exporter_class = "autograder.grading.exporter.SubmissionExporter"
+c.Autograde.pre_convert_hook = "autograder.grading.hooks.before_autograde"
+c.Autograde.sanitize_preprocessors = ["nbgrader.preprocessors.CheckCellMetadata"]
+c.Autograde.autograde_preprocessors = [
+    "autograder.grading.preprocessors.WireExecute",
+    "nbgrader.preprocessors.LimitOutput",
+    "nbgrader.preprocessors.SaveAutoGrades",
+    "nbgrader.preprocessors.AssignLatePenalties",
+    "nbgrader.preprocessors.CheckCellMetadata",
+]
+c.OverwriteCells.add_missing_cells = True
+"""
+
+
+def test_what_new_class_writes_is_honoured(tiny: TinyClass) -> None:
+    check_configuration(ClassDirectory(tiny.path))
+
+
+def test_a_class_that_was_made_before_is_graded_as_ever(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.configure(OF_AN_EARLIER_CLASS)
+    tiny.submit("ada", 4)
+    tiny.submit("ben", 5)
+    tiny.grade(students=["ada"])
+    nbgrader_autograde(tiny)
+    assert (tiny.scores("ada")[TALKER], tiny.scores("ben")[TALKER]) == (4, 5)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        'c.CourseDirectory.course_id = "ros2"',
+        "c.CourseDirectory.max_file_size = 1000",
+        'c.LateSubmissionPlugin.penalty_method = "zero"',
+        "c.LimitOutput.max_lines = 10",
+        "c.WireExecute.memory_bytes = 4_000_000_000",
+    ],
+)
+def test_what_the_conversion_honours_is_not_refused(tiny: TinyClass, line: str) -> None:
+    tiny.configure(line)
+    check_configuration(ClassDirectory(tiny.path))
+
+
+@pytest.mark.parametrize(
+    ("line", "option"),
+    [
+        (
+            'c.Autograde.autograde_preprocessors.append("nbgrader.preprocessors.ClearOutput")',
+            "Autograde.autograde_preprocessors",
+        ),
+        ("c.Autograde.permissions = 664", "Autograde.permissions"),
+        ("c.SaveAutoGrades.enabled = False", "SaveAutoGrades.enabled"),
+        ('c.CourseDirectory.feedback_directory = "out"', "CourseDirectory.feedback_directory"),
+        (
+            'c.GenerateFeedback.preprocessors = ["nbgrader.preprocessors.ClearOutput"]',
+            "GenerateFeedback.preprocessors",
+        ),
+        ('c.HTMLExporter.template_name = "lab"', "HTMLExporter.template_name"),
+        ("c.WireExecute.memory = 4_000_000_000", "WireExecute.memory"),
+    ],
+)
+@pytest.mark.parametrize("way", [TinyClass.grade, nbgrader_autograde, nbgrader_generate_feedback])
+def test_what_it_does_not_know_is_refused_and_nothing_is_touched(
+    tiny: TinyClass, fake_engine: FakeEngine, line: str, option: str, way: Callable[[TinyClass], object]
+) -> None:
+    tiny.submit("ada", 4)
+    tiny.grade(feedback=True)
+    tiny.submit("ada", 9)
+    tiny.configure(line)
+    page = tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html"
+    made = page.stat().st_mtime_ns
+    with pytest.raises((ClassIncomplete, NbGraderException), match=rf"sets c\.{option}, .*delete that line"):
+        way(tiny)
+    assert tiny.scores("ada")[TALKER] == 4
+    assert fake_engine.ran == ["ada"]
+    assert page.stat().st_mtime_ns == made
+
+
+@pytest.mark.parametrize("section", ["Autograde", "GenerateFeedback"])
+def test_without_the_lines_that_lead_here_nothing_is_graded(tiny: TinyClass, section: str) -> None:
+    config = tiny.path / "nbgrader_config.py"
+    config.write_text(config.read_text().replace(f"c.{section}.exporter_class", "unused"))
+    tiny.submit("ada")
+    with pytest.raises(ClassIncomplete, match=rf"does not set c\.{section}\.exporter_class"):
+        tiny.grade()

@@ -1,0 +1,124 @@
+"""Every command of the instructor's guide runs, in the order in which it stands there."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+from click.testing import CliRunner
+from conftest import TALKER
+from downloads import write_zip
+from instructor import by_person
+
+from autograder import exercises
+from autograder.boxes.execution import Execution
+from autograder.cli import cli
+from autograder.grading.classes.class_directory import ClassDirectory, Submission
+from autograder.grading.entering.evidence import EvidenceFolder
+from autograder.grading.rebuilding.task_making import tasks_of
+from autograder.grading.running import sandboxing
+from autograder.judge.verdicts import keeping, reference, trial
+from autograder.kit.evidence import Evidence
+
+if TYPE_CHECKING:
+    from conftest import FakeEngine, TinyClass
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+GUIDE = Path(__file__).parents[3] / "docs" / "instructors-guide.md"
+
+
+def run(*arguments: object) -> str:
+    result = CliRunner().invoke(cli, [str(argument) for argument in arguments])
+    assert result.exit_code in (0, 2), result.output
+    return result.output
+
+
+@pytest.fixture
+def unboxed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is executed, so no box is needed."""
+    monkeypatch.setattr(sandboxing, "require", lambda _: None)
+
+
+def keep_evidence(tiny: TinyClass, student: str, exercise: str) -> None:
+    """Have the class keep of a check what the reference solution does."""
+    stored = reference.load(exercise)
+    seen = Evidence(stored.parts, stored)
+    verdict = trial.decide(exercises.get(exercise), seen, "s")
+    packed = keeping.pack(verdict, seen, reference.digest(exercise), at=1.8e9)
+    directory = ClassDirectory(tiny.path)
+    (task,) = tasks_of(
+        directory, Submission(student, "lab_1_2", tiny.path / "submitted" / student / "lab_1_2")
+    )
+    EvidenceFolder(directory).keep(task, Execution((), evidence={exercise: packed}))
+
+
+def commands(text: str) -> list[str]:
+    """The lines that a reader of a page is to type."""
+    blocks = re.findall(r"^```console\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    return [line[2:] for block in blocks for line in block.splitlines() if line.startswith("$ ")]
+
+
+def test_every_command_of_the_guide_runs(
+    tiny: TinyClass, fake_engine: FakeEngine, unboxed: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from jupyter_core.application import NoStart
+    from nbgrader.apps import NbGraderApp
+
+    (tmp_path / "Downloads").mkdir()
+    monkeypatch.setenv("HOME", str(tmp_path))
+    (tmp_path / "Downloads" / "Grades-lab_1_2.csv").write_text(
+        "Identifier,Full name,Email address,Grade\nParticipant 1,Ada Lovelace,ada@uni.example,\n"
+    )
+    (tiny.path / "students.csv").write_text(
+        "id,first_name,last_name,email\nada,Ada,Lovelace,ada@uni.example\n"
+    )
+    notebook = tiny.submit("x", 4, 7)
+    write_zip(
+        tmp_path / "Downloads" / "submissions.zip", {"lovelaceada_1_2_lab_1_2.ipynb": notebook.read_bytes()}
+    )
+    for part in (notebook, notebook.parent, notebook.parent.parent):
+        part.unlink() if part.is_file() else part.rmdir()
+    ran = []
+    for command in commands(GUIDE.read_text(encoding="utf-8")):
+        typed = command.replace("~/robotics-2025", str(tiny.path)).replace("~", str(tmp_path))
+        words = shlex.split(typed, comments=True)
+        if words[0] == "cd":
+            monkeypatch.chdir(words[1])
+            continue
+        assert Path(words[0]).name == "course", command
+        name = words[1]
+        if name == "new-class":
+            # The class of this test is there already: a real one in another place, of one lab.
+            words[2:] = [str(tmp_path / "another"), "--assignment", "lab_1_2"]
+            subprocess.run([sys.executable, "-m", "autograder", *words[1:]], check=True, capture_output=True)
+        elif name == "renew-class":
+            run(*words[1:2], tmp_path / "another", *words[3:])
+        elif name == "nbgrader":
+            NbGraderApp.clear_instance()
+            application = NbGraderApp.instance()
+            application.initialize(words[2:])
+            with contextlib.suppress(NoStart):  # that is how a command within nbgrader ends
+                application.start()
+            NbGraderApp.clear_instance()
+        else:
+            if name == "appeal":  # of a check that a judge has seen
+                keep_evidence(tiny, words[3], words[4])
+            if name == "compare":  # of a class that has been graded twice
+                by_person(tiny, "ada", TALKER, 5)
+                run("grade", tiny.path)
+                by_person(tiny, "ada", TALKER, 4)
+                run("grade", tiny.path)
+            result = CliRunner().invoke(cli, words[1:])
+            assert result.exit_code == 0, f"{command}: {result.output}"
+        ran.append(name)
+    assert {"new-class", "collect", "grade", "appeal", "replay", "report", "export", "nbgrader"} <= set(ran)
+    assert (tmp_path / "another" / "release" / "lab_1_2" / "lab_1_2.ipynb").is_file()
+    assert (tiny.path / "nbgrader_export.csv").is_file()
+    filled = (tiny.path / "export" / "Grades-lab_1_2.csv").read_text()
+    assert "Participant 1,Ada Lovelace,ada@uni.example,11" in filled

@@ -1,0 +1,125 @@
+"""The evidence of a check as bytes: what comes back is what was seen, and there is never too much of it."""
+
+from __future__ import annotations
+
+import math
+import random
+import zlib
+from typing import Any
+
+import pytest
+
+from autograder import exercises
+from autograder.judge.verdicts import keeping, reference
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.verdict import State, Verdict
+
+VERDICT = Verdict("lab_1_2.talker", "Talker", State.PASSED, 10.0, 10.0, seed="s")
+EXPECTED = Reference("lab_1_2.talker", {})
+
+
+def packed(*events: Event, before: Evidence | None = None) -> bytes:
+    seen = Evidence([Part("talking", {"order": 4}, events)], EXPECTED, before is not None, before)
+    return keeping.pack(VERDICT, seen, "abc", at=1.5)
+
+
+def back(data: bytes) -> Evidence:
+    return keeping.evidence_of(keeping.unpack(data), EXPECTED)
+
+
+@pytest.mark.parametrize("exercise_id", exercises.all_ids())
+def test_what_is_expected_of_each_exercise_comes_back_as_it_is(exercise_id: str) -> None:
+    stored = reference.load(exercise_id)
+    seen = Evidence(stored.parts, stored)
+    kept = keeping.unpack(keeping.pack(VERDICT, seen, reference.digest(exercise_id), at=1.5))
+    found = keeping.evidence_of(kept, stored)
+    assert [(part.name, part.inputs, list(part.events)) for part in found] == [
+        (part.name, part.inputs, list(part.events)) for part in seen
+    ]
+    assert (kept.at, kept.verdict, kept.cut) == (1.5, VERDICT, "")
+    assert kept.reference == reference.digest(exercise_id)
+
+
+def test_both_looks_come_back() -> None:
+    first = Evidence([Part("talking", {}, [Event(0.1, "log", "n", {"text": "first"})])], EXPECTED)
+    found = back(packed(Event(0.25, "log", "n", {"text": "second"}, 100.5), before=first))
+    assert found.real_time
+    assert found.before is not None
+    assert not found.before.real_time
+    assert [e.data["text"] for e in (*found.before.main.events, *found.main.events)] == ["first", "second"]
+    assert (found.main.events[0].sim, found.main.inputs) == (100.5, {"order": 4})
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"text": "a lone surrogate \ud800 and ü"},
+        {"fields": {"data": math.inf, "more": [-math.inf, 1e300, 5e-324, 0.1 + 0.2]}},
+        {"fields": {"big": 2**63 - 1, "none": None, "yes": True}},
+        {},
+    ],
+)
+def test_whatever_is_in_an_event_comes_back(data: dict[str, Any]) -> None:
+    assert back(packed(Event(0.1, "message", "/chatter", data))).main.events == (
+        Event(0.1, "message", "/chatter", data),
+    )
+
+
+def test_a_number_that_is_none_comes_back() -> None:
+    found = back(packed(Event(0.1, "message", "/scan", {"fields": {"range": math.nan}})))
+    assert math.isnan(found.main.events[0].data["fields"]["range"])
+
+
+def test_what_is_no_json_at_all_costs_no_evidence() -> None:
+    found = back(packed(Event(0.1, "message", "/x", {"odd": {1, 2}})))
+    assert found.main.events[0].data == {"odd": "{1, 2}"}
+
+
+@pytest.mark.parametrize("text", ["the same again and again " * 40, ""])
+def test_a_flood_is_cut_and_says_so(text: str) -> None:
+    chance = random.Random(1)
+    flood = [
+        Event(i / 10, "log", "talker", {"text": text or chance.randbytes(400).hex(), "number": i})
+        for i in range(20_000)
+    ]
+    data = packed(*flood)
+    assert len(data) <= keeping.MAX_BYTES + 1000
+    assert len(zlib.decompress(data, 31)) <= keeping.MAX_RAW_BYTES + 1000
+    kept = keeping.unpack(data)
+    seen = kept.looks[0].parts[0].events
+    assert 100 < len(seen) < 20_000
+    assert [event.data["number"] for event in seen] == list(range(len(seen)))
+    assert f"the last {20_000 - len(seen)} of 20003 lines are missing" in kept.cut
+    assert kept.verdict == VERDICT
+
+
+def test_a_single_event_that_is_too_large_is_left_out() -> None:
+    large = Event(0.1, "log", "talker", {"text": random.Random(1).randbytes(keeping.MAX_BYTES).hex()})
+    kept = keeping.unpack(packed(Event(0.0, "log", "talker", {"text": "small"}), large))
+    assert [event.data["text"] for event in kept.looks[0].parts[0].events] == ["small"]
+    assert kept.cut
+
+
+@pytest.mark.parametrize(
+    "spoilt",
+    [
+        lambda data: b"",
+        lambda data: b"not gzip at all",
+        lambda data: data[:-20],
+        lambda data: data[:-4],
+        lambda data: data[:40] + b"xxxx" + data[44:],
+        lambda data: zlib.compress(b"{}", wbits=31),
+        lambda data: zlib.compress(b"[1]\n[2]\n[3]", wbits=31),
+        lambda data: zlib.compress(b"[" * 100_000, wbits=31),
+        lambda data: zlib.compress(bytes(3 * keeping.MAX_RAW_BYTES), wbits=31),
+    ],
+)
+def test_what_is_no_evidence_is_named(spoilt: Any) -> None:
+    with pytest.raises(keeping.NoEvidence):
+        keeping.unpack(spoilt(packed(Event(0.1, "log", "talker", {"text": "x"}))))
+
+
+def test_where_nothing_was_seen_there_is_nothing_to_decide() -> None:
+    empty = keeping.Kept(1.5, "abc", VERDICT, [])
+    with pytest.raises(keeping.NoEvidence):
+        keeping.evidence_of(empty, EXPECTED)

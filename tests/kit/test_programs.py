@@ -1,0 +1,154 @@
+"""What is told of the programs of a package: whose run it is, what came before Ctrl-C, and where files lie."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.kit import package_programs
+from autograder.kit.evidence import INTERRUPTED, Event, Evidence, Part, Reference
+from autograder.kit.model import Criterion, Exercise, Finding
+from autograder.kit.recipes.programs import Program, Programs
+from autograder.kit.workspace_report import PackageReport, WorkspaceReport, as_line
+
+PACKAGE = "my_robot_pkg"
+TRACEBACK = ("Traceback (most recent call last):", '  File "a.py", line 1, in main', "KeyboardInterrupt")
+
+
+def said(text: str) -> Event:
+    return Event(0.0, "output", "stderr", {"text": text})
+
+
+def subject(name: str) -> Event:
+    return Event(0.0, "subject", name)
+
+
+def says_hello(evidence: Evidence) -> Finding:
+    return Finding("hello" in evidence.main.said(), "hello", ", ".join(evidence.main.said()))
+
+
+NODE = Exercise(
+    "lab_9_1.node", "", "", lambda _: None, (Criterion("hello", "", 10, says_hello),), (), ("publisher",)
+)
+TALKER, LISTENER = Program("talker", NODE, "", 3), Program("listener", NODE, "", 3)
+PROGRAMS = Programs(PACKAGE, TALKER, LISTENER, keeps=("simple_node",)).exercise("lab_9_1.programs", "", "")
+
+
+def evidence(talker: list[Event], listener: list[Event] | None = None) -> Evidence:
+    parts = [Part("talker: talking", {}, talker)]
+    if listener is not None:
+        parts.append(Part("listener: listening", {}, listener))
+    return Evidence(parts, Reference("lab_9_1.programs", {}))
+
+
+def test_a_program_is_judged_by_its_own_runs_and_by_what_came_before_ctrl_c() -> None:
+    seen = evidence([said("hello"), subject(INTERRUPTED), said("bye"), subject("exited")], [said("nothing")])
+    view = TALKER.view(seen)
+    assert [part.name for part in view] == ["talking"]
+    assert view.main.said() == ["hello"]
+    assert view.main.ending is None
+    assert TALKER.judge(seen).passed
+    assert not LISTENER.judge(seen).passed
+    assert LISTENER.judge(seen).seen == "nothing"
+
+
+@pytest.mark.parametrize(
+    ("events", "what"),
+    [
+        ([said("hello"), subject(INTERRUPTED), subject("exited")], ""),
+        ([said("hello"), subject(INTERRUPTED)], "went on"),
+        ([said("hello"), subject("exited")], "ended by itself"),
+        ([], "did not get so far"),
+    ],
+)
+def test_only_ctrl_c_is_the_right_end(events: list[Event], what: str) -> None:
+    assert TALKER.ending(evidence(events)) == what
+    assert LISTENER.ending(evidence(events)) == "did not run"
+
+
+def test_a_traceback_after_ctrl_c_costs_nothing_and_is_worth_a_word() -> None:
+    quiet = [said("hello"), subject(INTERRUPTED), subject("exited")]
+    loud = [said("hello"), subject(INTERRUPTED), *map(said, TRACEBACK), subject("exited")]
+    (remark,) = PROGRAMS.remarks
+    assert remark(evidence(quiet, quiet)) == ""
+    assert remark(evidence(quiet, loud)).startswith("listener ends on Ctrl-C with a traceback.")
+    assert PROGRAMS.criteria[-1].judge(evidence(quiet, loud)).passed
+    assert [mistake.key for mistake in PROGRAMS.mistakes if mistake.recognise(evidence(quiet, loud))] == []
+
+
+def report(*modules: str, programs: tuple[str, ...] = ()) -> WorkspaceReport:
+    package = PackageReport(PACKAGE, "ament_python", programs, (), (), modules)
+    return WorkspaceReport("built", built=True, packages=(package,))
+
+
+ENTRY = "talker = my_robot_pkg.talker:main"
+
+
+@pytest.mark.parametrize(
+    ("modules", "programs", "wrong"),
+    [
+        (("my_robot_pkg/talker.py",), (ENTRY,), ""),
+        (("talker.py",), (ENTRY,), "src/my_robot_pkg/talker.py"),
+        (("nodes/talker.py",), (ENTRY,), "src/my_robot_pkg/nodes/talker.py"),
+        (("nodes/talker.py",), ("talker = nodes.talker:main",), ""),
+        (("my_robot_pkg/chatting.py",), (ENTRY,), ""),
+    ],
+)
+def test_a_file_in_another_folder_is_found(
+    modules: tuple[str, ...], programs: tuple[str, ...], wrong: str
+) -> None:
+    seen = evidence([said(as_line(report(*modules, programs=programs)))])
+    advice = package_programs.wrong_folder(seen, PACKAGE, "talker")
+    assert (advice is not None) == bool(wrong)
+    assert advice is None or wrong in advice.text
+
+
+LOADING = (
+    "Traceback (most recent call last):",
+    '  File "/ws/install/my_robot_pkg/lib/my_robot_pkg/talker", line 33, in <module>',
+    "    sys.exit(load_entry_point('my-robot-pkg==0.0.0', 'console_scripts', 'talker')())",
+    '  File "/ws/install/my_robot_pkg/lib/my_robot_pkg/talker", line 25, in importlib_load_entry_point',
+    "    return next(matches).load()",
+    "           ^^^^^^^^^^^^^^^^^^^^",
+    '  File "/usr/lib/python3.12/importlib/metadata/__init__.py", line 205, in load',
+    "    module = import_module(match.group('module'))",
+    '  File "<frozen importlib._bootstrap>", line 1324, in _find_and_load_unlocked',
+)
+OWN_IMPORT = (
+    '  File "/ws/install/my_robot_pkg/lib/python3.12/site-packages/my_robot_pkg/talker.py", line 1, in <module>',
+    "    import helper",
+)
+
+
+@pytest.mark.parametrize(
+    ("lines", "missing", "named"),
+    [
+        (LOADING, "talker", "names the module talker, which is not there"),
+        (LOADING, "my_robot_pakage", "names the module my_robot_pakage, which is not there"),
+        (LOADING, "my_robot_pkg.chatter", "leads to the module chatter, which is not there"),
+        (LOADING, "my_robot_pkg", ""),
+        ((*LOADING, *OWN_IMPORT), "helper", ""),
+    ],
+)
+def test_an_entry_point_that_leads_nowhere_is_told_from_an_import(
+    lines: tuple[str, ...], missing: str, named: str
+) -> None:
+    seen = evidence([*map(said, lines), said(f"ModuleNotFoundError: No module named '{missing}'")])
+    advice = package_programs.entry_point(seen, PACKAGE, "talker")
+    assert (advice is not None) == bool(named)
+    assert advice is None or named in advice.text
+
+
+@pytest.mark.parametrize(
+    ("modules", "programs", "lost"),
+    [
+        (("my_robot_pkg/simple_node.py",), (ENTRY,), True),
+        (("my_robot_pkg/simple_node.py",), (ENTRY, "hello = my_robot_pkg.simple_node:main"), False),
+        (("my_robot_pkg/talker.py",), (ENTRY,), False),
+    ],
+)
+def test_an_entry_point_is_lost_where_its_module_is_still_there(
+    modules: tuple[str, ...], programs: tuple[str, ...], lost: bool
+) -> None:
+    assert (
+        package_programs.lost_entry_point(report(*modules, programs=programs), PACKAGE, "simple_node") == lost
+    )

@@ -1,0 +1,106 @@
+"""The solutions that may be read later: taken from the master, with a reason beside the exercise."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from autograder.masters.errors import MasterError
+from autograder.masters.solutions import solution_files
+from autograder.masters.source import named_cells
+
+ROOT = Path(__file__).resolve().parents[2]
+MASTER = """\
+# Lab
+
+```{code-cell} ipython3
+:tags: [solution]
+
+def double(number: int) -> int:
+    \"\"\"Twice the number.\"\"\"
+    ### BEGIN SOLUTION
+    # TODO: return twice the number.
+    return 2 * number
+    ### END SOLUTION
+```
+
+```{code-cell} ipython3
+:tags: [solution]
+:grade_id: asked
+
+%%bash
+### BEGIN SOLUTION
+# TODO: ask.
+ros2 topic list
+### END SOLUTION
+```
+
+```{code-cell} ipython3
+:tags: [check]
+
+check("lab_9_1.double", double)
+```
+
+```{code-cell} ipython3
+:tags: [solution]
+
+def half(number: int) -> int:
+    \"\"\"Half the number.\"\"\"
+    ### BEGIN SOLUTION
+    # TODO: return half the number.
+    return number // 2
+    ### END SOLUTION
+```
+
+```{code-cell} ipython3
+:tags: [check]
+
+check("lab_9_1.half", half)
+```
+"""
+
+
+def made(folder: Path, why: str | None) -> dict[str, dict[str, object]]:
+    master = folder / "lab_9_1" / "lab.md"
+    master.parent.mkdir()
+    head = (ROOT / "solutions/01_ros2_fundamentals/lab_1_2/lab.md").read_text().partition("# Lab")[0]
+    master.write_text(head + MASTER)
+    if why is not None:
+        master.with_name("half.why.md").write_text(why)
+    files = solution_files(master, named_cells(master, points=lambda _: 10))
+    return {path.name: json.loads(text) for path, text in files.items()}
+
+
+def test_it_has_the_cells_since_the_check_before_and_the_reason(tmp_path: Path) -> None:
+    why = "Whole numbers\nstay whole.\n\n## Another way\n\nAs a shift:\n\n```python\nnumber >> 1\n```\n"
+    assert made(tmp_path, why) == {
+        "half.solution.json": {
+            "exercise": "lab_9_1.half",
+            "code": ['def half(number: int) -> int:\n    """Half the number."""\n    return number // 2'],
+            "why": "Whole numbers stay whole.",
+            "other_way": "As a shift:",
+            "other_code": "number >> 1",
+        }
+    }
+
+
+def test_an_exercise_without_a_reason_has_none(tmp_path: Path) -> None:
+    assert made(tmp_path, None) == {}
+
+
+@pytest.mark.parametrize(
+    "why",
+    [
+        "",
+        "one\ntwo\nthree",
+        "x" * 200,
+        "Why.\n\n## Another way\n\nNo code.",
+        "Why.\n## Another way\n```python\nx\n```",
+    ],
+    ids=["nothing", "three lines", "a long line", "no code", "no words"],
+)
+def test_a_reason_of_another_form_is_refused(tmp_path: Path, why: str) -> None:
+    with pytest.raises(MasterError, match=r"half\.why\.md"):
+        made(tmp_path, why)

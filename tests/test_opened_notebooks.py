@@ -1,0 +1,48 @@
+"""What the student's server says of a notebook, so that JupyterLab finds nothing to save in it."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+from ipykernel.ipkernel import IPythonKernel
+
+from autograder.opened_notebooks import OpenedNotebooks
+
+RELEASED = Path(__file__).resolve().parents[1] / "chapters/01_ros2_fundamentals/lab_1_2.ipynb"
+
+
+def opened(folder: Path, name: str, **options: Any) -> dict[str, Any]:
+    return asyncio.run(OpenedNotebooks(root_dir=str(folder)).get(name, **options))
+
+
+def test_an_opened_notebook_says_of_its_language_what_the_kernel_says(tmp_path: Path) -> None:
+    copy = Path(shutil.copy(RELEASED, tmp_path))
+    assert opened(tmp_path, copy.name)["content"]["metadata"]["language_info"] == IPythonKernel.language_info
+    assert copy.read_bytes() == RELEASED.read_bytes()
+
+
+def test_the_version_of_another_computer_is_replaced(tmp_path: Path) -> None:
+    notebook = json.loads(RELEASED.read_text())
+    notebook["metadata"]["language_info"]["version"] = "3.8.1"
+    (tmp_path / "mine.ipynb").write_text(json.dumps(notebook))
+    assert (
+        opened(tmp_path, "mine.ipynb")["content"]["metadata"]["language_info"] == IPythonKernel.language_info
+    )
+
+
+def test_what_is_no_notebook_of_python_stays_as_it_is(tmp_path: Path) -> None:
+    notebook = json.loads(RELEASED.read_text())
+    notebook["metadata"] = {"language_info": {"name": "julia"}}
+    (tmp_path / "other.ipynb").write_text(json.dumps(notebook))
+    notebook["metadata"] = {}
+    (tmp_path / "bare.ipynb").write_text(json.dumps(notebook))
+    (tmp_path / "notes.txt").write_text("mine")
+    assert opened(tmp_path, "other.ipynb")["content"]["metadata"]["language_info"] == {"name": "julia"}
+    assert opened(tmp_path, "bare.ipynb")["content"]["metadata"] == {}
+    assert opened(tmp_path, "notes.txt")["content"] == "mine"
+    assert opened(tmp_path, "bare.ipynb", content=False)["content"] is None
+    assert opened(tmp_path, "")["type"] == "directory"
