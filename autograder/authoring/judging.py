@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
+from autograder.clean_stdout import private_stdout
 from autograder.verdict import State, Verdict, from_json, to_json
 
 if TYPE_CHECKING:
@@ -82,7 +83,7 @@ def judge_all(
     while waiting or running:
         while waiting and len(running) < jobs:
             turn, attempt = waiting.pop(0)
-            child = Child(lambda turn=turn: turn.subject.verdict(turn.seed, warm=warm), LIMIT)  # type: ignore[misc]
+            child = Child(lambda turn=turn: _verdict_in_child(turn, warm=warm), LIMIT)  # type: ignore[misc]
             running[child.reading] = (turn, attempt, child)
         ready, _, _ = select.select(list(running), [], [])
         for descriptor in ready:
@@ -98,6 +99,12 @@ def judge_all(
                 failed(turn, outcome.trouble)
             else:
                 raise NoVerdict(f"{turn.subject.name}: {outcome.trouble}")
+
+
+def _verdict_in_child(turn: Turn[T], *, warm: bool) -> bytes:
+    # The parent's standard output is for verdicts.
+    private_stdout().close()
+    return turn.subject.verdict(turn.seed, warm=warm)
 
 
 def verdict_of(answer: Answer, seed: str, *, warm: bool) -> bytes:

@@ -63,10 +63,11 @@ def check(
         )
     if mcap is not None:
         appeals.check_name(mcap)
+    from autograder.clean_stdout import stray_lines_on_stderr
     from autograder.judge.subjects.command import CommandNotFound, check_and_keep
 
     try:
-        with _box(command) if boxed else nullcontext() as box:
+        with _box(command) if boxed else nullcontext() as box, stray_lines_on_stderr():
             verdict, evidence = check_and_keep(exercise, command, seed=seed, box=box)
     except CommandNotFound as error:
         fail(str(error))

@@ -17,7 +17,7 @@ import sys
 import threading
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import msgspec
 
@@ -30,6 +30,7 @@ from autograder.boxes.processes import adopt_orphans, end_descendants
 from autograder.boxes.runner import run_notebook
 from autograder.boxes.sandbox import NoSandbox
 from autograder.boxes.scratch import scratch_folder
+from autograder.clean_stdout import private_stdout
 from autograder.grading.returning.page_budget import too_costly
 from autograder.grading.running.workspaces import arrange, served
 from autograder.grading.task import Task, decode_task, encode
@@ -59,7 +60,7 @@ def main(arguments: list[str]) -> None:
     """
     scratch, judge = Path(arguments[0]), _imported(arguments[1])
     addresses = msgspec.json.decode(arguments[2], type=Addresses)
-    results = _private_stdout()
+    results = private_stdout()
     raise_own()
     adopt_orphans()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
@@ -203,13 +204,6 @@ def _ros_variables(stack: contextlib.ExitStack, *, boxed: bool) -> Mapping[str, 
 def _imported(name: str) -> Any:
     module, _, attribute = name.partition(":")
     return getattr(importlib.import_module(module), attribute)
-
-
-def _private_stdout() -> BinaryIO:
-    """Standard output for results alone: whatever else prints goes to standard error."""
-    results = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)
-    return results
 
 
 def _lines() -> Iterator[bytes]:

@@ -7,7 +7,6 @@ participant, which meets its subject at once.
 from __future__ import annotations
 
 import contextlib
-import os
 import secrets
 import selectors
 import sys
@@ -16,6 +15,7 @@ from typing import TYPE_CHECKING, BinaryIO
 import msgspec
 
 from autograder import exercises
+from autograder.clean_stdout import private_stdout
 from autograder.judge.serving import conversation
 from autograder.judge.serving.fork import Child
 from autograder.judge.serving.sockets import listen
@@ -139,8 +139,7 @@ def _refuse(connection: socket.socket, why: str) -> None:
 
 def run(path: Path) -> None:
     """Serve whoever asks, until stdin ends; what anything prints goes to stderr."""
-    answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)
+    answers = private_stdout()
     sys.stdout = sys.stderr
     try:
         JudgeServer(listen(path), controlled=False).serve(sys.stdin.buffer, answers)

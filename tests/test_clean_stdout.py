@@ -1,0 +1,83 @@
+"""A line that Fast DDS prints never stands among the results."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+from click.testing import CliRunner
+
+from autograder import journal
+from autograder.authoring.judging import Turn, judge_all
+from autograder.clean_stdout import stray_lines_on_stderr
+from autograder.cli import cli
+from autograder.judge.subjects import command
+from autograder.verdict import State, Verdict, to_json
+
+if TYPE_CHECKING:
+    import pytest
+
+LOG_LINE = b"2026-11-20 14:02:11.123 [RTPS_TRANSPORT_SHM Error] Failed to create segment\n"
+"""A line as Fast DDS prints it."""
+
+VERDICT = Verdict("lab_1_2.talker", "Talker", State.PASSED, 10.0, 10.0)
+
+
+def _say_as_fast_dds() -> None:
+    os.write(1, LOG_LINE)
+
+
+def test_private_stdout_keeps_results_apart() -> None:
+    program = f"""
+import os
+from autograder.clean_stdout import private_stdout
+print("before")
+results = private_stdout()
+os.write(1, {LOG_LINE!r})
+results.write(b"result")
+results.flush()
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True)
+    assert (done.stdout, done.stderr) == (b"before\nresult", LOG_LINE)
+
+
+def test_stray_lines_go_to_stderr_only_in_the_meantime(capfd: pytest.CaptureFixture[str]) -> None:
+    with stray_lines_on_stderr():
+        _say_as_fast_dds()
+    os.write(1, b"after")
+    said = capfd.readouterr()
+    assert (said.out, said.err) == ("after", LOG_LINE.decode())
+
+
+class _Noisy:
+    name = "noisy"
+
+    def verdict(self, seed: str, *, warm: bool) -> bytes:
+        _say_as_fast_dds()
+        return to_json(VERDICT)
+
+
+def test_a_judge_of_the_bank_leaves_stdout_to_the_verdicts(capfd: pytest.CaptureFixture[str]) -> None:
+    judge_all(
+        [Turn(_Noisy(), "seed")], jobs=1, done=lambda turn, verdict: print(turn.subject.name, verdict.score)
+    )
+    said = capfd.readouterr()
+    assert said.out == "noisy 10.0\n"
+    assert LOG_LINE.decode() in said.err
+
+
+def test_check_prints_nothing_but_the_verdict(
+    capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def noisy(*_: object, **__: object) -> tuple[Verdict, None]:
+        _say_as_fast_dds()
+        return VERDICT, None
+
+    monkeypatch.setattr(command, "check_and_keep", noisy)
+    monkeypatch.setattr(journal, "note_check", lambda verdict: None)
+    done = CliRunner().invoke(cli, ["check", "--json", VERDICT.exercise, "--", "true"])
+    assert (done.exit_code, done.stdout) == (0, f"{to_json(VERDICT).decode()}\n")
+    said = capfd.readouterr()
+    assert (said.out, said.err) == ("", LOG_LINE.decode())
