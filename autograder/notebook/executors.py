@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from autograder.notebook.background import Background, end_everything, replace_named
 from autograder.notebook.callback_errors import CallbackFailedError
 from autograder.notebook.node_ends import node_label
+from autograder.notebook.raising_lines import point_at_raising_lines
 from autograder.notebook.ros_session import RosSession, prepare_environment, start_ros
 from autograder.notebook.usable_nodes import SettingError, check_nodes, check_threads
 
@@ -127,5 +128,6 @@ class Spinning:
 
 
 prepare_environment()
+point_at_raising_lines()
 # The threads must be gone before the interpreter goes: see spin_threads.
 atexit.register(end_everything, grace=_GRACE_AT_EXIT)

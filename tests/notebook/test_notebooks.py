@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -183,6 +184,20 @@ with spinning(ListenerNode()) as listener:
     assert notebook.run("background.running, rclpy.ok()").value == "(True, True)"
     assert notebook.run("Node('observer').get_node_names()").value == "['talker_node', 'observer']"
     assert notebook.run(HEAR_ONE_OF_EACH).value == "{'hello'}"
+
+
+def test_the_arrow_is_at_the_line_that_raised_and_not_at_the_finally_below_it(notebook: Notebook) -> None:
+    output = notebook.run("""
+def work():
+    try:
+        int("no number")
+    finally:
+        print("tidied up")
+work()
+""")
+    assert output.error is not None
+    lines = re.sub(r"\x1b\[[\d;]*m", "", output.traceback).splitlines()
+    assert [line.split(maxsplit=2)[2] for line in lines if "--> " in line] == ["work()", 'int("no number")']
 
 
 def test_an_error_in_a_callback_is_a_traceback_of_the_students_lines(notebook: Notebook) -> None:

@@ -161,8 +161,8 @@ def cancel_repeated(evidence: Evidence) -> Advice | None:
     if total < 2:
         return None
     return Advice(
-        f"Your client asked to cancel {total} times. Feedback goes on arriving until the server has ended "
-        f"the goal.",
+        f"Your client asked to cancel {total} times in all; the task asks for one request. Feedback goes on "
+        "arriving until the server has ended the goal.",
         "Remember that you have asked: test `count == 3` rather than `count >= 3`, or keep a flag.",
     )
 

@@ -260,11 +260,11 @@ def cancels_in_the_window(evidence: Evidence) -> Finding:
 def cancels_once(evidence: Evidence) -> Finding:
     """No second cancel request before late feedback arrives."""
     cancels = _cancels(evidence.main)
+    expected = "one cancel request, before more feedback arrives"
     if cancels and left_before_its_answer(evidence.main):
-        return Finding(False, "one cancel request", LEFT)
-    return Finding(
-        len(cancels) == 1, "one cancel request", f"{len(cancels)} cancel request{'s' * (len(cancels) != 1)}"
-    )
+        return Finding(False, expected, LEFT)
+    seen = f"{len(cancels)} cancel request{'s' * (len(cancels) != 1)}, before more feedback arrived"
+    return Finding(len(cancels) == 1, expected, seen if cancels else "no cancel request")
 
 
 def ignores_late_feedback(evidence: Evidence) -> Finding:
@@ -325,8 +325,8 @@ EXERCISE = Exercise(
     criteria=(
         Criterion("goal", "Sends one goal of the right order", 2, sends_the_goal),
         Criterion("cancel", "Asks to cancel at the right moment", 3, cancels_in_the_window),
-        Criterion("once", "Asks to cancel once", 1, cancels_once),
-        Criterion("late_feedback", "Does not act on feedback after that", 1, ignores_late_feedback),
+        Criterion("once", "Asks only once at that moment", 1, cancels_once),
+        Criterion("late_feedback", "Asks no more when more feedback arrives", 1, ignores_late_feedback),
         Criterion("status", "Reports how the goal really ended", 3, reports_the_status),
     ),
     mistakes=(
