@@ -182,6 +182,14 @@ class Bench(Protocol):
         """Wait until a node of the subject's is on the graph; gives up when the subject has ended."""
         ...
 
+    def await_sign_of_life(self, within: float) -> bool:
+        """Wait until the subject has said something or has a node on the graph; nothing is written down.
+
+        Args:
+            within: Seconds of wall time at most; gives up earlier when the subject has ended.
+        """
+        ...
+
     def listen(self, topic: str, type_name: str, *, latched: bool = False) -> None:
         """Subscribe as the course's listener does: reliable, so that a best-effort talker is found out.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
@@ -21,17 +22,37 @@ BUILDING = 180.0
 """Seconds of wall time that a build may take; a Python package needs one."""
 
 
+@dataclass(frozen=True)
+class Entry:
+    """The entry point that a task asks for.
+
+    Attributes:
+        package: The package.
+        program: The program, as ``ros2 run`` knows it.
+        file: The name of its file without ``.py``; that of the program where it is empty.
+    """
+
+    package: str
+    program: str
+    file: str = ""
+
+    @property
+    def module(self) -> str:
+        """The name of its file, without ``.py``."""
+        return self.file or self.program
+
+    @property
+    def line(self) -> str:
+        """How it is written in setup.py."""
+        return f"'{self.program} = {self.package}.{self.module}:main'"
+
+
 def await_build(bench: Bench) -> None:
     """Wait until the workspace of a subject that was just started is built, where it is one."""
-    bench.wait_until(
-        lambda evidence: bool(evidence.main.of("output") or evidence.main.of("log")), BEGINNING[bench.look]
-    )
+    # A command may say nothing while it waits for the judge: nobody must wait for its words then.
+    bench.await_sign_of_life(BEGINNING[bench.look])
     if bench.wait_until(lambda evidence: report_of(evidence.main, "found") is not None, 0.0):
         bench.wait_until(lambda evidence: report_of(evidence.main) is not None, BUILDING)
-
-
-def _has_begun(evidence: Evidence) -> bool:
-    return bool(evidence.main.of("output") or evidence.main.of("log"))
 
 
 def package_of(report: WorkspaceReport | None, name: str) -> PackageReport | None:
@@ -39,29 +60,29 @@ def package_of(report: WorkspaceReport | None, name: str) -> PackageReport | Non
     return next((package for package in report.packages if package.name == name), None) if report else None
 
 
-def entry_point(evidence: Evidence, package: str, program: str) -> Advice | None:
+def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
     """The package is there, and its setup.py does not name the program, or names what is not there."""
-    line = f"'{program} = {package}.{program}:main',"
     report = report_of(evidence.main)
-    if report is not None and report.built and report.missing == program:
-        own = package_of(report, package)
+    if report is not None and report.built and report.missing == entry.program:
+        own = package_of(report, entry.package)
         named = ", ".join(own.programs) if own else ""
         return Advice(
-            f"The package is built, but it has no program {program}: "
+            f"The package is built, but it has no program {entry.program}: "
             + (f"setup.py names only {named}." if named else "setup.py names no entry point."),
-            f"In setup.py, 'console_scripts' must hold {line.rstrip(',')}. Then build again.",
+            f"In setup.py, 'console_scripts' must hold {entry.line}. Then build again.",
         )
     tracebacks = "\n".join(part.traceback for part in evidence)
     found = re2.search(
-        rf"No module named '{package}\.(?P<module>\w+)'|module '{package}\.\w+' has no attribute '(?P<name>\w+)'",
+        rf"No module named '{entry.package}\.(?P<module>\w+)'"
+        rf"|module '{entry.package}\.\w+' has no attribute '(?P<name>\w+)'",
         tracebacks,
     )
     if found is None:
-        return _unknown_module(tracebacks, package, program)
+        return _unknown_module(tracebacks, entry)
     what = f"the module {found['module']}" if found["module"] else f"the function {found['name']}"
     return Advice(
         f"The entry point in setup.py leads to {what}, which is not there.",
-        f"It must read {line}: the file without .py, a colon, and the function.",
+        f"It must read {entry.line}, with a comma behind it: the file without .py, a colon, and the function.",
     )
 
 
@@ -73,25 +94,25 @@ _LED_NOWHERE = re2.compile(
 )
 
 
-def _unknown_module(tracebacks: str, package: str, program: str) -> Advice | None:
+def _unknown_module(tracebacks: str, entry: Entry) -> Advice | None:
     """The entry point names a module in another way than with the package before it."""
     found = _LED_NOWHERE.search(tracebacks)
-    if found is None or found["module"] == package:
+    if found is None or found["module"] == entry.package:
         return None
     return Advice(
         f"The entry point in setup.py names the module {found['module']}, which is not there. A module of the package "
         "is named with the package before it.",
-        f"Write package, dot, file, without .py: '{program} = {package}.{program}:main'. Then build again.",
+        f"Write package, dot, file, without .py: {entry.line}. Then build again.",
     )
 
 
-def no_executable(evidence: Evidence, package: str, program: str) -> Advice | None:
+def no_executable(evidence: Evidence, entry: Entry) -> Advice | None:
     """`ros2 run` knows the package and finds no such program in it."""
     if not any("No executable found" in str(event.data["text"]) for event in evidence.main.of("output")):
         return None
     return Advice(
         "ros2 run found the package, but no program of that name in it.",
-        f"Name the entry point in setup.py: '{program} = {package}.{program}:main'. Then build and source again.",
+        f"Name the entry point in setup.py: {entry.line}. Then build and source again.",
     )
 
 
@@ -108,17 +129,18 @@ def package_name(evidence: Evidence, package: str) -> Advice | None:
     )
 
 
-def wrong_folder(evidence: Evidence, package: str, program: str) -> Advice | None:
+def wrong_folder(evidence: Evidence, entry: Entry) -> Advice | None:
     """The program's file is in the package, and not among its modules."""
+    package, file = entry.package, f"{entry.module}.py"
     own = package_of(report_of(evidence.main), package)
-    if own is None or f"{package}/{program}.py" in own.modules:
+    if own is None or f"{package}/{file}" in own.modules:
         return None
-    lost = next((file for file in own.modules if PurePosixPath(file).name == f"{program}.py"), None)
-    if lost is None or any(_module(entry) == _dotted(lost) for entry in own.programs):
+    lost = next((known for known in own.modules if PurePosixPath(known).name == file), None)
+    if lost is None or any(_module(named) == _dotted(lost) for named in own.programs):
         return None
     return Advice(
-        f"{program}.py is in another folder than the package's modules: it is src/{package}/{lost}.",
-        f"Move it to src/{package}/{package}/{program}.py, into the inner one of the two folders {package}, and build "
+        f"{file} is in another folder than the package's modules: it is src/{package}/{lost}.",
+        f"Move it to src/{package}/{package}/{file}, into the inner one of the two folders {package}, and build "
         "again.",
     )
 

@@ -7,6 +7,7 @@ import pytest
 from autograder.kit import package_programs
 from autograder.kit.evidence import INTERRUPTED, Event, Evidence, Part, Reference
 from autograder.kit.model import Criterion, Exercise, Finding
+from autograder.kit.package_programs import Entry
 from autograder.kit.recipes.programs import Program, Programs
 from autograder.kit.workspace_report import PackageReport, WorkspaceReport, as_line
 
@@ -65,6 +66,49 @@ def test_only_ctrl_c_is_the_right_end(events: list[Event], what: str) -> None:
     assert LISTENER.ending(evidence(events)) == "did not run"
 
 
+CLIENT = Program("asker", NODE, "", 3, file="asking", ends_by_itself=True)
+BOTH = Programs(PACKAGE, TALKER, CLIENT).exercise("lab_9_1.programs", "", "")
+HANGS = Event(0.0, "stack", "subject", {"text": ""})
+CRASH = [*map(said, TRACEBACK), subject("exited")]
+
+
+@pytest.mark.parametrize(
+    ("runs", "what"),
+    [
+        ([[said("hello"), subject("exited")]], ""),
+        ([[said("hello"), subject(INTERRUPTED), subject("exited")]], ""),
+        ([[said("hello"), subject("exited")], CRASH], ""),
+        ([CRASH, CRASH], "failed each time"),
+        ([[said("hello"), subject("exited")], [subject(INTERRUPTED)]], "went on"),
+        ([[HANGS, subject("aborted")]], "did not come to its end"),
+        ([[HANGS, subject(INTERRUPTED), subject("exited")]], "did not come to its end"),
+        ([], "did not run"),
+    ],
+)
+def test_a_client_comes_to_its_own_end_or_ends_on_ctrl_c(runs: list[list[Event]], what: str) -> None:
+    parts = [Part(f"asker: run {number}", {}, events) for number, events in enumerate(runs)]
+    assert CLIENT.ending(Evidence(parts, Reference("lab_9_1.programs", {}))) == what
+
+
+def test_a_client_that_was_never_there_has_not_ended() -> None:
+    lines = [said(as_line(report("my_robot_pkg/asking.py", missing="asker"))), subject("exited")]
+    ended = [said(as_line(report("my_robot_pkg/talker.py"))), subject(INTERRUPTED), subject("exited")]
+    seen = Evidence(
+        [Part("talker: talking", {}, ended), Part("asker: asking", {}, lines)],
+        Reference("lab_9_1.programs", {}),
+    )
+    finding = BOTH.criteria[-1].judge(seen)
+    assert (finding.passed, finding.seen) == (False, "asker did not start")
+    assert BOTH.criteria[-1].title == "talker ends on Ctrl-C, asker by itself"
+
+
+def test_an_entry_point_names_the_file_of_its_program() -> None:
+    seen = evidence([said(as_line(report("my_robot_pkg/asking.py", missing="asker")))])
+    advice = package_programs.entry_point(seen, Entry(PACKAGE, "asker", "asking"))
+    assert advice is not None
+    assert "'asker = my_robot_pkg.asking:main'" in advice.next_step
+
+
 def test_a_traceback_after_ctrl_c_costs_nothing_and_is_worth_a_word() -> None:
     quiet = [said("hello"), subject(INTERRUPTED), subject("exited")]
     loud = [said("hello"), subject(INTERRUPTED), *map(said, TRACEBACK), subject("exited")]
@@ -75,9 +119,9 @@ def test_a_traceback_after_ctrl_c_costs_nothing_and_is_worth_a_word() -> None:
     assert [mistake.key for mistake in PROGRAMS.mistakes if mistake.recognise(evidence(quiet, loud))] == []
 
 
-def report(*modules: str, programs: tuple[str, ...] = ()) -> WorkspaceReport:
+def report(*modules: str, programs: tuple[str, ...] = (), missing: str = "") -> WorkspaceReport:
     package = PackageReport(PACKAGE, "ament_python", programs, (), (), modules)
-    return WorkspaceReport("built", built=True, packages=(package,))
+    return WorkspaceReport("built", built=True, packages=(package,), missing=missing)
 
 
 ENTRY = "talker = my_robot_pkg.talker:main"
@@ -97,7 +141,7 @@ def test_a_file_in_another_folder_is_found(
     modules: tuple[str, ...], programs: tuple[str, ...], wrong: str
 ) -> None:
     seen = evidence([said(as_line(report(*modules, programs=programs)))])
-    advice = package_programs.wrong_folder(seen, PACKAGE, "talker")
+    advice = package_programs.wrong_folder(seen, Entry(PACKAGE, "talker"))
     assert (advice is not None) == bool(wrong)
     assert advice is None or wrong in advice.text
 
@@ -133,7 +177,7 @@ def test_an_entry_point_that_leads_nowhere_is_told_from_an_import(
     lines: tuple[str, ...], missing: str, named: str
 ) -> None:
     seen = evidence([*map(said, lines), said(f"ModuleNotFoundError: No module named '{missing}'")])
-    advice = package_programs.entry_point(seen, PACKAGE, "talker")
+    advice = package_programs.entry_point(seen, Entry(PACKAGE, "talker"))
     assert (advice is not None) == bool(named)
     assert advice is None or named in advice.text
 

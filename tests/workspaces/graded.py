@@ -27,7 +27,13 @@ if TYPE_CHECKING:
 
     from autograder.verdict import Verdict
 
-EXERCISES = ("lab_1_1.hello", "lab_1_2.programs", "lab_1_3.interface", "exercise_1_1.remap")
+EXERCISES = (
+    "lab_1_1.hello",
+    "lab_1_2.programs",
+    "lab_1_3.interface",
+    "lab_1_3.programs",
+    "exercise_1_1.remap",
+)
 
 
 def gradable() -> list[Answer]:

@@ -207,6 +207,10 @@ class TestBench:
         """Wait until a node of the subject's is on the graph; gives up when the subject has ended."""
         return self._presence.await_node()
 
+    def await_sign_of_life(self, within: float) -> bool:
+        """Wait until the subject has said something or has a node on the graph; gives up when the subject has ended."""
+        return self._presence.await_sign_of_life(within)
+
     def await_any_endpoint(self, roles: tuple[str, ...]) -> graph.Interface:
         """Wait until the subject has an endpoint of one of these roles; the whole interface as it is then."""
         return self._presence.await_interface(lambda interface: any(interface[role] for role in roles))

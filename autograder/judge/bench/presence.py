@@ -106,6 +106,19 @@ class Presence:
         self.note_interface()
         return bool(nodes)
 
+    def await_sign_of_life(self, within: float) -> bool:
+        """Wait until the subject has said something or has a node on the graph; gives up when the subject has ended."""
+        alive = False
+
+        def there() -> bool:
+            nonlocal alive
+            seen = self._recorder.part()
+            alive = bool(seen.of("output") or seen.of("log") or self.nodes())
+            return alive
+
+        self._recorder.wait(lambda: there() or self._subject.ended, within, poll=GRAPH_POLL)
+        return alive
+
     def await_interface(self, there: Callable[[graph.Interface], bool]) -> graph.Interface:
         """Wait for something on the graph, until the subject has ended or has surely made all that it makes.
 

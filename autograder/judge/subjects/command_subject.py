@@ -12,6 +12,8 @@ import time
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, Protocol
 
+import psutil
+
 from autograder.judge.settings import subject_environment
 from autograder.judge.subjects.subject import CannotStart, InOwnProcesses
 from autograder.short_lines import short_lines
@@ -166,12 +168,19 @@ class CommandSubject(InOwnProcesses):
         return self._done.is_set()
 
     def stack(self) -> str:
-        """Abort the command: Python's faulthandler, which its environment has switched on, prints the stacks."""
+        """Abort the command: Python's faulthandler, which its environment has switched on, prints the stacks.
+
+        What hangs may be a child of the command: ``ros2 run`` starts the student's program and waits for it.
+        """
         process = self._process
         if process is None or self.ended:
             return ""
         self._dying.set()
+        below = _below(process.pid)
         process.send_signal(signal.SIGABRT)
+        for child in below:
+            with contextlib.suppress(psutil.Error):
+                child.send_signal(signal.SIGABRT)
         self._done.wait(READ_LIMIT)
         return "\n".join(self._last_words)
 
@@ -229,6 +238,14 @@ class CommandSubject(InOwnProcesses):
 class _Budget:
     def __init__(self, size: int) -> None:
         self.left = size
+
+
+def _below(pid: int) -> list[psutil.Process]:
+    """The processes that a process has started, and theirs."""
+    try:
+        return psutil.Process(pid).children(recursive=True)
+    except psutil.Error:
+        return []
 
 
 def _signal_group(group: int, number: int) -> None:

@@ -28,16 +28,20 @@ class Program:
     """A program of the package.
 
     Attributes:
-        name: As ``ros2 run`` knows it; its file is called so, too.
+        name: As ``ros2 run`` knows it.
         node: The exercise about its node alone. The program has to do all that is asked for there.
         title: Of its criterion, one line for a person.
         points: Of its criterion.
+        file: The name of its file without ``.py``; the program's own where it is empty.
+        ends_by_itself: It comes to its own end, as a client that has its answer does. Ctrl-C ends it where it goes on.
     """
 
     name: str
     node: Exercise
     title: str
     points: float
+    file: str = ""
+    ends_by_itself: bool = False
 
     @property
     def prefix(self) -> str:
@@ -66,13 +70,16 @@ class Program:
 
     def ending(self, evidence: Evidence) -> str:
         """What became of it at Ctrl-C, in a few words; empty where it ended by that."""
-        for part in self.parts(evidence):
+        parts = self.parts(evidence)
+        if self.ends_by_itself and parts:
+            return _its_own_end(parts)
+        for part in parts:
             pressed = part.first("subject", INTERRUPTED)
             if pressed is None:
                 return "ended by itself" if part.ending else "did not get so far"
             if part.ending is None:
                 return "went on"
-        return "" if self.parts(evidence) else "did not run"
+        return "" if parts else "did not run"
 
 
 class _OneProgram:
@@ -118,6 +125,17 @@ def _before_ctrl_c(part: Part) -> Part:
     return part if pressed is None else replace(part, events=part.events[: part.events.index(pressed)])
 
 
+def _its_own_end(parts: Sequence[Part]) -> str:
+    """What is wrong about how a program ended that comes to its own end; empty where it did so."""
+    if any(part.ending is None and part.first("subject", INTERRUPTED) for part in parts):
+        return "went on"
+    # Where the judge asked it where it hangs, it had fallen silent, whatever has ended it afterwards.
+    if any(part.ending is None or part.of("stack") for part in parts):
+        return "did not come to its end"
+    # One that waits in vain may say so with an exception; one that never got further has not come to an end.
+    return "failed each time" if all(_before_ctrl_c(part).traceback for part in parts) else ""
+
+
 def _after_ctrl_c(part: Part) -> Part:
     return replace(part, events=part.events[len(_before_ctrl_c(part).events) :])
 
@@ -135,7 +153,7 @@ class Programs:
         self._name, self._programs, self._keeps = name, programs, keeps
 
     def exercise(self, exercise_id: str, title: str, task: str, **more: Any) -> Exercise:
-        """The exercise: entry points and Ctrl-C for two points each, and the criteria of the programs.
+        """The exercise: entry points and how programs end for two points each, and the criteria of the programs.
 
         Args:
             exercise_id: Such as ``"lab_1_2.programs"``.
@@ -155,12 +173,15 @@ class Programs:
                     Criterion(program.name, program.title, program.points, program.judge)
                     for program in self._programs
                 ),
-                Criterion("ctrl_c", "Each program ends on Ctrl-C", 2, self._all_end),
+                Criterion("ctrl_c", self._ends("Each program ends on Ctrl-C"), 2, self._all_end),
             ),
             mistakes=(*self._of_the_package(), *self._of_the_programs()),
             roles=tuple(dict.fromkeys(role for program in self._programs for role in program.node.roles)),
             limit=500.0,
             runner=RunsPrograms(self._name, names),
+            sample_arguments=next(
+                (p.node.sample_arguments for p in self._programs if p.node.sample_arguments), ()
+            ),
             remarks=(self._traceback_at_the_end,),
             **more,
         )
@@ -188,20 +209,34 @@ class Programs:
     def _is_there(self, program: Program, evidence: Evidence) -> bool:
         view = program.view(evidence)
         report = report_of(view.main)
-        if package.entry_point(view, self._name, program.name):
+        if package.entry_point(view, self._entry(program)):
             return False
         if report is not None:
             return report.built and not report.missing
         return any(part.endpoints(role) for part in view for role in program.node.roles)
+
+    def _entry(self, program: Program) -> package.Entry:
+        return package.Entry(self._name, program.name, program.file)
 
     def _lost(self, evidence: Evidence) -> list[str]:
         report = report_of(evidence.main)
         return [name for name in self._keeps if package.lost_entry_point(report, self._name, name)]
 
     def _all_end(self, evidence: Evidence) -> Finding:
-        seen = {program.name: program.ending(evidence) for program in self._programs}
+        seen = {program.name: self._ending(program, evidence) for program in self._programs}
         wrong = "; ".join(f"{name} {what}" for name, what in seen.items() if what)
-        return Finding(not wrong, f"{_and(list(seen))} end on Ctrl-C", wrong or "ended")
+        return Finding(not wrong, self._ends(f"{_and(list(seen))} end on Ctrl-C"), wrong or "ended")
+
+    def _ending(self, program: Program, evidence: Evidence) -> str:
+        if program.ends_by_itself and not self._is_there(program, evidence):
+            return "did not start"  # what has not begun comes to an end, too
+        return program.ending(evidence)
+
+    def _ends(self, all_on_ctrl_c: str) -> str:
+        """How the programs are to end, in words; ``all_on_ctrl_c`` where none comes to its own end."""
+        alone = [program.name for program in self._programs if program.ends_by_itself]
+        others = [program.name for program in self._programs if not program.ends_by_itself]
+        return f"{_and(others)} ends on Ctrl-C, {_and(alone)} by itself" if alone else all_on_ctrl_c
 
     # --- mistakes ------------------------------------------------------------------------------------------------
 
@@ -218,15 +253,18 @@ class Programs:
         yield workspace.NOT_SOURCED
 
     def _about_package(
-        self, recognise: Callable[[Evidence, str, str], Advice | None], program: Program, evidence: Evidence
+        self,
+        recognise: Callable[[Evidence, package.Entry], Advice | None],
+        program: Program,
+        evidence: Evidence,
     ) -> Advice | None:
-        return recognise(program.view(evidence), self._name, program.name)
+        return recognise(program.view(evidence), self._entry(program))
 
     def _of_the_programs(self) -> Iterable[Mistake]:
         yield Mistake("entry_point", self._another_program)
         for program in self._programs:
-            late = Mistake("ended_too_early", common.ended_too_early)
-            for mistake in (*program.node.mistakes, late):
+            late = () if program.ends_by_itself else (Mistake("ended_too_early", common.ended_too_early),)
+            for mistake in (*program.node.mistakes, *late):
                 yield replace(mistake, recognise=partial(_in_one_program, program, mistake))
         for program in self._programs:
             yield Mistake("ignores_ctrl_c", partial(_ignores_ctrl_c, program))
@@ -238,10 +276,11 @@ class Programs:
             shown = {role for part in program.view(evidence) for role in _ROLES if part.endpoints(role)}
             for other in self._programs:
                 if shown and not shown & set(program.node.roles) and shown >= set(other.node.roles):
+                    entry = self._entry(program)
                     return Advice(
                         f"`ros2 run {self._name} {program.name}` starts a node that does what {other.name} should do.",
-                        f"In setup.py, '{program.name} = {self._name}.{program.name}:main' leads to the file "
-                        f"{program.name}.py. Is that so, and is the right class in that file?",
+                        f"In setup.py, {entry.line} leads to the file {entry.module}.py. Is that so, and is the right "
+                        "class in that file?",
                     )
         return None
 
@@ -258,7 +297,9 @@ class Programs:
 
     def _traceback_at_the_end(self, evidence: Evidence) -> str:
         for program in self._programs:
-            if any(_after_ctrl_c(part).traceback for part in program.parts(evidence)):
+            if not program.ends_by_itself and any(
+                _after_ctrl_c(part).traceback for part in program.parts(evidence)
+            ):
                 return (
                     f"{program.name} ends on Ctrl-C with a traceback. Catch KeyboardInterrupt and "
                     "ExternalShutdownException around rclpy.spin, and end with rclpy.try_shutdown()."

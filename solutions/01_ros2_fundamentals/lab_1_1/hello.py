@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 PACKAGE = "my_robot_pkg"
 PROGRAM = "simple_node"
+ENTRY = programs.Entry(PACKAGE, PROGRAM)
 """What the task calls them: `ros2 run my_robot_pkg simple_node`."""
 SAYING = {Look.FAST: 2.0, Look.REAL_TIME: 5.0}
 """Seconds of wall time, after its node appeared, in which it must have said its line."""
@@ -97,7 +98,7 @@ def says_hello(evidence: Evidence) -> Finding:
 
 def entry_point(evidence: Evidence) -> Advice | None:
     """The package is there, and its setup.py does not name the program, or names what is not there."""
-    return programs.entry_point(evidence, PACKAGE, PROGRAM)
+    return programs.entry_point(evidence, ENTRY)
 
 
 def package_name(evidence: Evidence) -> Advice | None:
@@ -107,7 +108,7 @@ def package_name(evidence: Evidence) -> Advice | None:
 
 def no_executable(evidence: Evidence) -> Advice | None:
     """`ros2 run` knows the package and finds no such program in it."""
-    return programs.no_executable(evidence, PACKAGE, PROGRAM)
+    return programs.no_executable(evidence, ENTRY)
 
 
 def no_node(evidence: Evidence) -> Advice | None:

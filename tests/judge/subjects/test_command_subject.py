@@ -135,6 +135,19 @@ def test_a_hung_program_says_where_and_does_not_count_as_ended() -> None:
     assert part.said() == ["there"]
 
 
+def test_a_program_that_another_one_has_started_says_where_it_hangs() -> None:
+    hung = "import time\ndef wait_in_vain():\n    print('ready')\n    time.sleep(600)\nwait_in_vain()"
+    program = f"import subprocess, sys\nsubprocess.run([sys.executable, '-u', '-c', {hung!r}])"
+
+    def ask_then_stop(subject: CommandSubject, recorder: Recorder) -> None:
+        assert recorder.wait(lambda: recorder.part().said() != [], 60.0)
+        recorder.record("stack", "subject", text=subject.stack())
+        subject.stop()
+
+    (event,) = _part(ask_then_stop, program).of("stack")
+    assert "wait_in_vain" in event.data["text"]
+
+
 def test_a_command_that_does_not_exist_is_named() -> None:
     subject = CommandSubject(["no-such-program"])
     subject.begin(1)
