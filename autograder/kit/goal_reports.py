@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.giving_up import objection
+from autograder.kit.giving_up import objection, remark
+from autograder.kit.model import Finding
 from autograder.kit.numbers_said import mentions
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ ABSENT = "there is no server"
 SERVED = (LATE, REFUSED, ABORTED)
 """The parts in which a goal is expected."""
 
+FEEDBACKS = 14
+"""Feedback messages of the goal that succeeds: enough for a client that goes deaf after a while to be found out."""
 NO_GOAL = "no goal"
 NOT_AWAITED = "it ended before its goal was answered"
 MANY_REQUESTS = 3
@@ -218,3 +221,80 @@ def given_up(evidence: Evidence) -> str:
     if part.ending is not None and not asked:
         return "never sent a goal to anybody"
     return objection(part)
+
+
+# --- criteria -----------------------------------------------------------------------------------------------
+
+
+def sends_the_goal(evidence: Evidence) -> Finding:
+    """In each run one goal, of the order that it was given."""
+    wrong = goals_as_seen(evidence)
+    expected = "one goal of the given order, in each run"
+    return Finding(not wrong, expected, wrong or expected)
+
+
+def shows_feedback(evidence: Evidence) -> Finding:
+    """Every feedback message is logged or printed."""
+    part = evidence.part(LATE)
+    sent, missing = part.of("feedback"), unshown_feedback(part)
+    shown = len(sent) - len(missing)
+    if sent and left_at_once(part, "result"):
+        # How much came before it ended is the machine's doing.
+        return Finding(False, f"all {FEEDBACKS} feedback messages", "it ended before its goal did")
+    return Finding(
+        bool(sent) and not missing,
+        f"all {FEEDBACKS} feedback messages",
+        f"{shown} of them" if sent else "none was sent",
+    )
+
+
+def reports_the_result(evidence: Evidence) -> Finding:
+    """The sequence of the result is said or returned."""
+    part = evidence.part(LATE)
+    result = part.first("result")
+    expected = f"{result.data['fields']['sequence']} said at the end" if result else "the result's sequence"
+    if result is None:
+        return Finding(False, expected, "no goal to give a result for")
+    asked = len(part.of("result_request"))
+    if asked == 0:
+        return Finding(False, expected, "never asked for the result")
+    if asked > MANY_REQUESTS:
+        return Finding(False, expected, f"asked for the result {asked} times")
+    said = part.said(after=result)
+    if wrong := miscalled(part):
+        return Finding(False, expected, f"“{wrong}” about a goal that succeeded")
+    return Finding(
+        reports_result(part), expected, f"“{said[-1]}”" if said else "nothing was said after the result"
+    )
+
+
+def tells_of_refusal(evidence: Evidence) -> Finding:
+    """A refused goal is told, no result is asked for, and the client ends."""
+    wrong = refused_as_seen(evidence)
+    return Finding(not wrong, "says that the goal was refused, and ends", wrong or "it did")
+
+
+def tells_of_abort(evidence: Evidence) -> Finding:
+    """An aborted goal is told, by the status or in words."""
+    wrong = aborted_as_seen(evidence)
+    return Finding(not wrong, "says that the goal was ABORTED (6)", wrong or "it did")
+
+
+def waits_for_the_server(evidence: Evidence) -> Finding:
+    """With a server that comes late it sends its goal all the same."""
+    part = evidence.part(LATE)
+    wrong = "" if asked_for(part) else "no goal came"
+    if not wrong and left_at_once(part):
+        wrong = NOT_AWAITED
+    return Finding(not wrong, "waits, then sends its goal", wrong or "it did")
+
+
+def ends_without_a_server(evidence: Evidence) -> Finding:
+    """Without a server it ends by itself and says so, or says again and again that it waits."""
+    wrong = given_up(evidence)
+    return Finding(not wrong, "says so and ends by itself", wrong or "it says so")
+
+
+def may_wait_on(evidence: Evidence) -> str:
+    """A word on limits for a client that waits on."""
+    return remark(evidence.part(ABSENT))

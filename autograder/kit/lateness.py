@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.kit.giving_up import spared
+from autograder.kit.giving_up import LATENESS, spared
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from autograder.kit.evidence import Event, Part
     from autograder.kit.model import Bench
@@ -64,3 +64,29 @@ def hold_back(bench: Bench, kind: str) -> None:
     request = seen.first(kind)
     if request is not None:
         bench.run_time(max(0.0, answers_late(bench) - (seen.events[-1].t - request.t)))
+
+
+def meets_late_action(bench: Bench, meet: Callable[[float, float], bool], requests: Sequence[str]) -> bool:
+    """Have the subject meet an action server that comes late; again, with less, where a patient one just missed it.
+
+    Args:
+        bench: Where it happens.
+        meet: One run: how many seconds the server comes late, how many an answer is held back. Whether the subject
+            came to an end of its work.
+        requests: The kinds of the requests whose answers are held back.
+
+    Returns:
+        Whether it did in the last run.
+    """
+    held = answers_late(bench)
+    done = meet(LATENESS, held)
+    if done and not bench.seen().of("goal") and was_patient(bench.seen()):
+        bench.again()
+        done = meet(SOON, held)
+    for _ in range(TRIES):
+        seen = bench.seen()
+        if not done or seen.of("result_request") or not was_patient_with_an_answer(seen, requests):
+            break
+        bench.again()
+        done = meet(SOON, ANSWERS_SOON)
+    return done

@@ -1,11 +1,9 @@
-"""Known mistakes of a client that sends one goal and tells how it ended."""
+"""Known mistakes of clients that send goals and tell how they ended."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from autograder.kit import common_mistakes as common
 from autograder.kit.giving_up import gave_up, patience_not_kept
 from autograder.kit.goal_reports import (
     ABORTED,
@@ -27,9 +25,8 @@ from autograder.kit.goal_reports import (
     said_of_result,
     unshown_feedback,
 )
-from autograder.kit.hangs import HANGS
-from autograder.kit.meant_errors import OTHER_SLIPS, meant
-from autograder.kit.model import Advice, Mistake
+from autograder.kit.meant_errors import meant
+from autograder.kit.model import Advice
 from autograder.kit.numbers_said import mentions
 
 if TYPE_CHECKING:
@@ -75,7 +72,7 @@ def gave_up_too_early(evidence: Evidence) -> Advice | None:
 
 def order_never_filled(evidence: Evidence) -> Advice | None:
     """Every goal asks for order 0."""
-    made = [order for name in SERVED for order in asked_for(evidence.part(name))]
+    made = [order for part in evidence for order in asked_for(part)]
     if not made or any(made):
         return None
     return Advice(
@@ -186,9 +183,9 @@ def result_not_requested(evidence: Evidence) -> Advice | None:
     )
 
 
-def result_requested_again_and_again(evidence: Evidence) -> Advice | None:
+def result_repeated(evidence: Evidence) -> Advice | None:
     """A poll that was never stopped."""
-    asked = len(evidence.part(LATE).of("result_request"))
+    asked = len(evidence.main.of("result_request"))
     if asked <= MANY_REQUESTS:
         return None
     return Advice(
@@ -253,43 +250,3 @@ def silent_end(evidence: Evidence) -> Advice | None:
         "When there is no action server, your client ends without a word.",
         "Log an error (or raise TimeoutError) before you return.",
     )
-
-
-_WHAT_IS_SAID = (
-    ("result_of_rejected_goal", result_of_rejected_goal),
-    ("result_not_reported", result_not_requested),
-    ("status_misreported", status_misreported),
-    ("wrong_result_reported", wrong_result_reported),
-    ("result_not_reported", result_not_reported),
-    ("refusal_not_reported", refusal_not_reported),
-    ("abort_not_reported", abort_not_reported),
-    ("silent_end", silent_end),
-)
-"""What a client asks and says: where it has come to its own end in every part, time had no part in it."""
-
-MISTAKES = (
-    *common.CRASHES,
-    common.endpoint_name("action_client"),
-    common.message_type("action_client"),
-    *OTHER_SLIPS,
-    Mistake("field_typo", order_never_filled, certain=True),
-    Mistake("wrong_order", wrong_order, certain=True),
-    common.NOT_BEGUN,
-    common.usage_message(),
-    Mistake("gave_up_too_early", gave_up_too_early),
-    Mistake("ended_too_early", ended_before_its_answers),
-    Mistake("result_repeated", result_requested_again_and_again, certain=True),
-    Mistake("waits_forever", waits_for_nobody, certain=True),
-    Mistake("patience_not_kept", another_patience),
-    Mistake("waits_forever", waits_forever),
-    *(replace(hang, certain=True) for hang in HANGS),
-    Mistake("never_spun", never_spun),
-    # Never certain: a client that is starved of time may leave feedback unread when its result is there.
-    Mistake("feedback_not_shown", feedback_not_shown),
-    *(Mistake(key, common.only_if_ended(advice), certain=True) for key, advice in _WHAT_IS_SAID),
-    Mistake("never_ended", never_ended),
-    *(Mistake(key, advice) for key, advice in _WHAT_IS_SAID),
-    *common.OTHER_CRASHES,
-    *common.NOTHING_THERE,
-)
-"""Most telling first."""

@@ -1,0 +1,229 @@
+"""A client of an action: the judge is the server.
+
+Its numbers are no Fibonacci numbers, and its result is another one than its last feedback, so that only a client that
+shows what it gets can be right. It comes late once, refuses a goal, aborts another, and in the last part it is not
+there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from autograder.kit import common_mistakes as common
+from autograder.kit import goal_mistakes as goals
+from autograder.kit.giving_up import GIVE_UP_LIMIT, PATIENCE, await_it
+from autograder.kit.goal_reports import ABORTED, ABSENT, FEEDBACKS, LATE, REFUSED, unshown_feedback
+from autograder.kit.hangs import HANGS
+from autograder.kit.lateness import hold_back, meets_late_action
+from autograder.kit.meant_errors import OTHER_SLIPS
+from autograder.kit.model import ActionCounterpart, Bench, Look, Mistake
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from autograder.kit.evidence import Evidence
+
+ORDERS = (11, 30)
+"""The smallest and the largest order that the client is given."""
+PACE = {Look.FAST: 0.5, Look.REAL_TIME: 1.5}
+"""Seconds at most in which a client shows a feedback message before the next one is sent."""
+HASTE = 0.2
+"""What that is multiplied with once it was used up: who shows nothing is not waited for again and again."""
+GOAL_LIMIT = 15.0
+"""Seconds in which a goal must arrive once the client is on the graph."""
+END_LIMIT = {Look.FAST: 3.0, Look.REAL_TIME: 8.0}
+"""Seconds in which a client must ask for the result, must have reported it, must have ended after a refusal."""
+AFTERMATH = 1.0
+"""Seconds in which a client that has reported may end, or say more."""
+PATIENCES = (4.0, 9.0)
+"""The smallest and the largest number of seconds that a notebook's function is told to wait, whatever comes."""
+
+
+def scenario(bench: Bench) -> None:
+    """Four runs: a goal that succeeds at a late server, then one refused, one aborted, no server, in any order."""
+    if late(bench):
+        for run in bench.random.sample((refused, aborted, unserved), 3):
+            run(bench)
+
+
+def begin(bench: Bench, name: str) -> dict[str, Any]:
+    """Begin a part; what the subject is to be started with."""
+    inputs = {"order": bench.random.randint(*ORDERS), PATIENCE: round(bench.random.uniform(*PATIENCES), 1)}
+    bench.part(name, **inputs)
+    return inputs
+
+
+def start(bench: Bench, inputs: Mapping[str, Any], *, spare: float = 0.0) -> None:
+    """Start the subject; a notebook leaves out ``spare`` seconds of its waiting for the server."""
+    bench.start(inputs["order"], patience_sec=inputs[PATIENCE], spare=spare)
+
+
+def late(bench: Bench) -> bool:
+    """One run with a server that comes late; whether the subject came to an end of its work."""
+    inputs = begin(bench, LATE)
+    done = meets_late_action(
+        bench, lambda lateness, held: meets_late_server(bench, inputs, lateness, held), ["goal"]
+    )
+    bench.stop()
+    return done
+
+
+def meets_late_server(bench: Bench, inputs: Mapping[str, Any], lateness: float, held: float) -> bool:
+    """Start the subject and let it wait for its server; whether it came to an end of its work.
+
+    Args:
+        bench: Where it happens.
+        inputs: What the subject is started with.
+        lateness: Seconds after its client at which the server comes.
+        held: Seconds that the answer to the goal is held back.
+    """
+    action, type_name = bench.reference.only("action_client")
+    start(bench, inputs, spare=lateness)
+    if not bench.await_endpoint("action_client", action):
+        return bench.await_end(0.0)
+    bench.let_wait(lateness)
+    server = bench.serve_action(action, type_name, goal_answer_takes=held)
+    return works_on_a_goal(bench, server, "succeeded", FEEDBACKS)
+
+
+def meets_server(bench: Bench, inputs: Mapping[str, Any], *, accept: bool = True) -> ActionCounterpart:
+    """Start the subject and serve as soon as the judge has met it.
+
+    Where the server was there before, a client may know it first, and the goal of one that ends at once would reach the
+    judge or not, as it happens.
+
+    Args:
+        bench: Where it happens.
+        inputs: What the subject is started with.
+        accept: Whether goals are accepted.
+    """
+    action, type_name = bench.reference.only("action_client")
+    start(bench, inputs)
+    bench.await_endpoint("action_client", action)
+    return bench.serve_action(action, type_name, accept_goal=accept)
+
+
+def aborted(bench: Bench) -> None:
+    """One run with a goal that is aborted."""
+    inputs = begin(bench, ABORTED)
+    works_on_a_goal(bench, meets_server(bench, inputs), "aborted", 1)
+    bench.stop()
+
+
+def works_on_a_goal(bench: Bench, server: ActionCounterpart, status: str, feedbacks: int) -> bool:
+    """Send feedback for the subject's goal and end it; whether the subject came to an end of its work."""
+    # As many as an int32 allows, so that nobody can say them all.
+    numbers = sorted(bench.random.sample(range(10**8, 10**9), feedbacks + 2))
+    result = sorted(bench.random.sample(range(10**9, 2 * 10**9), 4))
+    done = server.await_goal(GOAL_LIMIT)
+    if done:
+        pace = PACE[bench.look]
+        for count in range(3, 3 + feedbacks):
+            server.send_feedback(partial_sequence=numbers[:count])
+            if not bench.wait_until(lambda seen: not unshown_feedback(seen.main), pace):
+                pace = PACE[bench.look] * HASTE
+        server.await_result_request(END_LIMIT[bench.look])
+        hold_back(bench, "result_request")
+        server.finish(status, sequence=result)
+        done = bench.wait_until(is_done, END_LIMIT[bench.look])
+    if done or bench.await_end(0.0):
+        bench.await_end(AFTERMATH)
+        return True
+    bench.note_whether_it_spins()
+    bench.note_where_it_hangs()
+    return False
+
+
+def is_done(evidence: Evidence) -> bool:
+    """Whether the subject has ended or, as a program may, has said something of the result and goes on spinning."""
+    part = evidence.main
+    result = part.first("result")
+    return part.ending is not None or (result is not None and bool(part.said(after=result)))
+
+
+def refused(bench: Bench) -> None:
+    """One run with a server that refuses every goal."""
+    inputs = begin(bench, REFUSED)
+    if meets_server(bench, inputs, accept=False).await_goal(GOAL_LIMIT):
+        bench.await_end(END_LIMIT[bench.look])
+    bench.stop()
+
+
+def unserved(bench: Bench) -> None:
+    """One run without a server."""
+    action, _ = bench.reference.only("action_client")
+    inputs = begin(bench, ABSENT)
+    start(bench, inputs, spare=GIVE_UP_LIMIT)
+    bench.await_endpoint("action_client", action)
+    await_it(bench)
+    bench.stop()
+
+
+_WHAT_IS_SAID = (
+    ("result_of_rejected_goal", goals.result_of_rejected_goal),
+    ("result_not_reported", goals.result_not_requested),
+    ("status_misreported", goals.status_misreported),
+    ("wrong_result_reported", goals.wrong_result_reported),
+    ("result_not_reported", goals.result_not_reported),
+    ("refusal_not_reported", goals.refusal_not_reported),
+    ("abort_not_reported", goals.abort_not_reported),
+    ("silent_end", goals.silent_end),
+)
+"""What a client asks and says: where it has come to its own end in every part, time had no part in it."""
+
+
+class ActionClient:
+    """The recipe for a client of an action. Its views are the evidence itself: there is a goal in each of several runs.
+
+    Args:
+        scenario: Drives the bench. It takes the action's name and type from ``bench.reference.only("action_client")``.
+        ladder: The mistakes, most telling first, between those that keep a client from sending a right goal and those
+            that are asked for when nothing more exact fits.
+    """
+
+    roles = ("action_client",)
+
+    def __init__(self, scenario: Callable[[Bench], None], *ladder: Mistake) -> None:
+        self.scenario = scenario
+        self.ladder = (
+            *common.CRASHES,
+            common.endpoint_name("action_client"),
+            common.message_type("action_client"),
+            *OTHER_SLIPS,
+            Mistake("field_typo", goals.order_never_filled, certain=True),
+            *ladder,
+            *common.OTHER_CRASHES,
+            *common.NOTHING_THERE,
+        )
+
+    def seen(self, evidence: Evidence) -> Evidence:
+        """What was seen of the subject."""
+        return evidence
+
+    def expected(self, evidence: Evidence) -> Evidence:
+        """The same: it holds what was recorded, too."""
+        return evidence
+
+
+def sends_goals() -> ActionClient:
+    """The recipe for a client that sends one goal of a given order, and tells how it ended."""
+    return ActionClient(
+        scenario,
+        Mistake("wrong_order", goals.wrong_order, certain=True),
+        common.NOT_BEGUN,
+        common.usage_message(),
+        Mistake("gave_up_too_early", goals.gave_up_too_early),
+        Mistake("ended_too_early", goals.ended_before_its_answers),
+        Mistake("result_repeated", goals.result_repeated, certain=True),
+        Mistake("waits_forever", goals.waits_for_nobody, certain=True),
+        Mistake("patience_not_kept", goals.another_patience),
+        Mistake("waits_forever", goals.waits_forever),
+        *(replace(hang, certain=True) for hang in HANGS),
+        Mistake("never_spun", goals.never_spun),
+        # Never certain: a client that is starved of time may leave feedback unread when its result is there.
+        Mistake("feedback_not_shown", goals.feedback_not_shown),
+        *(Mistake(key, common.only_if_ended(advice), certain=True) for key, advice in _WHAT_IS_SAID),
+        Mistake("never_ended", goals.never_ended),
+        *(Mistake(key, advice) for key, advice in _WHAT_IS_SAID),
+    )
