@@ -44,11 +44,6 @@ def expected_order(evidence: Evidence) -> int:
     return int(goals(evidence.reference.part(HONOURED))[0].data["fields"]["order"])
 
 
-def orders(evidence: Evidence) -> list[int]:
-    """The orders of the goals that were sent in the first run."""
-    return [int(goal.data["fields"]["order"]) for goal in goals(evidence.main)]
-
-
 def feedbacks_before_cancel(part: Part) -> int | None:
     """How many feedback messages were sent before the first cancel request; None where none came."""
     cancel = part.first("cancel")

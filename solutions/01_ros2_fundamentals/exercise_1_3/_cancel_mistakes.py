@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from exercise_1_3._cancel_evidence import (
@@ -12,39 +13,33 @@ from exercise_1_3._cancel_evidence import (
     after_result,
     expected_order,
     goals,
-    orders,
     telling_count,
 )
 from exercise_1_3._cancel_words import false_claim, says_canceled
 
-from autograder.kit.goal_reports import MANY_REQUESTS
+from autograder.kit import goal_mistakes
+from autograder.kit.common_mistakes import only_if_ended
+from autograder.kit.goal_reports import asked_for
+from autograder.kit.hangs import HANGS
 from autograder.kit.meant_errors import meant
-from autograder.kit.model import Advice
+from autograder.kit.model import Advice, Mistake
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence
 
+WAITS_FOR_ITSELF = ("nested_spin", "call_in_same_group")
+"""Hangs that no time can end. In the others the client may be busy with something that comes to an end."""
+
 
 def wrong_order(evidence: Evidence) -> Advice | None:
     """A goal of another order."""
-    made, wanted = orders(evidence), expected_order(evidence)
+    made, wanted = asked_for(evidence.main), expected_order(evidence)
     if made == [wanted] or not made:
         return None
     seen = f"{len(made)} goals" if len(made) > 1 else f"order {made[0]}"
     return Advice(
         f"The judge got {seen}; the task asks for one goal of order {wanted}.",
         f"Set goal.order = {expected_order(evidence)} and send the goal once.",
-    )
-
-
-def order_never_filled(evidence: Evidence) -> Advice | None:
-    """A goal of order 0: the field's default."""
-    made = goals(evidence.main)
-    if not made or any(goal.data["fields"]["order"] != 0 for goal in made):
-        return None
-    return Advice(
-        "The goal asks for order 0: its field was never filled.",
-        "Set goal.order (or Fibonacci.Goal(order=...)). A misspelt keyword is ignored silently.",
     )
 
 
@@ -100,18 +95,6 @@ def ended_on_the_way(evidence: Evidence) -> Advice | None:
         f"Your client sent its goal, and ended before {missing}.",
         "Keep it alive until the result is there: rclpy.spin(node), or rclpy.spin_until_future_complete(node, future) "
         "with a few seconds of patience. A single spin_once takes in one thing only.",
-    )
-
-
-def result_repeated(evidence: Evidence) -> Advice | None:
-    """A poll that was never stopped."""
-    asked = len(evidence.main.of("result_request"))
-    if asked <= MANY_REQUESTS:
-        return None
-    return Advice(
-        f"Your client asked for the result of one goal {asked} times.",
-        "Ask once, and wait for the future that you get. A timer that looks whether something is there has to be "
-        "switched off (timer.cancel()) when it is.",
     )
 
 
@@ -198,3 +181,22 @@ def status_misreported(evidence: Evidence) -> Advice | None:
         "A cancel is a request, and the server may refuse it. So look at the status of the result, and say how the "
         "goal really ended.",
     )
+
+
+MISTAKES = (
+    Mistake("wrong_order", wrong_order, certain=True),
+    Mistake("ended_too_early", ended_on_the_way),
+    *(replace(hang, certain=hang.key in WAITS_FOR_ITSELF) for hang in HANGS),
+    Mistake("gave_up_too_early", not_waited_for),
+    Mistake("never_spun", never_spun),
+    Mistake("cancel_missing", cancel_missing),
+    Mistake("cancel_too_early", cancel_too_early),
+    Mistake("cancel_too_late", cancel_too_late),
+    Mistake("cancel_repeated", cancel_repeated, certain=True),
+    Mistake("result_repeated", goal_mistakes.result_repeated, certain=True),
+    Mistake("status_misreported", only_if_ended(status_misreported), certain=True),
+    Mistake("status_not_reported", only_if_ended(status_not_reported), certain=True),
+    Mistake("status_misreported", status_misreported),
+    Mistake("status_not_reported", status_not_reported),
+)
+"""Most telling first, between those that any client of an action may show."""

@@ -1,0 +1,190 @@
+"""What the judge does with a client that cancels its goal: one run in which the cancel is honoured, one in which not.
+
+The judge is the action server. In a first part it comes late and cancels as it is asked to; in a second one the goal
+succeeds all the same, so that a client that only claims "canceled" is told from one that looked at the status. There
+the judge refuses to cancel. Of a client that never asked for the result it accepts the request, since only the status
+on its topic tells then.
+"""
+
+from __future__ import annotations
+
+from exercise_1_3._cancel_evidence import (
+    FIRST_FEEDBACK,
+    HONOURED,
+    LAST_FEEDBACK,
+    REFUSED,
+    Request,
+    after_result,
+    request_of,
+)
+
+from autograder.kit.lateness import hold_back, meets_late_action
+from autograder.kit.model import ActionCounterpart, Bench, Look
+
+WITHOUT_CANCEL = 19
+"""Feedback messages that are sent to a client that does not cancel: all that a goal of order 20 has."""
+WITH_LATE = 14
+"""Feedback messages that are sent in all to one that does, to see that those after its request are not acted on."""
+FEW_LATE = 3
+"""Feedback messages after the request in the second run, which is about the end."""
+AT_A_TIME = 3
+"""Late feedback messages that are sent before the client has to have taken them; its queue holds ten."""
+LAB_TIME = 1.5
+"""Seconds of its own time in which a client must not ask once more; the lab's server takes less to end the goal."""
+
+PACE = {Look.FAST: 0.03, Look.REAL_TIME: 0.5}
+"""Seconds between two feedback messages outside the window in which a cancel is expected."""
+LATE_PACE = 0.2
+"""The same in real time after the request."""
+WINDOW_PACE = {Look.FAST: 0.2, Look.REAL_TIME: 0.5}
+"""Seconds that the server waits for a cancel after each feedback message inside that window."""
+PROMPT = 0.05
+"""Seconds of wall time in which a client that counts feedback has asked to cancel, once its executor has turned."""
+AT_ONCE = 0.01
+"""The same, where a request comes too early in any case, and only the advice counts the messages before it."""
+PAUSE = 0.15
+"""Seconds after the first feedback message that the second run of a fast look is longer than the first."""
+GOAL_LIMIT = 15.0
+"""Seconds in which a goal must arrive once the client is on the graph."""
+END_LIMIT = {Look.FAST: 2.0, Look.REAL_TIME: 5.0}
+"""Seconds in which the client must ask for the result."""
+HANGS_AFTER = 5.0
+"""Seconds after the result in which the client must have said how the goal ended; where it has not, it hangs."""
+AFTERMATH = 1.0
+"""Seconds in which a client that has reported may end, or say more."""
+
+
+def scenario(bench: Bench) -> None:
+    """One run in which the cancel is honoured, one in which it is refused."""
+    honoured = run(bench, HONOURED, accept=True)
+    if honoured is None:
+        return
+    refused = run(bench, REFUSED, accept=not honoured.asked_for_result, pause=PAUSE)
+    if bench.look is Look.FAST and refused is not None and not caused_by_feedback(honoured, refused):
+        bench.doubt()
+
+
+def caused_by_feedback(honoured: Request, refused: Request) -> bool:
+    """Whether a request is the answer to the same message in both runs, though the second one had a pause.
+
+    A client that cancels by the clock may by chance ask just after a message; after a pause it asks at another one, or
+    as early as without it.
+    """
+    return honoured.count == refused.count and refused.after - honoured.after >= PAUSE / 2
+
+
+def run(bench: Bench, name: str, *, accept: bool, pause: float = 0.0) -> Request | None:
+    """Serve one goal; the first request to cancel it, or None.
+
+    Args:
+        bench: The bench.
+        name: Of the part.
+        accept: Whether a request to cancel is accepted.
+        pause: Seconds to let pass after the first feedback message of a fast look.
+    """
+
+    def serve(late: float = 0.0, held: float = 0.0) -> bool:
+        serve_goal(bench, name, accept=accept, pause=pause, late=late, held=held)
+        return True
+
+    bench.part(name)
+    if name == HONOURED:
+        meets_late_action(bench, serve, ["goal", "cancel"])
+    else:
+        serve()
+    request = request_of(bench.seen())
+    bench.stop()
+    return request
+
+
+def serve_goal(bench: Bench, name: str, *, accept: bool, pause: float, late: float, held: float) -> None:
+    """Start the subject and serve its goal to its end.
+
+    Args:
+        bench: Where it happens.
+        name: Of the part.
+        accept: Whether a request to cancel is accepted.
+        pause: Seconds to let pass after the first feedback message of a fast look.
+        late: Seconds after its client at which the server comes.
+        held: Seconds that the answers to goal and cancel are held back.
+    """
+    action, type_name = bench.reference.only("action_client")
+    bench.start(spare=late)
+    there = bench.await_endpoint("action_client", action)
+    bench.release()
+    if there and late:
+        bench.let_wait(late)
+    # Not before the judge has met its client: the goal of one that ends at once would reach the judge or not.
+    server = bench.serve_action(
+        action, type_name, accept_cancel=accept, goal_answer_takes=held, cancel_answer_takes=held
+    )
+    if not server.await_goal(GOAL_LIMIT):
+        return
+    sequence = [0, 1]
+    cancelled = send_feedback_until_cancelled(bench, server, sequence, pause)
+    if cancelled:
+        send_late_feedback(bench, server, sequence, watch=name == HONOURED)
+    server.await_result_request(END_LIMIT[bench.look] if cancelled else PACE[Look.REAL_TIME])
+    if cancelled:
+        hold_back(bench, "result_request")
+    else:
+        bench.note_whether_it_spins()
+    server.finish("canceled" if cancelled and name == HONOURED else "succeeded", sequence=sequence)
+    if bench.wait_until(lambda evidence: bool(after_result(evidence.main)), HANGS_AFTER):
+        bench.await_end(AFTERMATH)
+    else:
+        bench.note_where_it_hangs()
+
+
+def send_feedback_until_cancelled(
+    bench: Bench, server: ActionCounterpart, sequence: list[int], pause: float
+) -> bool:
+    """Send feedback until somebody asks to cancel, as much as there is; whether somebody did."""
+    for count in range(WITHOUT_CANCEL + 1):
+        if count:
+            send_next(server, sequence)
+        if bench.look is Look.FAST:
+            bench.settle()
+            if count == 1:
+                bench.run_time(pause)
+            # Only at the edge of the window does it matter which message a request is counted after.
+            early = count < FIRST_FEEDBACK - 1
+            if server.await_cancel(AT_ONCE if early else PROMPT):
+                return True
+            if early:
+                continue
+        inside = FIRST_FEEDBACK <= count <= LAST_FEEDBACK
+        # The first feedback follows the acceptance at once, at any pace.
+        pace = WINDOW_PACE[bench.look] if inside else PACE[bench.look if count else Look.FAST]
+        if server.await_cancel(pace):
+            # Nothing that was sent just now has caused it: perhaps a clock did, and it needs the real pace.
+            bench.doubt()
+            return True
+    return False
+
+
+def send_late_feedback(bench: Bench, server: ActionCounterpart, sequence: list[int], *, watch: bool) -> None:
+    """Let time pass in which nothing more may be asked for, then send feedback that must not be acted on."""
+    action, _ = bench.reference.only("action_client")
+    enough = len(sequence) + FEW_LATE
+    if watch:
+        enough = WITH_LATE + 2
+        # While its answer is held back, and later on.
+        bench.wait_until(lambda seen: seen.main.first("cancel_answered") is not None, GOAL_LIMIT)
+        bench.pass_time(LAB_TIME, "action_client", action)
+    else:
+        bench.run_time(PACE[bench.look])
+    for left in reversed(range(enough - len(sequence))):
+        send_next(server, sequence)
+        if bench.look is Look.REAL_TIME:
+            bench.run_time(LATE_PACE)
+        # Also in real time: a client on a busy machine may not have come to what is due.
+        if left % AT_A_TIME == 0:
+            bench.settle()
+    bench.run_time(PACE[Look.FAST])
+
+
+def send_next(server: ActionCounterpart, sequence: list[int]) -> None:
+    """Append the next number and send what there is."""
+    sequence.append(sequence[-1] + sequence[-2])
+    server.send_feedback(partial_sequence=sequence)
