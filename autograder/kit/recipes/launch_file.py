@@ -1,0 +1,257 @@
+"""A launch file that starts two programs, one that publishes and one that says what it hears, and moves their topic.
+
+The judge hears the one and talks to the other under the new name. The programs stay as they are: what the launch tells
+of its processes shows whether it was the launch file that moved them.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit import common_mistakes as common
+from autograder.kit import workspace_mistakes as workspace
+from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.launch_report import Process, processes, remappings
+from autograder.kit.model import Advice, Bench, Look, Mistake
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Evidence, Part
+
+NODES = 2
+"""Programs that are to be started, each with a rule."""
+MESSAGES = 2
+"""Messages of the publisher's that are waited for."""
+SAYING = {Look.FAST: 2.0, Look.REAL_TIME: 5.0}
+"""Seconds of wall time in which the other program must have said the judge's text."""
+BEGINNING = {Look.FAST: 20.0, Look.REAL_TIME: 40.0}
+"""Seconds of wall time in which a launch must have started its first process, or ended."""
+BUILDING = 180.0
+"""Seconds of wall time that building the student's workspace may take."""
+PAUSE = {Look.FAST: 3.0, Look.REAL_TIME: 10.0}
+"""Seconds of wall time that a launch may let pass between its first process and its second."""
+LATE = 3.0
+"""Seconds of wall time, of six periods, in which the publisher must have spoken."""
+PART = "launching"
+
+
+class Launched:
+    """What was seen of the programs that a launch file started.
+
+    Args:
+        evidence: All that was seen.
+        old_name: The topic's name in the code of the programs.
+
+    Attributes:
+        topic: The new name.
+        publishers: The names under which something publishes messages of the topic's type.
+        subscriptions: The names under which something subscribes to them.
+    """
+
+    def __init__(self, evidence: Evidence, old_name: str) -> None:
+        self._part, self._old_name = evidence.main, old_name
+        self.topic, kind = evidence.reference.only("publisher")
+        self.publishers, self.subscriptions = (
+            {name for name, type_name in self._part.endpoints(role).items() if type_name == kind}
+            for role in ("publisher", "subscription")
+        )
+
+    @property
+    def heard(self) -> list[str]:
+        """The texts that came under the new name, without the judge's own."""
+        own = str(self._part.inputs.get("text"))
+        texts = [str(event.data["fields"].get("data")) for event in self._part.of("message", self.topic)]
+        return [text for text in texts if text != own]
+
+    @property
+    def says_what_it_hears(self) -> bool:
+        """Whether the text that the judge sent under the new name was said."""
+        return self.topic in self.subscriptions and _says_its_text(self._part)
+
+    @property
+    def elsewhere(self) -> list[str]:
+        """The other names under which something is."""
+        return sorted((self.publishers | self.subscriptions) - {self.topic})
+
+    @property
+    def talkers(self) -> int:
+        """How many programs publish under the new name. One more listener is nobody's harm."""
+        return len(self._sides[0])
+
+    @property
+    def given_a_rule(self) -> int:
+        """How many of the programs under the new name were given a rule that leads there."""
+        return len(self._given & (self._sides[0] | self._sides[1]))
+
+    @property
+    def moved_by_rules(self) -> bool:
+        """Whether all programs under the new name were given such a rule.
+
+        Where an endpoint does not tell whose it is, any process that was given a rule may have it.
+        """
+        given = self._given
+        return all(side and (side <= given or (0 in side and given)) for side in self._sides)
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether all is known of the launch: each program's ends are on the graph, or one too many is."""
+        if self.elsewhere or not (self.publishers and self.subscriptions):
+            return True
+        known = {process for _, _, process in self._ends}
+        started = processes(self._part)
+        parents = {process.parent for process in started}
+        programs = {_lower(process.pid) for process in started if process.pid not in parents}
+        return self.moved_by_rules and self.talkers < NODES and (programs <= known or 0 in known)
+
+    @property
+    def _ends(self) -> set[tuple[str, str, int]]:
+        """The ends of topics that were ever seen: role, topic, process."""
+        surveys = self._part.of("interface")
+        return {(role, name, process) for s in surveys for role, name, process in s.data.get("ends", ())}
+
+    @property
+    def _sides(self) -> tuple[set[int], set[int]]:
+        """The processes that publish under the new name, and those that subscribe; 0 for one that is not known."""
+        talk, listen = (
+            {process for role, name, process in self._ends if (role, name) == (side, self.topic)}
+            for side in ("publisher", "subscription")
+        )
+        return talk, listen
+
+    @property
+    def _given(self) -> set[int]:
+        return {_lower(process.pid) for process in processes(self._part) if self._has_a_rule(process.argv)}
+
+    def _has_a_rule(self, argv: tuple[str, ...]) -> bool:
+        return any(self._begins(old) and _leads_to(self.topic, new) for old, new in remappings(argv))
+
+    def _begins(self, name: str) -> bool:
+        """Whether a rule is one for the name in the code; a node's name may stand before it, and a namespace."""
+        return name.rpartition(":")[2].rpartition("/")[2] == self._old_name
+
+
+class LaunchFile:
+    """The recipe for a launch file that moves a topic of two programs.
+
+    Args:
+        package: Of the two programs.
+        old_name: The topic's name in their code.
+    """
+
+    roles = ("publisher",)
+
+    def __init__(self, package: str, old_name: str) -> None:
+        self._package, self._old_name = package, old_name
+
+    @property
+    def ladder(self) -> tuple[Mistake, ...]:
+        """The common mistakes, most telling first."""
+        return (
+            *workspace.BUILD,
+            OWN,
+            *common.CRASHES,
+            Mistake("syntax_error", _syntax_error, certain=True),
+            Mistake("launch_error", self._launch_error, certain=True),
+            *common.OTHER_CRASHES,
+            OWN_LATE,
+            Mistake("nothing_launched", _nothing_launched),
+        )
+
+    def seen(self, evidence: Evidence) -> Launched:
+        """What was seen of the programs."""
+        return Launched(evidence, self._old_name)
+
+    def expected(self, evidence: Evidence) -> Launched:
+        """The same: it knows the new name, which is all that is taken from the reference output."""
+        return self.seen(evidence)
+
+    def scenario(self, bench: Bench) -> None:
+        """Launch it; hear the one program and talk to the other under the new name."""
+        topic, type_name = bench.reference.only("publisher")
+        text = f"status {bench.random.randrange(10_000, 100_000)} from the judge"
+        bench.part(PART, text=text)
+        bench.listen(topic, type_name)
+        speaker = bench.speak(topic, type_name)
+        bench.start()
+        bench.wait_until(_has_begun, BUILDING + BEGINNING[bench.look], quiet=BUILDING)
+        bench.wait_until(lambda evidence: len(_of_nodes(evidence.main)) >= NODES, PAUSE[bench.look])
+        talks = bench.await_endpoint("publisher", topic)
+        listens = bench.await_endpoint("subscription", topic)
+        if listens:
+            speaker.send(data=text)
+            bench.wait_until(lambda evidence: _says_its_text(evidence.main), SAYING[bench.look])
+        if talks:
+            bench.wait_until(lambda evidence: len(self.seen(evidence).heard) >= MESSAGES, LATE)
+        if talks and listens:
+            # The launch's processes are reported beside the wire, and a third one may still be on its way to the graph.
+            bench.watch_graph(lambda evidence: self.seen(evidence).is_settled, PAUSE[bench.look])
+        bench.stop()
+
+    def _launch_error(self, evidence: Evidence) -> Advice | None:
+        """The launch failed and says why."""
+        what = _complaint(evidence.main)
+        if not what:
+            return None
+        return Advice(
+            f"The launch failed: {what}",
+            f"Compare the names of the package and of the programs with `ros2 pkg executables {self._package}`, and "
+            "the file with the example.",
+        )
+
+
+def _has_begun(evidence: Evidence) -> bool:
+    return bool(processes(evidence.main) or evidence.main.of("log"))
+
+
+def _says_its_text(part: Part) -> bool:
+    return str(part.inputs.get("text")) in "\n".join(part.said())
+
+
+def _lower(pid: int) -> int:
+    """The part of a process's id that its endpoints tell."""
+    return pid & 0xFFFF
+
+
+def _leads_to(topic: str, target: str) -> bool:
+    """Whether a rule's target is the topic; a relative one has the node's namespace in front."""
+    return topic == target or topic.endswith(f"/{target.removeprefix('~').lstrip('/')}")
+
+
+def _of_nodes(part: Part) -> list[Process]:
+    """The processes that a launch started with arguments for ROS."""
+    return [process for process in processes(part) if "--ros-args" in process.argv]
+
+
+def _complaint(part: Part) -> str:
+    """What the launch itself says of the file, without the words around it."""
+    lines = [str(event.data["text"]) for event in part.of("output")]
+    for number, line in enumerate(lines):
+        if "[ERROR] [launch]:" not in line and not line.startswith("ros2: "):
+            continue
+        causes = [later.removeprefix(" - ") for later in lines[number + 1 :] if later.startswith(" - ")]
+        what = (causes or [line.partition("[launch]:")[2].strip() or line])[-1]
+        what = what.removeprefix("Caught exception in launch (see debug for traceback):").strip()
+        return re2.sub(r" on the libexec directory '[^']*'|, searching: \[.*| in '/[^']*'", "", what)
+    return ""
+
+
+def _syntax_error(evidence: Evidence) -> Advice | None:
+    """Python cannot read the launch file."""
+    what = _complaint(evidence.main)
+    if not re2.match(r"(?:Syntax|Indentation|Tab)Error", what):
+        return None
+    return Advice(
+        f"Python could not read the launch file: {what}.",
+        "A bracket, a quote, a comma or the indentation is off there or just before it.",
+    )
+
+
+def _nothing_launched(evidence: Evidence) -> Advice | None:
+    """The launch went well and started nothing."""
+    if _of_nodes(evidence.main) or evidence.main.of("log") or evidence.main.traceback:
+        return None
+    return Advice(
+        "The launch file started no node.",
+        "generate_launch_description() must return LaunchDescription([...]) with a Node for each of the two programs.",
+    )
