@@ -1,0 +1,254 @@
+"""A package of one's own that generates a service type: its file is read, the package built, and the type compared."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit import common_mistakes as common
+from autograder.kit import workspace_mistakes as workspace
+from autograder.kit.draft import OWN
+from autograder.kit.model import Advice, Bench, Finding, Mistake
+from autograder.kit.runners import ServesInterface
+from autograder.kit.workspace_report import Interface, PackageReport, report_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from autograder.kit.evidence import Evidence
+
+GROUP = "rosidl_interface_packages"
+"""The group of packages that define interfaces; a package.xml says with it that its package is one."""
+SERVICE = "/interface_of_the_workspace"
+"""The service that a program of the judge's serves with the built interface, so that its type is on the wire."""
+BEGINNING = 15.0
+"""Seconds of wall time in which the packages must have been looked at."""
+BUILDING = 180.0
+"""Seconds of wall time that a build may take; an interface package needs ten."""
+PART = "building"
+Fields = list[tuple[str, str]]
+"""The type and the name of each field, in their order."""
+
+
+class ServiceType:
+    """The recipe for a package that generates a service type. Its views are all that was seen.
+
+    Args:
+        file: What the task calls the file, such as ``"AddTwoInts.srv"``.
+        package: A good name for the package; the judge takes any.
+    """
+
+    roles = ("service",)
+
+    def __init__(self, file: str, package: str) -> None:
+        self._file, self._package = file, package
+        self.runner = ServesInterface(file, SERVICE)
+
+    def seen(self, evidence: Evidence) -> Evidence:
+        """What was seen of the package."""
+        return evidence
+
+    def expected(self, evidence: Evidence) -> Evidence:
+        """The same: it holds what was recorded, too."""
+        return evidence
+
+    def scenario(self, bench: Bench) -> None:
+        """Look at the file, build the package, and compare what it generated on the wire."""
+        bench.part(PART)
+        bench.start()
+        bench.wait_until(lambda e: report_of(e.main, "found") is not None, BEGINNING)
+        # What the file says cannot become right by being built.
+        if not bench.wait_until(self._has_other_fields, 0.0):
+            bench.wait_until(lambda e: report_of(e.main) is not None, BUILDING)
+            if bench.await_endpoint("service", SERVICE):
+                _, type_name = bench.reference.only("service")
+                bench.compare_type(SERVICE, type_name)
+        bench.stop()
+
+    def _holders(self, evidence: Evidence) -> list[tuple[PackageReport, Interface]]:
+        report = workspace.build_report(evidence.main)
+        packages = report.packages if report is not None else ()
+        return [(p, i) for p in packages for i in p.interfaces if i.file.rpartition("/")[2] == self._file]
+
+    def _has_other_fields(self, evidence: Evidence) -> bool:
+        holders, expected = self._holders(evidence), _expected(evidence)
+        return bool(holders and expected) and all(fields(file.text) != expected for _, file in holders)
+
+    def has_the_fields(self, evidence: Evidence) -> Finding:
+        """The file has the reference's fields: names, types and order."""
+        expected, holders = _expected(evidence), self._holders(evidence)
+        seen = _shown(fields(holders[0][1].text)) if holders else f"no file {self._file}"
+        right = any(fields(file.text) == expected for _, file in holders) or (bool(holders) and not expected)
+        return Finding(right, _shown(expected), seen or "an empty file")
+
+    def builds(self, evidence: Evidence) -> Finding:
+        """Colcon builds the package, and it generates the interface."""
+        expected = f"colcon builds a package that generates {self._file.partition('.')[0]}"
+        report = report_of(evidence.main)
+        if report is None:
+            found = workspace.build_report(evidence.main)
+            seen = workspace.seen_of_build(found) if found is not None and found.trouble else "not built"
+            return Finding(False, expected, seen)
+        if not report.built:
+            return Finding(False, expected, workspace.seen_of_build(report))
+        if report.missing:
+            return Finding(False, expected, f"built; no {report.missing}")
+        # A file of the right name is soon made; what a program can serve was generated.
+        served = evidence.main.first("type", SERVICE) is not None
+        return Finding(
+            served, expected, "built" if served else "built, but no program can use what came of it"
+        )
+
+    def is_on_the_wire(self, evidence: Evidence) -> Finding:
+        """A node that serves the generated type has the reference's type hashes."""
+        seen = evidence.main.first("type", SERVICE)
+        expected = "a service of this type, with these fields"
+        if seen is None:
+            return Finding(False, expected, "no service could be made of it")
+        right = bool(seen.data["same"])
+        return Finding(right, expected, str(seen.data["type"]) + ("" if right else ", with other fields"))
+
+    def _interface_missing(self, evidence: Evidence) -> Advice | None:
+        """There are packages, and none of them has the file."""
+        report = workspace.build_report(evidence.main)
+        if report is None or not report.packages or self._holders(evidence):
+            return None
+        others = ", ".join(i.file for p in report.packages for i in p.interfaces)
+        return Advice(
+            f"No package in src has a file {self._file}" + (f"; there is {others}." if others else "."),
+            f"Make the folder srv in your interface package and {self._file} in it; capitals count.",
+        )
+
+    def _three_dashes(self, evidence: Evidence) -> Advice | None:
+        """Request and response are not kept apart by exactly one line of dashes."""
+        for _, file in self._holders(evidence):
+            number = len(fields(file.text))
+            if number != 2:
+                return Advice(
+                    f"{file.file} has {number - 1} lines of three dashes; a service has exactly one, between request "
+                    "and response.",
+                    "Write --- on a line of its own after the request's fields. Below it stand the response's.",
+                )
+        return None
+
+    def _interface_fields(self, evidence: Evidence) -> Advice | None:
+        """The fields are others."""
+        finding = self.has_the_fields(evidence)
+        holders = self._holders(evidence)
+        if finding.passed or not holders or len(fields(holders[0][1].text)) != 2:
+            return None
+        return Advice(
+            f"{holders[0][1].file} has the fields {finding.seen}; the task asks for {finding.expected}.",
+            "A field is its type and its name (`int64 a`). Other programs use these very names and types; the order "
+            "counts, too.",
+        )
+
+    def _interface_in_python_package(self, evidence: Evidence) -> Advice | None:
+        """The file lies in an ament_python package, where nothing is generated from it."""
+        holders = self._holders(evidence)
+        if (
+            self.builds(evidence).passed
+            or not holders
+            or any(p.build_type != "ament_python" for p, _ in holders)
+        ):
+            return None
+        return Advice(
+            f"{holders[0][0].name} is an ament_python package: nothing is generated from {self._file} there, whatever "
+            "setup.py says.",
+            f"Put it into a package of its own: `ros2 pkg create --build-type ament_cmake {self._package}`.",
+        )
+
+    def _member_of_group(self, evidence: Evidence) -> Advice | None:
+        """The one line of package.xml that marks an interface package is missing, or is inside a comment."""
+        holders = self._holders(evidence)
+        if self.builds(evidence).passed or not holders:
+            return None
+        report = report_of(evidence.main)
+        marked = any(GROUP in p.dependencies for p, _ in holders)
+        if report is None or report.built or marked or GROUP not in report.line + report.log:
+            return None
+        hidden = next((p for p, _ in holders if GROUP in p.commented), None)
+        if hidden is not None:
+            return Advice(
+                f"package.xml of {hidden.name} has the line <member_of_group>{GROUP}</member_of_group>, but inside a "
+                "comment (<!-- … -->), where it does not count.",
+                "Move it below the -->, with all other tags that you wrote in that comment. Then check again.",
+            )
+        return Advice(
+            f"package.xml of {holders[0][0].name} does not say that it is an interface package.",
+            f"Add <member_of_group>{GROUP}</member_of_group> to package.xml, above <export>.",
+        )
+
+    def _interface_not_listed(self, evidence: Evidence) -> Advice | None:
+        """The package builds, and the file is not among what it generates."""
+        report = report_of(evidence.main)
+        holders = self._holders(evidence)
+        if report is None or not report.built or not report.missing or not holders:
+            return None
+        package, file = holders[0]
+        return Advice(
+            f"{package.name} builds, but nothing was generated from {file.file}"
+            + ("." if file.listed else ": CMakeLists.txt does not name it."),
+            f'In CMakeLists.txt: rosidl_generate_interfaces(${{PROJECT_NAME}} "srv/{self._file}"), above '
+            "ament_package().",
+        )
+
+    @property
+    def ladder(self) -> tuple[Mistake, ...]:
+        """The common mistakes, most telling first."""
+        return (
+            OWN,
+            Mistake("interface_missing", self._interface_missing, certain=True),
+            Mistake("three_dashes", self._three_dashes, certain=True),
+            Mistake("interface_fields", self._interface_fields, certain=True),
+            Mistake("interface_in_python_package", self._interface_in_python_package, certain=True),
+            Mistake("member_of_group", self._member_of_group, certain=True),
+            Mistake("generators_missing", _generators_missing, certain=True),
+            Mistake("interface_not_listed", self._interface_not_listed, certain=True),
+            *workspace.BUILD,
+            *common.CRASHES,
+            *common.OTHER_CRASHES,
+        )
+
+
+def fields(text: str) -> list[Fields]:
+    """The fields of each section of an interface file; comments, constants and default values left out."""
+    sections: list[Fields] = [[]]
+    for line in text.splitlines():
+        bare = line.partition("#")[0].strip()
+        if re2.fullmatch(r"-{3,}", bare):
+            sections.append([])
+        elif found := re2.fullmatch(r"(?P<type>\S+)\s+(?P<name>\w+)(?P<rest>(?:\s+.*)?)", bare):
+            if not found["rest"].strip().startswith("="):
+                sections[-1].append((found["type"], found["name"]))
+        elif bare and "=" not in bare:
+            sections[-1].append((bare, ""))
+    return sections
+
+
+def _expected(evidence: Evidence) -> list[Fields]:
+    """The reference's fields; empty while they are being recorded."""
+    if not evidence.reference.parts:
+        return []
+    seen = evidence.reference.part(PART).first("type")
+    sides: Mapping[str, Mapping[str, str]] = seen.data["fields"] if seen is not None else {}
+    return [[(kind, name) for name, kind in sides[side].items()] for side in ("request", "response")]
+
+
+def _shown(sections: list[Fields]) -> str:
+    return " --- ".join(", ".join(f"{kind} {name}".strip() for kind, name in section) for section in sections)
+
+
+def _generators_missing(evidence: Evidence) -> Advice | None:
+    """CMakeLists.txt calls the generators without having looked for them."""
+    report = report_of(evidence.main)
+    if report is None or report.built or "rosidl_generate_interfaces" not in report.line + report.log:
+        return None
+    if not re2.search(r"(?i)Unknown CMake command|not found|could not find", report.line):
+        return None
+    return Advice(
+        f"The generators are missing: {report.line}",
+        "In CMakeLists.txt, above rosidl_generate_interfaces: find_package(rosidl_default_generators REQUIRED). In "
+        "package.xml: <buildtool_depend>rosidl_default_generators</buildtool_depend>.",
+    )
