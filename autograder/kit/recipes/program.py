@@ -1,0 +1,158 @@
+"""A program of a package, which the judge builds and runs: it is a node, and says a line."""
+
+from __future__ import annotations
+
+import difflib
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit import common_mistakes as common
+from autograder.kit import package_programs as programs
+from autograder.kit import workspace_mistakes as workspace
+from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.model import Bench, Finding, Look, Mistake
+from autograder.kit.runners import RunsProgram
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Evidence, Part
+
+SAYING = {Look.FAST: 2.0, Look.REAL_TIME: 5.0}
+"""Seconds of wall time, after its node appeared, in which it must have said its line."""
+LATE = 0.3
+"""Seconds without any event after which the log of a program that said its line has arrived."""
+TRIES = 3
+"""Runs of a program that ends at once: its node may be there for less time than discovery takes."""
+
+
+class Ran:
+    """What was seen of a program, in all of its runs.
+
+    Args:
+        evidence: All that was seen.
+    """
+
+    def __init__(self, evidence: Evidence) -> None:
+        self._evidence = evidence
+
+    @property
+    def line(self) -> str:
+        """What the reference solution logs; empty while that is being recorded."""
+        recorded = self._evidence.reference.parts
+        said = recorded[0].first("said") if recorded else None
+        return str(said.data["text"]) if said is not None else ""
+
+    @property
+    def nodes(self) -> list[str]:
+        """The names of its nodes."""
+        return sorted({node for part in self._evidence for node in _nodes(part)})
+
+    @property
+    def words(self) -> list[str]:
+        """What it said, without what ``ros2`` says of a program that it cannot run."""
+        return [word for part in self._evidence for word in _words(part)]
+
+    @property
+    def says_it(self) -> bool:
+        """Whether the line is in what it said."""
+        line = self.line
+        return bool(line) and any(line in said for part in self._evidence for said in part.said())
+
+    @property
+    def nearest(self) -> str:
+        """What it said that is most like the line; empty where it said nothing."""
+        if self.says_it:
+            return self.line
+        words = self.words
+        near = difflib.get_close_matches(self.line, words, n=1, cutoff=0.0) or words[:1]
+        return near[0] if near else ""
+
+
+def _nodes(part: Part) -> list[str]:
+    return [node for survey in part.of("interface") for node in survey.data.get("nodes", ())]
+
+
+def _words(part: Part) -> list[str]:
+    return [line for line in part.said() if not re2.match(r"Package '|No executable found|\[ros2run\]", line)]
+
+
+class Program:
+    """The recipe for a program of a package.
+
+    Args:
+        package: What the task calls the package.
+        program: And the program: ``ros2 run PACKAGE PROGRAM``.
+        part: The name of its first run in the reference output.
+    """
+
+    roles = ()
+
+    def __init__(self, package: str, program: str, part: str) -> None:
+        self._entry, self._part = programs.Entry(package, program), part
+        self.runner = RunsProgram(package, program)
+
+    def seen(self, evidence: Evidence) -> Ran:
+        """What was seen of the program."""
+        return Ran(evidence)
+
+    def expected(self, evidence: Evidence) -> Ran:
+        """The same: it knows the line, which is all that is taken from the reference output."""
+        return Ran(evidence)
+
+    def scenario(self, bench: Bench) -> None:
+        """Build and run it; look for its node and its line."""
+        for run in range(1, TRIES + 1 if bench.look is Look.REAL_TIME else 2):
+            bench.part(self._part if run == 1 else f"{self._part}, run {run}")
+            bench.start()
+            programs.await_build(bench)
+            there = bench.await_node()
+            bench.wait_until(lambda evidence: Ran(evidence).says_it, SAYING[bench.look])
+            if there:
+                bench.run_time(SAYING[bench.look], quiet=LATE)
+            bench.note_its_log()
+            bench.stop()
+            if there:
+                return
+
+    def starts(self, evidence: Evidence) -> Finding:
+        """The package builds, and ``ros2 run`` starts its program."""
+        expected = f"colcon builds {self._entry.package}, and ros2 run starts {self._entry.program}"
+        report = workspace.build_report(evidence.main)
+        ends = ("constructed", "returned", "raised")
+        if any(part.of("subject", name) for part in evidence for name in ends):
+            return Finding(False, expected, "something from a notebook, which is no package")
+        if report is not None and not report.built:
+            return Finding(False, expected, workspace.seen_of_build(report))
+        if report is not None and report.missing:
+            return Finding(False, expected, f"built; there is no {report.missing} in it")
+        seen = Ran(evidence)
+        ran = bool(seen.nodes or seen.words)
+        return Finding(ran, expected, "built and started" if ran else "the program did nothing")
+
+    def is_a_node(self, evidence: Evidence) -> Finding:
+        """A node of the program's is on the graph."""
+        nodes = Ran(evidence).nodes
+        return Finding(bool(nodes), "a node on the graph", ", ".join(nodes) or "no node")
+
+    def says_the_line(self, evidence: Evidence) -> Finding:
+        """The reference's line is in its log (or printed)."""
+        seen = Ran(evidence)
+        near, recording = seen.nearest, not evidence.reference.parts
+        return Finding(seen.says_it or recording, f"“{seen.line}”", f"“{near}”" if near else "nothing")
+
+    @property
+    def ladder(self) -> tuple[Mistake, ...]:
+        """The common mistakes, most telling first."""
+        entry = self._entry
+        return (
+            *workspace.BUILD,
+            Mistake("package_name", lambda e: programs.package_name(e, entry.package), certain=True),
+            Mistake("entry_point", lambda e: programs.entry_point(e, entry), certain=True),
+            Mistake("entry_point", lambda e: programs.no_executable(e, entry), certain=True),
+            OWN,
+            workspace.NOT_SOURCED,
+            *common.CRASHES,
+            *common.OTHER_CRASHES,
+            OWN_LATE,
+            *common.NOTHING_THERE[:2],
+        )
