@@ -24,7 +24,10 @@ def _fail(message: str) -> NoReturn:
     type=click.Path(path_type=Path),
     help="Also write the messages that the judge saw, for Foxglove and other programs that open MCAP.",
 )
-def replay(file: Path, mcap: Path | None) -> None:
+@click.option(
+    "--bag", type=click.Path(path_type=Path), help="Also write the messages of topics, for ros2 bag play."
+)
+def replay(file: Path, mcap: Path | None, bag: Path | None) -> None:
     """Judge the check in an appeal FILE again, from what was seen then and with the course as it is now.
 
     Nothing of the student's is run, and no ROS node is started.
@@ -34,11 +37,14 @@ def replay(file: Path, mcap: Path | None) -> None:
     from autograder.appeals import appeal_file, replaying, showing
 
     try:
-        if mcap is not None:
-            check_name(mcap)
+        for path in (mcap, bag):
+            if path is not None:
+                check_name(path)
         opened = appeal_file.read(file)
         if mcap is not None:
             click.echo(save_messages(opened.appeal.seen, mcap))
+        if bag is not None:
+            click.echo(save_bag(opened.appeal.seen, bag))
         again = replaying.replay(opened.appeal.seen)
     except (appeal_file.BadAppeal, replaying.CannotReplay) as error:
         _fail(str(error))
@@ -63,3 +69,16 @@ def save_messages(seen: Kept, path: Path) -> str:
     except OSError as error:
         _fail(f"{path} cannot be written: {error.strerror}")
     return f"{path}: {count} events, as JSON"
+
+
+def save_bag(seen: Kept, path: Path) -> str:
+    """Write the messages of topics for ``ros2 bag play``; a line that says so. Exit code 2 where that cannot be."""
+    from autograder.appeals.messages_seen import write_bag
+
+    try:
+        with path.open("wb") as stream:
+            written, left_out = write_bag(seen, stream)
+    except OSError as error:
+        _fail(f"{path} cannot be written: {error.strerror}")
+    missing = f" ({left_out} more have a type that is not known here)" if left_out else ""
+    return f"{path}: {written} messages of topics{missing}"

@@ -5,6 +5,9 @@ the service or action with the word of the transcript, such as ``/add_two_ints/a
 Beside its fields each message has under ``_judge`` what else is known: in which part and look, and when by the judge's
 watch and by the simulated clock.
 
+A second form, for ``ros2 bag play``, has the messages of topics alone, in CDR with the definitions of their types: what
+plays a file wants to know each type, and one way of writing for all of it.
+
 The runs of a check stand one after the other, in the order of the evidence.
 """
 
@@ -13,11 +16,13 @@ from __future__ import annotations
 import json
 from typing import IO, TYPE_CHECKING, Any
 
+from autograder.judge.bench.interfaces import filled, interface
 from autograder.judge.verdicts.keeping import plain
-from autograder.message_files import MessageFile
+from autograder.message_definitions import definition
+from autograder.message_files import ROS_2, MessageFile
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from autograder.judge.verdicts.keeping import Kept, KeptEvent, KeptLook, KeptPart
 
@@ -71,6 +76,56 @@ def write_messages(kept: Kept, stream: IO[bytes]) -> int:
     )
     file.close()
     return len(seen)
+
+
+def write_bag(kept: Kept, stream: IO[bytes]) -> tuple[int, int]:
+    """Write the messages of topics as ``ros2 bag record`` would; how many there are, and how many could not be written.
+
+    A message cannot be written whose type was not on the graph, is none of this environment's, or does not have these
+    fields.
+
+    Args:
+        kept: What was seen.
+        stream: Where to.
+    """
+    file = MessageFile(stream, ROS_2)
+    types = _types(kept)
+    channels: dict[tuple[str, str], tuple[int, Any] | None] = {}
+    written = left_out = 0
+    for topic, event, nanoseconds, _ in _seen(kept):
+        if event.kind not in _ENDS:
+            continue
+        key = topic, types.get((event.kind, topic), "")
+        if key not in channels:
+            channels[key] = _channel_in_cdr(file, *key)
+        channel = channels[key]
+        try:
+            data = _in_cdr(channel[1], event.data.get("fields", {})) if channel is not None else None
+        except (AttributeError, AssertionError, OverflowError, TypeError, ValueError):
+            data = None  # these fields are not that type's: it has changed since
+        if channel is None or data is None:
+            left_out += 1
+            continue
+        file.add(channel[0], data, arrived=nanoseconds, sent=nanoseconds)
+        written += 1
+    file.close()
+    return written, left_out
+
+
+def _in_cdr(kind: Any, fields: Mapping[str, Any]) -> bytes:
+    from rclpy.serialization import serialize_message
+
+    return bytes(serialize_message(filled(kind(), fields)))
+
+
+def _channel_in_cdr(file: MessageFile, topic: str, type_name: str) -> tuple[int, Any] | None:
+    """The number to write messages of a topic under, and their class; None where the type is not known here."""
+    try:
+        kind, text = interface(type_name), definition(type_name)
+    except LookupError:
+        return None
+    channel = file.channel(topic, type_name, text, about={"offered_qos_profiles": ""})
+    return channel, kind
 
 
 def _seen(kept: Kept) -> Iterator[tuple[str, KeptEvent, int, dict[str, Any]]]:

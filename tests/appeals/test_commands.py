@@ -12,6 +12,7 @@ from mcap.reader import make_reader
 
 from autograder.authoring.answers import folder_of
 from autograder.cli import cli
+from autograder.notebook.recordings import read_recording
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -116,13 +117,22 @@ def test_messages_are_written_as_mcap(file: Path, tmp_path: Path) -> None:
     assert f"{len(texts) + 1} events" in said
 
 
+def test_the_messages_of_topics_are_written_for_ros2_bag(file: Path, tmp_path: Path) -> None:
+    code, said = run("replay", file, "--bag", tmp_path / "bag.mcap")
+    assert code == 0
+    texts = [one.message.data for one in read_recording(tmp_path / "bag.mcap", ["/chatter"])]
+    assert texts[:2] == ["Hello, world! 0", "Hello, world! 1"]
+    assert f"{len(texts)} messages of topics" in said
+
+
+@pytest.mark.parametrize("option", ["--mcap", "--bag"])
 @pytest.mark.parametrize(
     ("name", "words"), [("check.bag", "such as check.mcap"), ("none/check.mcap", "cannot be written")]
 )
 def test_a_place_for_messages_that_is_none_ends_with_2(
-    file: Path, tmp_path: Path, name: str, words: str
+    file: Path, tmp_path: Path, name: str, words: str, option: str
 ) -> None:
-    code, said = run("replay", file, "--mcap", tmp_path / name)
+    code, said = run("replay", file, option, tmp_path / name)
     assert code == 2
     assert words in said
 

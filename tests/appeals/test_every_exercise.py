@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING
 
 import pytest
 from mcap.reader import make_reader
+from rclpy.serialization import deserialize_message
 
 from autograder import exercises
 from autograder.appeals import appeal_file, replaying
-from autograder.appeals.messages_seen import write_messages
+from autograder.appeals.messages_seen import write_bag, write_messages
+from autograder.judge.bench.interfaces import filled, interface, to_data
 from autograder.judge.verdicts.keeping import plain, unpack
 from autograder.verdict import from_json
 
@@ -94,6 +96,42 @@ def test_the_mcap_holds_the_messages_of_the_transcript(name: str, judged: Path, 
     for topic, _, data in read:
         if data["_judge"]["kind"] in ("message", "sent"):
             assert topic == data["_judge"]["name"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_bag_holds_the_messages_of_topics_as_ros_writes_them(
+    name: str, judged: Path, tmp_path: Path
+) -> None:
+    kept = unpack((judged / name).read_bytes())
+    path = tmp_path / "bag.mcap"
+    with path.open("wb") as stream:
+        written, left_out = write_bag(kept, stream)
+    events = [event for look in kept.looks for part in look.parts for event in part.events]
+    on_topics = [event for event in events if event.kind in ("message", "sent")]
+    assert (written, left_out) == (len(on_topics), 0)
+    with path.open("rb") as stream:
+        reader = make_reader(stream)
+        assert reader.get_header().profile == "ros2"
+        read = [(schema, channel, message) for schema, channel, message in reader.iter_messages() if schema]
+    assert {(schema.encoding, channel.message_encoding) for schema, channel, _ in read} <= {
+        ("ros2msg", "cdr")
+    }
+    # As ROS itself reads them. What the judge sent has only the fields that it has filled in.
+    heard = Counter(
+        (
+            channel.topic,
+            json.dumps(to_data(deserialize_message(message.data, interface(schema.name))), sort_keys=True),
+        )
+        for schema, channel, message in read
+    )
+    types = {channel.topic: schema.name for schema, channel, _ in read}
+    assert heard == Counter(
+        (
+            event.name,
+            json.dumps(to_data(filled(interface(types[event.name])(), event.data["fields"])), sort_keys=True),
+        )
+        for event in on_topics
+    )
 
 
 def without(data: dict[str, object]) -> dict[str, object]:

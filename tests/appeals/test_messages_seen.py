@@ -8,8 +8,10 @@ import math
 from typing import Any
 
 from mcap.reader import make_reader
+from rclpy.serialization import deserialize_message
+from std_msgs.msg import String
 
-from autograder.appeals.messages_seen import write_messages
+from autograder.appeals.messages_seen import write_bag, write_messages
 from autograder.judge.verdicts.keeping import Kept, KeptEvent, KeptLook, KeptPart
 from autograder.verdict import State, Verdict
 
@@ -83,6 +85,27 @@ def test_a_schema_says_what_is_in_all_messages_of_a_topic() -> None:
         "inner": {"type": "object", "properties": {"y": {"type": "boolean"}}},
         "odd": {"type": "string"},
     }
+
+
+def test_a_bag_has_the_messages_of_topics_alone_and_counts_those_of_unknown_types() -> None:
+    graph = {"publisher": {"/chatter": "std_msgs/msg/String", "/odd": "no_such_msgs/msg/Odd"}}
+    events = [
+        KeptEvent(0.1, "interface", "graph", graph),
+        KeptEvent(0.2, "message", "/chatter", {"fields": {"data": "a"}, "number": 1}),
+        KeptEvent(0.3, "message", "/odd", {"fields": {"data": 1}}),
+        KeptEvent(0.4, "message", "/nowhere", {"fields": {"data": 1}}),
+        KeptEvent(0.5, "message", "/chatter", {"fields": {"dta": "a type that has changed since"}}),
+        KeptEvent(0.6, "log", "talker", {"text": "x", "level": 20}),
+    ]
+    stream = io.BytesIO()
+    kept = Kept(100.0, "", VERDICT, [KeptLook(False, [KeptPart("", {}, events)])])
+    assert write_bag(kept, stream) == (1, 3)
+    stream.seek(0)
+    ((schema, channel, message),) = make_reader(stream).iter_messages()
+    assert (channel.topic, channel.message_encoding, message.log_time) == ("/chatter", "cdr", 98_200_000_000)
+    assert schema is not None
+    assert (schema.name, schema.encoding) == ("std_msgs/msg/String", "ros2msg")
+    assert deserialize_message(message.data, String).data == "a"
 
 
 def test_a_number_that_is_none_is_still_json() -> None:
