@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from nbgrader.converters import Autograde, BaseConverter, GenerateFeedback, NbGraderException
 from rich.console import Console
+from traitlets.config import Application
 
 from autograder.grading.batch import grade
 from autograder.grading.classes.class_directory import ClassDirectory, Submission, reason_against_name
@@ -27,6 +28,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 
+CANNOT = 2
+"""The exit code of ``autograder grade`` where something could not be checked or had to be refused."""
+
+
 class _Ours(BaseConverter):
     """A conversion of whole submissions by the engine.
 
@@ -38,6 +43,8 @@ class _Ours(BaseConverter):
 
         Raises:
             NbGraderException: Not all of them could be; the log has a line for each.
+            SystemExit: The same, where nbgrader runs as a command: with the exit code of ``autograder grade``, which
+                nbgrader would make a 1.
         """
         try:
             problems = self._convert(ClassDirectory(Path(self.coursedir.root)), self._chosen())
@@ -46,6 +53,8 @@ class _Ours(BaseConverter):
         problems = list(map(printable, problems))
         for problem in problems:
             self.log.error("%s", problem)
+        if problems and isinstance(self.parent, Application):
+            raise SystemExit(CANNOT)
         if problems:
             raise NbGraderException("; ".join(problems))
 

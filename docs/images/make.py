@@ -1,6 +1,8 @@
 """Take the pictures of the documentation: ``.venv/bin/python docs/images/make.py``.
 
-They are what the browser tests see in a real JupyterLab, so a picture shows what the course does today.
+Cards and course page are what the browser tests see in a real JupyterLab, the page about a class and the head of a
+feedback page are those of the sample class, graded anew: a picture shows what the course does today. ``make.py class``
+takes only the latter two.
 """
 
 from __future__ import annotations
@@ -12,6 +14,10 @@ import sys
 import tempfile
 from pathlib import Path
 
+from playwright.sync_api import sync_playwright
+
+from environment.system_packages import CHROMIUM_NAMES, find_program
+
 HERE = Path(__file__).resolve().parent
 TESTS = ("tests/browser/test_lab_1_2.py", "tests/browser/test_course_page.py")
 TAKEN = ("not-yet.png", "passed.png", "course-panel.png")
@@ -19,24 +25,60 @@ LARGEST = 300_000
 """Bytes: a clone should not grow with every new look of a card."""
 
 
+SEEN = 1500
+"""Pixels of the page about the class, from its top."""
+PAGE = Path("feedback", "partly-right", "lab_1_2", "lab_1_2.html")
+"""In the sample class: a student with points, and a mistake."""
+
+
 def main() -> int:
-    """Run the browser tests with a folder for its pictures, and keep those that the documentation shows."""
+    """Take the pictures, all or only those of a class; the exit code."""
     with tempfile.TemporaryDirectory() as folder:
-        test = [sys.executable, "-m", "pytest", "-q", *TESTS]
-        ended = subprocess.run(
-            test, cwd=HERE.parents[1], env=os.environ | {"SCREENSHOTS": folder}, check=False
-        )
-        missing = [name for name in TAKEN if not (Path(folder) / name).exists()]
-        if ended.returncode or missing:
+        taken: tuple[str, ...] = ()
+        if sys.argv[1:] != ["class"]:
+            see_the_lab(Path(folder))
+            taken = TAKEN
+        taken += see_a_class(Path(folder))
+        missing = [name for name in taken if not (Path(folder) / name).exists()]
+        if missing:
             print(f"no pictures: the browser tests must pass first {missing}", file=sys.stderr)
             return 1
-        for name in TAKEN:
+        for name in taken:
             picture = Path(folder) / name
             if picture.stat().st_size > LARGEST:
                 print(f"{name} is larger than {LARGEST} bytes: make the window smaller", file=sys.stderr)
                 return 1
             shutil.copy(picture, HERE / name)
     return 0
+
+
+def see_the_lab(folder: Path) -> None:
+    """Run the browser tests with a folder for their pictures."""
+    test = [sys.executable, "-m", "pytest", "-q", *TESTS]
+    subprocess.run(test, cwd=HERE.parents[1], env=os.environ | {"SCREENSHOTS": str(folder)}, check=True)
+
+
+def see_a_class(folder: Path) -> tuple[str, ...]:
+    """Grade the sample class and look at its pages; the pictures' names."""
+    made = folder / "ros2"
+    # Its exit code is 2: the sample class has a submission that is refused.
+    for command in ("demo", "report"):
+        subprocess.run([sys.executable, "-m", "autograder", command, str(made)], check=False)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path=find_program(*CHROMIUM_NAMES), args=["--no-sandbox"]
+        )
+        page = browser.new_page(viewport={"width": 1000, "height": 800})
+        page.goto((made / "report.html").as_uri())
+        page.screenshot(
+            path=folder / "class-report.png",
+            clip={"x": 0, "y": 0, "width": 1000, "height": SEEN},
+            full_page=True,
+        )
+        page.goto((made / PAGE).as_uri())
+        page.locator(".panel-heading").first.screenshot(path=folder / "feedback-head.png")
+        browser.close()
+    return "class-report.png", "feedback-head.png"
 
 
 if __name__ == "__main__":

@@ -46,6 +46,7 @@ class Formgrader:
         said = self.page.locator(".modal-dialog")
         expect(said).to_contain_text("Successfully autograded")
         said.get_by_role("button", name="OK").click()
+        expect(line).not_to_contain_text("Please wait")
         return line
 
     def first_submission(self, assignment: str) -> None:

@@ -1,7 +1,8 @@
 """The instructor's day: a class of forty hands in through four systems and by hand, with every oddity.
 
-It is collected, graded, graded by hand in formgrader, reported and returned, and every number in every output is
-compared with what nbgrader's own gradebook says.
+It hands in a lab with a question that a person grades, and an assignment of the instructor's own with plain asserts.
+Two students are late, one of them with an extension, and one hands in nothing. All is collected, graded, graded by hand
+in formgrader, reported and returned, and every number in every output is compared with nbgrader's own gradebook.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import sys
 import zipfile
 from datetime import timedelta
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import msgspec
 import pytest
@@ -25,17 +26,21 @@ from nbgrader.api import Gradebook
 sys.path.insert(0, str(Path(__file__).parents[1] / "grading"))
 sys.path.insert(0, str(Path(__file__).parents[1] / "grading" / "day"))
 from formgrader import Formgrader
+from gradebook_truth import Truth, read_truth
 from handed_in import BY_HAND as ODD
 from handed_in import DUE, Pupil, hand_in, pupils, put_by_hand, roster
 from instructor import add_question, due, penalty
+from own_assignment import EngineWithAsserts, answered, write_assignment
 from server_of_a_test import jupyter_server
-from tiny_class import QUIET, TALKER, FakeEngine, TinyClass, make_tiny_class
+from tiny_class import QUIET, TALKER, TinyClass, make_tiny_class
+from workbook import rows_of
 
 from autograder.cli import cli
 from autograder.grading.running import engine, sandboxing
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from typing import Any
 
     from playwright.sync_api import Page
 
@@ -47,11 +52,31 @@ pytestmark = [
 COUNT = 40
 BY_HAND = 4
 """How many are graded by hand."""
+LAB, OWN = "lab_1_2", "own"
+ANSWERS = {
+    "def add(a, b):\n    return a + b": 7.5,
+    "def add(a, b):\n    return abs(a) - abs(b)": 3.5,
+    "def add(a, b:": 0.0,
+}
+"""What is written into the instructor's own assignment, and its points by nbgrader's rules."""
 
 
 def points(pupil: Pupil) -> tuple[int, int]:
     """What the judge gives for the two exercises."""
     return pupil.place % 11, (3 * pupil.place) % 11
+
+
+def answer(pupil: Pupil) -> str:
+    """What a student writes into the instructor's own assignment."""
+    return list(ANSWERS)[pupil.place % len(ANSWERS)]
+
+
+def expected_points(class_: list[Pupil]) -> dict[str, dict[str, float]]:
+    """What everybody has before a person grades, without what being late costs, by assignment."""
+    return {
+        LAB: {pupil.id: float(sum(points(pupil))) if pupil.hands_in else 0.0 for pupil in class_},
+        OWN: {pupil.id: ANSWERS[answer(pupil)] if pupil.lms else 0.0 for pupil in class_},
+    }
 
 
 def run(*arguments: object) -> str:
@@ -61,31 +86,21 @@ def run(*arguments: object) -> str:
     return result.output
 
 
-def in_gradebook(tiny: TinyClass) -> dict[str, float]:
-    """The final points of everybody, as nbgrader exports them."""
-    with Gradebook(f"sqlite:///{tiny.path / 'gradebook.db'}") as book:
-        found = {student.id: 0.0 for student in book.students}
-        for one in book.assignment_submissions("lab_1_2"):
-            submission: Any = one
-            late = submission.late_submission_penalty or 0.0
-            found[submission.student.id] = max(0.0, submission.score - late)
-    return found
-
-
 @pytest.fixture
 def tiny(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> TinyClass:
-    """A class without submissions, with a list of students, a due date and a question that a person grades.
+    """A class without submissions: a list of students, a due date, a question for a person, an own assignment.
 
     Nothing is executed: the answers say what comes of them. All else is as it is, the version of the course included,
     so that formgrader, in a process of its own, finds the results that a command has left.
     """
-    fake = FakeEngine()
+    fake = EngineWithAsserts()
     monkeypatch.setattr(engine, "execute_all", fake.execute_all)
     monkeypatch.setattr(sandboxing, "require", lambda _: None)
     tiny = TinyClass(make_tiny_class(tmp_path / "made"))
     penalty(tiny)
     due(tiny, DUE)
     add_question(tiny)
+    write_assignment(tiny, OWN)
     (tiny.path / "students.csv").write_text(roster(pupils(COUNT)), encoding="utf-8")
     return tiny
 
@@ -104,7 +119,11 @@ def work_of(tiny: TinyClass) -> Callable[[Pupil, bool], str]:
 
 
 def collect(tiny: TinyClass, class_: list[Pupil], folder: Path) -> list[Path]:
-    """Collect what came through the systems."""
+    """Collect what came through the systems: the lab with every oddity, and the own assignment."""
+
+    def own_work(pupil: Pupil, is_earlier: bool) -> str:
+        return answered(tiny, "" if is_earlier else answer(pupil), OWN)
+
     archives = hand_in(folder, class_, work_of(tiny))
     said = run("collect", tiny.path, *archives, "--timezone", "UTC")
     assert f"{sum(bool(pupil.lms) for pupil in class_)} placed, 0 unchanged, " in said, said
@@ -113,7 +132,12 @@ def collect(tiny: TinyClass, class_: list[Pupil], folder: Path) -> list[Path]:
         assert said.count(reason) == 1, reason
     missing = sorted(pupil.id for pupil in class_ if not pupil.lms)
     assert f"nothing of   lab_1_2: {', '.join(missing)}" in said
-    return archives
+    (folder / OWN).mkdir()
+    others = hand_in(folder / OWN, class_, own_work, OWN, strange=False)
+    said = run("collect", tiny.path, *others, "--timezone", "UTC")
+    assert ", 0 not placed, " in said, said
+    assert f"nothing of   own: {', '.join(missing)}" in said
+    return [*archives, *others]
 
 
 def grade_by_hand(formgrader: Formgrader, class_: list[Pupil], expected: dict[str, float]) -> dict[str, str]:
@@ -134,6 +158,138 @@ def grade_by_hand(formgrader: Formgrader, class_: list[Pupil], expected: dict[st
     return comments
 
 
+def check_tables(tiny: TinyClass, truth: Truth, output: str) -> None:
+    """The machine's form, the table and the CSV file."""
+    machine = msgspec.json.decode(output[output.index('{"form"') :])
+    for assignment in (LAB, OWN):
+        found = {one["student"]: one for one in machine["submissions"] if one["assignment"] == assignment}
+        assert {student: one["score"] for student, one in found.items()} == truth.of(assignment)
+        late = {student: one["late_penalty"] for student, one in found.items() if one["late_penalty"]}
+        assert late == {student: cost for (student, name), cost in truth.late.items() if name == assignment}
+    assert machine["totals"]["waiting_for_a_person"] == sum(cell.waits for cell in truth.cells.values())
+    assert machine["totals"]["score"] == sum(truth.totals.values())
+    check_rows(list(csv.DictReader(io.StringIO((tiny.path / "grades.csv").read_text("utf-8-sig")))), truth)
+    printed = run("grade", tiny.path)
+    for student, score in truth.totals.items():
+        assert re.search(rf"^ *{student} .* {score:g}/35 *$", printed, re.MULTILINE), printed
+
+
+def check_rows(rows: list[dict[str, Any]], truth: Truth) -> None:
+    """A line for each student and exercise, with every number of the gradebook, and none besides."""
+    numbers = ("score", "max", "judge", "by_hand", "extra")
+    found: dict[tuple[str, str, str], tuple[Any, ...]] = {}
+    for row in rows:
+        values = [None if row[name] == "" else float(row[name]) for name in numbers]
+        key = row["student"], row["assignment"], row["exercise"]
+        found[key] = (*values, row["waits_for_a_person"])
+    expected: dict[tuple[str, str, str], tuple[Any, ...]] = {
+        (*key, "late"): (-cost, 0, None, None, None, "") for key, cost in truth.late.items()
+    }
+    for student in truth.students:
+        for assignment, cells in truth.most.items():
+            for name, most in cells.items():
+                cell = truth.cells.get((student, assignment, name))
+                expected[student, assignment, name] = (
+                    (0, most, None, None, None, "")
+                    if cell is None
+                    else (cell.score, most, cell.judged, cell.by_hand, cell.extra or None, "yes" * cell.waits)
+                )
+    assert found == expected
+    assert len(rows) == len(found)
+
+
+def check_pages(tiny: TinyClass, class_: list[Pupil], truth: Truth, comments: dict[str, str]) -> None:
+    """The pages, with the remarks, and the page about the class."""
+    for pupil in class_[:-1]:
+        text = (tiny.path / "feedback" / pupil.id / LAB / f"{LAB}.html").read_text()
+        assert f"Score: {truth.score(pupil.id, LAB):.1f} / 25.0" in text
+        assert (comments.get(pupil.id, "Remark number") in text) is (pupil.id in comments)
+        assert ("handed in 2026-01-11 18:00 UTC, due 2026-01-10 12:00 UTC" in text) is (
+            (pupil.id, LAB) in truth.late
+        )
+        if pupil.lms:
+            text = (tiny.path / "feedback" / pupil.id / OWN / f"{OWN}.html").read_text()
+            assert f"Score: {truth.score(pupil.id, OWN):.1f} / 10.0" in text
+    run("report", tiny.path)
+    page = BeautifulSoup((tiny.path / "report.html").read_text(), "html.parser")
+    titled = page.find("h2", string="Who is where")
+    assert titled
+    table = titled.find_next("table")
+    assert table
+    names = [cell.get_text() for cell in table.find_all("th")][1:-1]
+    keys = [(assignment, name) for assignment, cells in truth.most.items() for name in cells]
+    assert sorted(names) == sorted(name for _, name in keys)
+    lines = [[cell.get_text(strip=True) for cell in line.find_all("td")] for line in table.find_all("tr")[1:]]
+    by_id = {line[0].rpartition("(")[2].rstrip(")"): line[1:] for line in lines}
+    assert by_id.keys() == set(truth.students)
+    for student, (*shown, total) in by_id.items():
+        assert float(total) == truth.total(student)
+        for assignment, name in keys:
+            cell = truth.cells.get((student, assignment, name))
+            is_by_hand = cell and (cell.by_hand is not None or cell.extra)
+            mark = "?" if cell and cell.waits else "*" if is_by_hand else ""
+            assert shown[names.index(name)] == (f"{cell.score:g}{mark}" if cell else "–")
+
+
+def check_exports(tiny: TinyClass, class_: list[Pupil], truth: Truth) -> None:
+    """What goes back to the systems, and every cell of the workbook."""
+    for form in ("canvas", "moodle", "csv", "xlsx"):
+        run("export", tiny.path, "--to", form)
+    out = tiny.path / "export"
+    for name, line in (("canvas.csv", 2), ("moodle.csv", 1)):
+        header, *table = csv.reader(io.StringIO((out / name).read_text()))
+        who = header.index("SIS Login ID" if name == "canvas.csv" else "ID number")
+        for assignment in (LAB, OWN):
+            place = header.index(assignment)
+            assert {row[who]: float(row[place]) for row in table[line - 1 :]} == truth.of(assignment)
+    for assignment in (LAB, OWN):
+        worksheet = csv.DictReader(io.StringIO((out / f"moodle-{assignment}.csv").read_text()))
+        grades = {f"s{int(row['Identifier'].split()[1]) - 500:02}": float(row["Grade"]) for row in worksheet}
+        assert grades == {one.id: truth.score(one.id, assignment) for one in class_ if one.lms == "moodle"}
+        for lms in ("canvas", "moodle"):
+            with zipfile.ZipFile(out / f"feedback-{lms}-{assignment}.zip") as archive:
+                assert len(archive.namelist()) == sum(pupil.lms == lms for pupil in class_)
+    for rows in (
+        list(csv.DictReader(io.StringIO((out / "students.csv").read_text("utf-8-sig")))),
+        rows_of(out / "grades.xlsx", 1),
+    ):
+        assert len(rows) == len(class_)
+        for row in rows:
+            check_student(row, class_, truth)
+    exercises = rows_of(out / "grades.xlsx", 2)
+    check_rows(exercises, truth)
+    # What is no number is as in grades.csv, which the instructor has read.
+    read = csv.DictReader(io.StringIO((tiny.path / "grades.csv").read_text("utf-8-sig")))
+    words = ("student", "assignment", "exercise", "state", "diagnosis", "reason", "name")
+    assert [[row[name] for name in words] for row in exercises] == [
+        [row[name] for name in words] for row in read
+    ]
+
+
+def check_student(row: dict[str, Any], class_: list[Pupil], truth: Truth) -> None:
+    """A line of the sheet of students: who it is, and each number."""
+    pupil = next(one for one in class_ if one.id == row["student"])
+    assert row == {
+        "student": pupil.id,
+        "first_name": pupil.first,
+        "last_name": pupil.last,
+        "email": f"{pupil.id}@uni.example",
+        **{name: row[name] for name in NUMBERS},
+    }
+    waiting = sum(cell.waits for key, cell in truth.cells.items() if key[0] == pupil.id)
+    assert [float(row[name]) for name in NUMBERS] == [
+        truth.score(pupil.id, LAB),
+        truth.score(pupil.id, OWN),
+        truth.total(pupil.id),
+        35,
+        truth.late.get((pupil.id, LAB), 0),
+        waiting,
+    ]
+
+
+NUMBERS = (LAB, OWN, "total", "max", "late_penalty", "waits_for_a_person")
+
+
 def test_the_whole_day(tiny: TinyClass, page: Page, tmp_path: Path) -> None:
     class_ = pupils(COUNT)
     archives = collect(tiny, class_, tmp_path)
@@ -144,13 +300,17 @@ def test_the_whole_day(tiny: TinyClass, page: Page, tmp_path: Path) -> None:
     server = jupyter_server(["jupyter", "server"], "teacher", tmp_path, os.environ, tiny.path)
     with server as address:
         formgrader = Formgrader(page, address, "teacher")
-        line = formgrader.autograde("lab_1_2", class_[4].id)
+        line = formgrader.autograde(LAB, class_[4].id)
         assert f"{sum(points(class_[4]))} / 25" in line.inner_text()
-        assert sum(in_gradebook(tiny).values()) == sum(points(class_[4]))
+        line = formgrader.autograde(OWN, class_[4].id)
+        assert f"{ANSWERS[answer(class_[4])]:g} / 10" in line.inner_text()
+        entered = read_truth(tiny.path)
+        assert sum(entered.totals.values()) == sum(points(class_[4])) + ANSWERS[answer(class_[4])]
 
         # Some bring their work themselves.
         put_by_hand(tiny.path / "submitted", class_, work_of(tiny))
         said = run("grade", tiny.path)
+        through_a_system = sum(bool(pupil.lms) for pupil in class_)
         for oddity in (
             "s33/lab_1_2/lab_1_2 (1).ipynb was left out",
             "s34/lab_1_2/lab_1_2.ipynb was called lab_1_2/lab_1_2 (1).ipynb and is graded",
@@ -159,69 +319,31 @@ def test_the_whole_day(tiny: TinyClass, page: Page, tmp_path: Path) -> None:
             "the folder José was renamed",
             "submitted/all.zip: whose it is cannot be seen",
             "submitted/lab_1_2.ipynb: whose it is cannot be seen",
-            f"{len(ODD)} notebooks run, {COUNT - 1 - len(ODD)} unchanged",
+            f"{len(ODD)} notebooks run, {2 * through_a_system} unchanged",
         ):
             assert oddity in said, said
         with Gradebook(f"sqlite:///{tiny.path / 'gradebook.db'}") as book:
-            book.grant_extension("lab_1_2", with_extension, days=2)
-        expected = {pupil.id: float(sum(points(pupil))) if pupil.hands_in else 0.0 for pupil in class_}
-        comments = grade_by_hand(formgrader, class_, expected)
-    expected[late] = 0.0
+            book.grant_extension(LAB, with_extension, days=2)
+        expected = expected_points(class_)
+        comments = grade_by_hand(formgrader, class_, expected[LAB])
+    assert DUE < class_[3].when < DUE + timedelta(days=2)
+    lost = expected[LAB][late]
+    expected[LAB][late] = 0.0
 
     output = run("grade", tiny.path, "--json")
-    truth = in_gradebook(tiny)
-    assert truth == expected
-    assert truth[with_extension] > 0
-    assert DUE < class_[3].when < DUE + timedelta(days=2)
+    truth = read_truth(tiny.path)
+    assert {assignment: truth.of(assignment) for assignment in expected} == expected
+    assert truth.late == {(late, LAB): lost}
+    assert truth.score(with_extension, LAB) > 0
+    assert truth.total(class_[-1].id) == 0
+    assert sum(cell.waits for cell in truth.cells.values()) == COUNT - 1 - BY_HAND
 
-    # The machine's form, the table and the CSV file.
-    machine = msgspec.json.decode(output[output.index('{"form"') :])
-    assert {one["student"]: one["score"] for one in machine["submissions"]} == truth
-    assert machine["totals"]["waiting_for_a_person"] == COUNT - 1 - BY_HAND
-    sums = dict.fromkeys(truth, 0.0)
-    for row in csv.DictReader(io.StringIO((tiny.path / "grades.csv").read_text("utf-8-sig"))):
-        sums[row["student"]] += float(row["score"])
-    assert sums == truth
-    printed = run("grade", tiny.path)
-    for student, score in truth.items():
-        assert re.search(rf"^ *{student} .* {score:g}/25 *$", printed, re.MULTILINE), printed
-
-    # The pages, with the remarks.
-    for pupil in class_[:-1]:
-        text = (tiny.path / "feedback" / pupil.id / "lab_1_2" / "lab_1_2.html").read_text()
-        assert f"Score: {truth[pupil.id]:.1f} / 25.0" in text
-        assert (comments.get(pupil.id, "Remark number") in text) is (pupil.id in comments)
-    run("report", tiny.path)
-    report = BeautifulSoup((tiny.path / "report.html").read_text(), "html.parser")
-    lines = [[cell.get_text(strip=True) for cell in line.find_all("td")] for line in report.find_all("tr")]
-    of_students = {
-        line[0].rpartition("(")[2].rstrip(")"): float(line[-1]) for line in lines if len(line) == 5
-    }
-    assert {student: of_students[student] for student in truth} == truth
-
-    # What goes back.
-    for form in ("canvas", "moodle", "csv", "xlsx"):
-        run("export", tiny.path, "--to", form)
-    out = tiny.path / "export"
-    canvas = list(csv.reader(io.StringIO((out / "canvas.csv").read_text())))
-    assert {row[3]: float(row[-1]) for row in canvas[2:]} == truth
-    moodle = list(csv.reader(io.StringIO((out / "moodle.csv").read_text())))
-    assert {row[2]: float(row[-1]) for row in moodle[1:]} == truth
-    worksheet = list(csv.DictReader(io.StringIO((out / "moodle-lab_1_2.csv").read_text())))
-    assert {f"s{int(row['Identifier'].split()[1]) - 500:02}": float(row["Grade"]) for row in worksheet} == {
-        pupil.id: truth[pupil.id] for pupil in class_ if pupil.lms == "moodle"
-    }
-    students = list(csv.DictReader(io.StringIO((out / "students.csv").read_text("utf-8-sig"))))
-    assert {row["student"]: float(row["total"]) for row in students} == truth
-    with zipfile.ZipFile(out / "grades.xlsx") as workbook:
-        numbers = set(re.findall(r"<v>([^<]*)</v>", workbook.read("xl/worksheets/sheet1.xml").decode()))
-    assert {f"{score:g}" for score in truth.values()} <= numbers
-    for lms in ("canvas", "moodle"):
-        with zipfile.ZipFile(out / f"feedback-{lms}-lab_1_2.zip") as archive:
-            assert len(archive.namelist()) == sum(pupil.lms == lms for pupil in class_)
+    check_tables(tiny, truth, output)
+    check_pages(tiny, class_, truth, comments)
+    check_exports(tiny, class_, truth)
 
     # The next morning everything is as it was.
     again = run("collect", tiny.path, *archives, "--timezone", "UTC")
     assert "0 placed" in again
     assert tiny.grade(console=QUIET).executed == 0
-    assert in_gradebook(tiny) == truth
+    assert read_truth(tiny.path) == truth

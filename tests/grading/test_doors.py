@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import errno
 import shutil
+import subprocess
+import sys
 from typing import TYPE_CHECKING, Any
 
 import nbformat
 import pytest
+from click.testing import CliRunner
 from conftest import LISTENER, TALKER, FakeEngine, TinyClass
 from nbgrader.api import Gradebook
 from nbgrader.converters import Autograde, GenerateFeedback, NbGraderException
 from nbgrader.coursedir import CourseDirectory
 
+from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.entering import gradebook
 from autograder.grading.entering.journal import Journal
@@ -213,6 +217,28 @@ def test_one_student_of_plain_nbgrader_is_graded_alone(tiny: TinyClass, fake_eng
     with pytest.raises(NbGraderException, match=r"eve.*: it is a link; put the folder itself there"):
         Autograde(coursedir=course, config=config).start()
     assert fake_engine.ran == ["ben"]
+
+
+@pytest.mark.parametrize("command", ["autograde", "generate_feedback"])
+def test_a_command_of_plain_nbgrader_ends_with_the_exit_code_of_ours(
+    tiny: TinyClass, fake_engine: FakeEngine, command: str
+) -> None:
+    tiny.submit("ada", 3)
+    (tiny.path / "submitted" / "eve").symlink_to(tiny.path / "submitted" / "ada")
+    assert CliRunner().invoke(cli, ["grade", str(tiny.path)]).exit_code == 2
+    if command == "generate_feedback":  # nbgrader takes what lies in autograded
+        shutil.copytree(tiny.path / "autograded" / "ada", tiny.path / "autograded" / "a*")
+    done = subprocess.run(
+        [sys.executable, "-m", "nbgrader", command, "lab_1_2", "--force"],
+        cwd=tiny.path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2, done.stderr
+    assert "Traceback" not in done.stderr
+    reason = "it is a link; put the folder itself there" if command == "autograde" else "rename the folder"
+    assert reason in done.stderr
 
 
 def test_pages_of_plain_nbgrader_follow_what_a_person_has_given(

@@ -73,10 +73,21 @@ _MAY_BE: Mapping[str, Mapping[str, tuple[Any, ...]]] = {
             "CSSHTMLHeaderPreprocessor",
             "FilesWriter",
             "WriterBase",
+            "Execute",
+            "ExecutePreprocessor",
+            "NotebookClient",
+            "IgnorePattern",
         )
     },
 }
 """What the options of each section may be; a section that is not here is not about the conversion, or is honoured."""
+
+
+_INSTEAD = {
+    f"{section}.timeout": "c.WireExecute.cell_seconds limits the time of a cell"
+    for section in ("Execute", "ExecutePreprocessor", "NotebookClient")
+}
+"""What has the effect that somebody may have meant, by option."""
 
 
 def check_configuration(directory: ClassDirectory) -> None:
@@ -87,9 +98,10 @@ def check_configuration(directory: ClassDirectory) -> None:
     """
     path = directory.path / CONFIG_NAME
     for option in _not_honoured(directory.config):
+        instead = f" {_INSTEAD[option]}." if option in _INSTEAD else ""
         raise ClassIncomplete(
             f"{path} sets c.{option}, which has no effect on how submissions are graded here: delete that line, or "
-            "write it as in a class that `autograder new-class` makes."
+            f"write it as in a class that `autograder new-class` makes.{instead}"
         )
     for section in ("Autograde", "GenerateFeedback"):
         if not directory.config[section].get("exporter_class"):

@@ -26,13 +26,15 @@ _BLACKBOARD = re2.compile(
     r"^(?P<item>.+?)_(?P<login>[^_]+)_attempt_(?P<when>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)$"
 )
 # 12345-67890 - Ada Lovelace - Oct 3, 2025 205 PM, a folder; or, with " - lab_1_2.ipynb" behind it, a file. The date is
-# in the language of the course: 3 October, 2025 1405.
+# in the language of the course: 3 October, 2025 1405. Some universities have the student's own number in front of the
+# name: 12345-67890 - N0123456 - Ada Lovelace- 3 October, 2025 205 PM - lab_1_2.ipynb
 _BRIGHTSPACE = re2.compile(
     r"^(?P<number>\d+)-\d+ ?- ?(?P<name>.+?) ?- ?"
     r"(?P<when>(?:[^\d\s,.-]+\.? \d\d?|\d\d?\.? (?:de )?[^\d\s,.-]+\.?),? (?:de )?\d{4} "
     r"\d\d?[:.h]?\d\d(?: ?[AaPp]\.?[Mm]\.?)?)"
     r"(?: ?- ?(?P<file>.+))?$"
 )
+_STUDENT_NUMBER = re2.compile(r"[A-Za-z]{0,4}\d[\dA-Za-z]{2,}")
 # lovelaceada_LATE_123_456_lab_1_2-1.ipynb: the student's number, then the file's
 _CANVAS = re2.compile(
     r"^(?P<login>.*?[^\d_].*?)_(?P<late>LATE_)?(?P<number>\d+)_(?P<file_number>\d+)_(?P<file>.+)$"
@@ -142,9 +144,20 @@ def _brightspace(parts: Sequence[str]) -> Found | None:
         found = _BRIGHTSPACE.match(part)
         is_file = place == len(parts) - 1
         if found is not None and (found["file"] is not None) == is_file:
-            identity = Identity("brightspace", found["number"], name=found["name"])
-            return Found(identity, found["file"] or parts[-1], _clock_time(found["when"]), time=found["when"])
+            whole, *others = _of_brightspace(found["number"], found["name"])
+            when = _clock_time(found["when"])
+            return Found(
+                whole, found["file"] or parts[-1], when, readings=(whole, *others), time=found["when"]
+            )
     return None
+
+
+def _of_brightspace(number: str, name: str) -> list[Identity]:
+    whole = Identity("brightspace", number, name=name)
+    own_number, dash, behind = name.partition(" - ")
+    if not dash or not _STUDENT_NUMBER.fullmatch(own_number):
+        return [whole]
+    return [whole, Identity("brightspace", login=own_number), Identity("brightspace", number, name=behind)]
 
 
 def _clock_time(text: str) -> datetime | None:

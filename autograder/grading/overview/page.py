@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import statistics
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -9,10 +10,11 @@ from urllib.parse import quote
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
+from autograder.grading.entering import attempts
 from autograder.grading.entering.journal import Journal, write_whole
 from autograder.grading.errors import GradingError, clear_disk_errors
 from autograder.grading.overview import statistics as figures
-from autograder.grading.reporting.report import LATE, NOT_SUBMITTED
+from autograder.grading.reporting.report import NOT_SUBMITTED, columns
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.table.class_table import ClassTable, by_exercise, read_table
 from autograder.page_templates import page_templates
@@ -75,7 +77,7 @@ def _page(directory: ClassDirectory, table: ClassTable, *, names: bool, folder: 
         people=people,
         there=there,
         absent=[student for student in table.students if student not in there],
-        exercises=list(dict.fromkeys(row.exercise for row in table.rows if row.exercise != LATE)),
+        exercises=columns(table.rows),
         rows={student: by_exercise(table.of(student)) for student in table.students},
         cell=_cell,
         mean=statistics.fmean(totals),
@@ -85,6 +87,7 @@ def _page(directory: ClassDirectory, table: ClassTable, *, names: bool, folder: 
         items=figures.items(table, Journal(directory.state / "journal")),
         mistakes=figures.mistakes(table),
         times=_times(directory, table),
+        progress=_progress(directory, table),
         names=names,
     )
 
@@ -111,6 +114,15 @@ def _cell(row: Row | None) -> str:
         return "–"
     mark = "?" if row.waits else "*" if row.by_hand is not None or row.extra else ""
     return f"{row.score:g}{mark}"
+
+
+def _progress(directory: ClassDirectory, table: ClassTable) -> list[figures.Progress]:
+    """Who handed in again after a grading, those who gained most first."""
+    found = []
+    for student in table.students:
+        with contextlib.suppress(GradingError):  # nobody has graded anything of theirs
+            found += figures.progress(student, attempts.read(directory.path, student))
+    return sorted(found, key=lambda one: one.first - one.last)
 
 
 def _times(directory: ClassDirectory, table: ClassTable) -> list[dict[str, object]]:

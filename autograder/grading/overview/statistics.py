@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import statistics
-from collections import Counter, defaultdict
-from dataclasses import dataclass
+from collections import defaultdict
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from autograder.grading.reporting.report import LATE, NOT_SUBMITTED
+from autograder.grading.reporting.report import LATE, NOT_SUBMITTED, columns
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
+    from autograder.grading.entering.attempts import Attempt
     from autograder.grading.entering.journal import Journal
     from autograder.grading.reporting.report import Row
     from autograder.grading.table.class_table import ClassTable
@@ -56,7 +57,7 @@ class ItemFigures:
     """The statistics of one exercise, over those who have handed it in.
 
     Attributes:
-        exercise: Its id.
+        exercise: Its id; where several assignments have cells of that name, with the assignment's in front.
         max_score: Points that can be had.
         handed_in: How many have handed it in.
         mean: Their mean points.
@@ -84,16 +85,64 @@ class MistakeFigures:
     """A mistake that was recognised.
 
     Attributes:
+        assignment: In which assignment.
         exercise: In which exercise.
         key: The mistake's name.
         reason: What the first of them was told.
         students: Who made it.
     """
 
+    assignment: str
     exercise: str
     key: str
     reason: str
     students: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Progress:
+    """The judge's points of somebody's first and last attempt at an assignment.
+
+    Attributes:
+        student: Who.
+        assignment: Which.
+        attempts: How often different work was graded.
+        first: Points of the first one.
+        last: Points of the last one.
+        max_score: Points that the judge can give.
+    """
+
+    student: str
+    assignment: str
+    attempts: int
+    first: float
+    last: float
+    max_score: float
+
+
+def progress(student: str, attempts: Iterable[Attempt]) -> list[Progress]:
+    """How a student's attempts went on.
+
+    Args:
+        student: Whose.
+        attempts: All that were graded, the first one first. What was graded with another version of the course than
+            the last one is left out: its points say nothing about the student.
+
+    Returns:
+        An entry for each assignment of which different work was graded.
+    """
+    found: dict[str, list[Attempt]] = defaultdict(list)
+    for attempt in attempts:
+        found[attempt.assignment].append(attempt)
+    shown = []
+    for assignment, all_of_it in found.items():
+        same = [one for one in all_of_it if one.course == all_of_it[-1].course]
+        works = len({one.work for one in same})
+        first, last = (sum(row.score for row in one.rows) for one in (same[0], same[-1]))
+        if works > 1:
+            most = sum(row.max_score for row in same[-1].rows)
+            shown.append(Progress(student, assignment, works, first, last, most))
+    return shown
 
 
 def bands(table: ClassTable) -> list[Band]:
@@ -130,16 +179,16 @@ def items(table: ClassTable, journal: Journal) -> list[ItemFigures]:
     """
     criteria = _criteria(table, journal)
     found = []
-    for exercise in dict.fromkeys(row.exercise for row in table.rows if row.exercise != LATE):
-        rows = [row for row in table.rows if row.exercise == exercise and row.state != NOT_SUBMITTED]
+    for key, name in columns(table.rows).items():
+        rows = [row for row in table.rows if _key(row) == key and row.state != NOT_SUBMITTED]
         if not rows:
             continue
         scores, most = [row.score for row in rows], rows[0].max_score
         mean = statistics.fmean(scores)
-        others = [sum(row.score for row in table.of(one.student) if row.exercise != exercise) for one in rows]
+        others = [sum(row.score for row in table.of(one.student) if _key(row) != key) for one in rows]
         found.append(
             ItemFigures(
-                exercise,
+                name,
                 most,
                 len(rows),
                 mean,
@@ -147,21 +196,28 @@ def items(table: ClassTable, journal: Journal) -> list[ItemFigures]:
                 sum(score <= 0 for score in scores),
                 mean / most if most else 0.0,
                 _correlation(scores, others),
-                tuple(criteria.get(exercise, ())),
+                tuple(criteria.get(key, ())),
             )
         )
     return found
 
 
+def _key(row: Row) -> tuple[str, str]:
+    return row.assignment, row.exercise
+
+
 def mistakes(table: ClassTable) -> list[MistakeFigures]:
     """The mistakes that were recognised, the commonest first."""
-    found: dict[tuple[str, str], list[Row]] = defaultdict(list)
+    found: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
     for row in table.rows:
         if row.diagnosis:
-            found[row.exercise, row.diagnosis].append(row)
+            found[row.assignment, row.exercise, row.diagnosis].append(row)
+    names = columns(table.rows)
     figures = [
-        MistakeFigures(exercise, key, rows[0].reason, tuple(row.student for row in rows))
-        for (exercise, key), rows in found.items()
+        MistakeFigures(
+            assignment, names[assignment, exercise], key, rows[0].reason, tuple(row.student for row in rows)
+        )
+        for (assignment, exercise, key), rows in found.items()
     ]
     return sorted(figures, key=lambda one: (-len(one.students), one.exercise, one.key))
 
@@ -172,21 +228,17 @@ def _correlation(ours: Sequence[float], others: Sequence[float]) -> float | None
     return statistics.correlation(ours, others)
 
 
-def _criteria(table: ClassTable, journal: Journal) -> dict[str, list[CriterionFigures]]:
+def _criteria(table: ClassTable, journal: Journal) -> dict[tuple[str, str], list[CriterionFigures]]:
     """What was seen of each criterion, from the verdicts that the table's points came from."""
     counted = {(row.student, row.assignment) for row in table.rows if row.state in ("passed", "failed")}
-    passed: Counter[tuple[str, str]] = Counter()
-    looked: Counter[tuple[str, str]] = Counter()
-    titles: dict[tuple[str, str], str] = {}
+    seen: dict[tuple[str, str], dict[str, CriterionFigures]] = defaultdict(dict)
     for student, assignment in sorted(counted):
         for execution in journal.latest(student, assignment):
             for verdict in execution.verdicts.values():
+                of_exercise = seen[assignment, verdict.exercise]
                 for criterion in verdict.criteria:
-                    key = (verdict.exercise, criterion.name)
-                    titles.setdefault(key, criterion.title)
-                    looked[key] += 1
-                    passed[key] += criterion.passed
-    found: dict[str, list[CriterionFigures]] = defaultdict(list)
-    for (exercise, name), title in titles.items():
-        found[exercise].append(CriterionFigures(title, passed[exercise, name], looked[exercise, name]))
-    return found
+                    known = of_exercise.get(criterion.name, CriterionFigures(criterion.title, 0, 0))
+                    of_exercise[criterion.name] = replace(
+                        known, passed=known.passed + criterion.passed, of=known.of + 1
+                    )
+    return {key: list(figures.values()) for key, figures in seen.items()}

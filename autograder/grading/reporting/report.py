@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -139,6 +140,16 @@ class GradeReport:
         """0 when everything was graded; 2 when something could not be checked or could not be taken."""
         unchecked = any(row.state == State.NOT_CHECKED for row in self.rows)
         return 2 if self.refused or self.problems or unchecked else 0
+
+
+def columns(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
+    """What a column for each exercise is called, by assignment and exercise.
+
+    Cells of an instructor's own are often called alike in several assignments; then the assignment stands in front.
+    """
+    keys = list(dict.fromkeys((row.assignment, row.exercise) for row in rows if row.exercise != LATE))
+    often = Counter(exercise for _, exercise in keys)
+    return {key: key[1] if often[key[1]] == 1 else ".".join(key) for key in keys}
 
 
 def rows_of(task: Task, execution: Execution) -> list[Row]:

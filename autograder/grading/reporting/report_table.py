@@ -9,18 +9,21 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from autograder.grading.reporting.report import LATE, NOT_SUBMITTED, WAITS
+from autograder.grading.reporting.report import LATE, NOT_SUBMITTED, WAITS, columns
 from autograder.grading.task import UNREADABLE
 from autograder.verdict import State
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from autograder.grading.reporting.report import GradeReport, Row
 
 
 _WIDE = 130
+_NAME = 30
+"""Columns of a terminal that a student's id or name may have before it is folded."""
+_ANY_WIDTH = 10_000
 _STYLES = {State.PASSED: "green", State.FAILED: "red", State.NOT_CHECKED: "yellow", WAITS: "yellow"}
 
 
@@ -36,9 +39,9 @@ def show(report: GradeReport, console: Console | None = None) -> None:
         submitted = _near(report.path / "submitted")
         _line(console, f"Nothing was submitted: put notebooks into {submitted}/<student>/<assignment>/.")
     elif console.width >= _WIDE:
-        console.print(table(report.rows, diagnoses=True))
+        console.print(*tables(report.rows, console, diagnoses=True))
     else:
-        console.print(table(report.rows, diagnoses=False))
+        console.print(*tables(report.rows, console, diagnoses=False))
         console.print(_diagnoses(report.rows))
     if report.would_change is not None:
         _line(console, f"Nothing was entered. {len(report.would_change)} results would change:", "bold")
@@ -71,32 +74,52 @@ def show(report: GradeReport, console: Console | None = None) -> None:
         _line(console, report.timings.line())
 
 
-def table(rows: Sequence[Row], *, diagnoses: bool) -> Table:
-    """Students down, exercises across.
+def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterator[Table]:
+    """Students down, exercises across: in several tables below each other where one is too wide, the total in the last.
 
     Args:
         rows: What is to be shown.
-        diagnoses: Also what is wrong where points are missing; takes about 130 columns.
+        console: Where it has to fit.
+        diagnoses: Also what is wrong where points are missing; takes about 130 columns for four exercises.
     """
-    exercises = list(dict.fromkeys(row.exercise for row in rows if row.exercise != LATE))
+    left = list(columns(rows))
+    while left:
+        here = len(left)
+        shown = _table(rows, left, diagnoses=diagnoses, is_last=True)
+        while here > 1 and _needs(shown, console) > console.width:
+            here -= 1
+            shown = _table(rows, left[:here], diagnoses=diagnoses, is_last=False)
+        yield shown
+        left = left[here:]
+
+
+def _needs(shown: Table, console: Console) -> int:
+    """The columns of a terminal that a table takes where nothing in it is cut off or folded."""
+    return console.measure(shown, options=console.options.update(width=_ANY_WIDTH)).maximum
+
+
+def _table(rows: Sequence[Row], keys: Sequence[tuple[str, str]], *, diagnoses: bool, is_last: bool) -> Table:
+    names = columns(rows)
     late = any(row.exercise == LATE for row in rows)
-    results = {(row.student, row.exercise): row for row in rows}
+    results = {(row.student, row.assignment, row.exercise): row for row in rows}
     shown = Table(header_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
-    shown.add_column("student", overflow="fold")
-    for exercise in exercises:
+    shown.add_column("student", overflow="fold", max_width=_NAME)
+    for key in keys:
         # In two lines, so that four exercises fit a terminal of 80 columns.
-        shown.add_column(exercise.replace(".", "\n."), no_wrap=True)
-    if late:
+        shown.add_column(names[key].replace(".", "\n."), no_wrap=True)
+    if is_last and late:
         shown.add_column("late", justify="right", no_wrap=True)
-    shown.add_column("total", justify="right", no_wrap=True)
+    if is_last:
+        shown.add_column("total", justify="right", no_wrap=True)
     for student in dict.fromkeys(row.student for row in rows):
         own = [row for row in rows if row.student == student]
-        cells = [_cell(results.get((student, exercise)), diagnoses) for exercise in exercises]
-        if late:
+        cells = [_cell(results.get((student, *key)), diagnoses) for key in keys]
+        if is_last and late:
             cells.append(_taken_off(own))
         total, most = sum(row.score for row in own), sum(row.max_score for row in own)
+        sums = [Text(f"{total:g}/{most:g}")] if is_last else []
         name = f"{student}\n{own[0].name}" if own[0].name else student
-        shown.add_row(Text("\n".join(map(printable, name.split("\n")))), *cells, f"{total:g}/{most:g}")
+        shown.add_row(Text("\n".join(map(printable, name.split("\n")))), *cells, *sums)
     return shown
 
 
@@ -107,10 +130,11 @@ def _taken_off(rows: Sequence[Row]) -> Text:
 
 def _diagnoses(rows: Sequence[Row]) -> Table:
     """A line for each exercise in which a mistake was recognised."""
+    names = columns(rows)
     shown = Table.grid(padding=(0, 2))
     for row in rows:
         if row.diagnosis:
-            shown.add_row(Text(printable(row.student)), row.exercise, row.diagnosis)
+            shown.add_row(Text(printable(row.student)), names[row.assignment, row.exercise], row.diagnosis)
     return shown
 
 

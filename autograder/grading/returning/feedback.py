@@ -13,6 +13,7 @@ from autograder.grading.entering.journal import write_whole
 from autograder.grading.rebuilding import nodes
 from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.returning.page_head import mark_waiting
+from autograder.grading.table.entries import SubmissionEntry, read_entries
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -54,6 +55,9 @@ class FeedbackPages:
         for cell in notebook.cells:
             _fill_in(cell, state)
         score = sum(cell.score or 0.0 for cell in state.cells.values())
+        key = submission.student, submission.assignment
+        entries = read_entries(self._directory.gradebook_url, student=key[0], assignment=key[1])
+        entry = entries.get(key, SubmissionEntry())
         names = {
             "student": submission.student,
             "assignment": submission.assignment,
@@ -61,8 +65,9 @@ class FeedbackPages:
             "score": score - state.late_penalty,
             "max_score": sum(cell.max_score or 0.0 for cell in state.cells.values()),
             "late_penalty": state.late_penalty,
+            "why_late": entry.why_late,
         }
-        mark_waiting(notebook, self._directory.gradebook_url, names)
+        mark_waiting(notebook, entry.cells.get(path.stem, {}))
         return self._exporter.page(notebook, names)
 
     @functools.cached_property

@@ -12,12 +12,13 @@ from autograder import exercises
 from autograder.grading.rebuilding.master import exercise_of
 from autograder.grading.rebuilding.rebuild import grade_id, is_check
 from autograder.grading.returning.sanitize import is_the_masters
-from autograder.grading.table.entries import SubmissionEntry, read_entries
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from nbformat import NotebookNode
+
+    from autograder.grading.table.entries import CellEntry
 
 WAITS = "waits_for_a_person"
 """The mark, among nbgrader's own metadata, of a cell that still waits for points by a person."""
@@ -47,19 +48,15 @@ def with_summary(body: str, notebook: NotebookNode, names: Mapping[str, Any]) ->
     return f"{before}{begin}<table>{lines}</table>{end}{after}"
 
 
-def mark_waiting(notebook: NotebookNode, url: str, names: Mapping[str, Any]) -> None:
+def mark_waiting(notebook: NotebookNode, cells: Mapping[str, CellEntry]) -> None:
     """Mark the cells whose points a person still has to give.
 
     Args:
         notebook: A graded one; it is changed.
-        url: What SQLAlchemy opens the gradebook by.
-        names: Whose it is: ``student``, ``assignment`` and ``notebook``.
+        cells: What the gradebook has of it, by grade_id.
     """
-    key = (str(names["student"]), str(names["assignment"]))
-    entry = read_entries(url, student=key[0], assignment=key[1]).get(key, SubmissionEntry())
-    kept = entry.cells.get(str(names["notebook"]), {})
     for cell in notebook.cells:
-        if (name := grade_id(cell)) in kept and kept[name].waits:
+        if (name := grade_id(cell)) in cells and cells[name].waits:
             cell.metadata.nbgrader[WAITS] = True
 
 
@@ -83,7 +80,7 @@ def _lines(notebook: NotebookNode, names: Mapping[str, Any]) -> Iterator[tuple[s
             word += f', <a href="#comment-{escape(grade_id(cell))}">with a comment</a>'
         yield link, f"{score:g} of {most:g}", word
     if names.get("late_penalty"):
-        yield "Handed in late", f"−{float(names['late_penalty']):g}", ""
+        yield "Being late", f"−{float(names['late_penalty']):g}", escape(str(names.get("why_late", "")))
 
 
 def _title(cell: NotebookNode) -> str:

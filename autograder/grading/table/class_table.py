@@ -92,6 +92,6 @@ def read_table(directory: ClassDirectory) -> ClassTable:
     return ClassTable(tuple(rows), Roster([*roster.students.values(), *others]), entries, tuple(stale))
 
 
-def by_exercise(rows: list[Row]) -> dict[str, Row]:
-    """A student's rows by exercise, without what being late costs."""
-    return {row.exercise: row for row in rows if row.exercise != LATE}
+def by_exercise(rows: list[Row]) -> dict[tuple[str, str], Row]:
+    """A student's rows by assignment and exercise, without what being late costs."""
+    return {(row.assignment, row.exercise): row for row in rows if row.exercise != LATE}

@@ -70,6 +70,13 @@ class SubmissionEntry:
         """Points that being late costs; as with nbgrader, nobody has fewer than none."""
         return min(self.penalty, max(0.0, self.raw))
 
+    @property
+    def why_late(self) -> str:
+        """Why points are taken off; empty where none are."""
+        if not self.taken_off:
+            return ""
+        return f"handed in {self.handed_in:%Y-%m-%d %H:%M} UTC, due {self.due:%Y-%m-%d %H:%M} UTC"
+
     def shown(self) -> str:
         """Changes with whatever a page of feedback says about points and comments."""
         return hashlib.sha256(msgspec.json.encode(self, order="deterministic")).hexdigest()

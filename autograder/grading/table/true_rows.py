@@ -81,8 +81,7 @@ def _rows_of(
             row = replace(row, state=_state(cell, kept))
         found.append(row if kept is None else _with_points(row, kept))
     if entry and entry.taken_off:
-        late = f"handed in {entry.handed_in:%Y-%m-%d %H:%M} UTC, due {entry.due:%Y-%m-%d %H:%M} UTC"
-        found.append(replace(blank, exercise=LATE, score=-entry.taken_off, state=LATE, reason=late))
+        found.append(replace(blank, exercise=LATE, score=-entry.taken_off, state=LATE, reason=entry.why_late))
     return found
 
 

@@ -77,6 +77,9 @@ def test_what_the_conversion_honours_is_not_refused(tiny: TinyClass, line: str) 
         ),
         ('c.HTMLExporter.template_name = "lab"', "HTMLExporter.template_name"),
         ("c.WireExecute.memory = 4_000_000_000", "WireExecute.memory"),
+        ("c.Execute.timeout = 300", "Execute.timeout"),
+        ("c.ExecutePreprocessor.timeout = 300", "ExecutePreprocessor.timeout"),
+        ("c.IgnorePattern.pattern = 'x'", "IgnorePattern.pattern"),
     ],
 )
 @pytest.mark.parametrize("way", [TinyClass.grade, nbgrader_autograde, nbgrader_generate_feedback])

@@ -111,13 +111,22 @@ def put_by_hand(submitted: Path, class_: list[Pupil], work: Callable[[Pupil, boo
     write_zip(submitted / "all.zip", {"lab_1_2.ipynb": work(class_[0], True)})
 
 
-def hand_in(folder: Path, class_: list[Pupil], work: Callable[[Pupil, bool], str]) -> list[Path]:
+def hand_in(
+    folder: Path,
+    class_: list[Pupil],
+    work: Callable[[Pupil, bool], str],
+    assignment: str = "lab_1_2",
+    *,
+    strange: bool = True,
+) -> list[Path]:
     """Write what an instructor downloads.
 
     Args:
         folder: Where to.
         class_: Who hands in.
         work: A student's notebook; of an earlier attempt where the flag is set.
+        assignment: What is handed in.
+        strange: Put in what is nobody's, and what is hostile.
 
     Returns:
         The archives.
@@ -130,14 +139,21 @@ def hand_in(folder: Path, class_: list[Pupil], work: Callable[[Pupil, bool], str
     }
     for pupil in class_:
         if pupil.lms:
-            archives[pupil.lms] |= _FORMS[pupil.lms](pupil, work)
+            archives[pupil.lms] |= _FORMS[pupil.lms](pupil, work, assignment)
+    if strange:
+        _put_strange(archives, class_, work)
+    return [write_zip(folder / f"{name}.zip", files) for name, files in archives.items()]
+
+
+def _put_strange(
+    archives: dict[str, dict[str, bytes | str]], class_: list[Pupil], work: Callable[[Pupil, bool], str]
+) -> None:
     archives["moodle"]["Guest User_999_assignsubmission_file_lab_1_2.ipynb"] = work(class_[0], False)
     first, second = class_[:2]
     bomb = f"{first.first} {first.last}_{500 + first.place}_assignsubmission_file_more.zip"
     archives["moodle"][bomb] = zipped({"lab_1_2.ipynb": BOMB})
     archives["canvas"]["../../evil_1_2_lab_1_2.ipynb"] = "out"
     archives["canvas"][f"x_{1000 + second.place}_9999_lab_1_2.ipynb"] = Link("/etc/passwd")
-    return [write_zip(folder / f"{name}.zip", files) for name, files in archives.items()]
 
 
 def roster(class_: list[Pupil]) -> str:
@@ -147,41 +163,43 @@ def roster(class_: list[Pupil]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _moodle(pupil: Pupil, work: Callable[[Pupil, bool], str]) -> dict[str, bytes | str]:
+def _moodle(pupil: Pupil, work: Callable[[Pupil, bool], str], assignment: str) -> dict[str, bytes | str]:
     name = f"{pupil.first} {pupil.last}_{500 + pupil.place}_assignsubmission_file"
     if pupil.place % 12 == 4:
-        return {f"{name}_my work.zip": zipped({"in/lab_1_2 (2).ipynb": work(pupil, False), "in/a.txt": "x"})}
+        return {
+            f"{name}_my work.zip": zipped({f"in/{assignment} (2).ipynb": work(pupil, False), "in/a.txt": "x"})
+        }
     if pupil.place % 12 == 8:
-        return {f"{name}/lab_1_2.ipynb": work(pupil, False)}
-    return {unicodedata.normalize("NFD", f"{name}_lab_1_2.ipynb"): work(pupil, False)}
+        return {f"{name}/{assignment}.ipynb": work(pupil, False)}
+    return {unicodedata.normalize("NFD", f"{name}_{assignment}.ipynb"): work(pupil, False)}
 
 
-def _canvas(pupil: Pupil, work: Callable[[Pupil, bool], str]) -> dict[str, bytes | str]:
+def _canvas(pupil: Pupil, work: Callable[[Pupil, bool], str], assignment: str) -> dict[str, bytes | str]:
     login = "".join(c for c in f"{pupil.last}{pupil.first}".lower() if c.isalnum())
     name = f"{login}_{1000 + pupil.place}_"
-    files: dict[str, bytes | str] = {f"{name}{9000 + pupil.place}_lab_1_2-1.ipynb": work(pupil, False)}
+    files: dict[str, bytes | str] = {f"{name}{9000 + pupil.place}_{assignment}-1.ipynb": work(pupil, False)}
     if pupil.place % 8 == 1:
-        files[f"{name}{8000 + pupil.place}_lab_1_2.ipynb"] = work(pupil, True)
+        files[f"{name}{8000 + pupil.place}_{assignment}.ipynb"] = work(pupil, True)
     return files
 
 
-def _blackboard(pupil: Pupil, work: Callable[[Pupil, bool], str]) -> dict[str, bytes | str]:
+def _blackboard(pupil: Pupil, work: Callable[[Pupil, bool], str], assignment: str) -> dict[str, bytes | str]:
     def name(when: datetime) -> str:
         return f"Lab 1.2_{pupil.id}_attempt_{when:%Y-%m-%d-%H-%M-%S}"
 
     before = pupil.when - timedelta(days=1)
     return {
-        f"{name(pupil.when)}_lab_1_2.ipynb": work(pupil, False),
+        f"{name(pupil.when)}_{assignment}.ipynb": work(pupil, False),
         f"{name(pupil.when)}.txt": "Name: somebody",
-        f"{name(before)}_lab_1_2.ipynb": work(pupil, True),
+        f"{name(before)}_{assignment}.ipynb": work(pupil, True),
     }
 
 
-def _brightspace(pupil: Pupil, work: Callable[[Pupil, bool], str]) -> dict[str, bytes | str]:
+def _brightspace(pupil: Pupil, work: Callable[[Pupil, bool], str], assignment: str) -> dict[str, bytes | str]:
     clock = f"{pupil.when:%I%M %p}".lstrip("0")
     when = f"{pupil.when:%b} {pupil.when.day}, {pupil.when:%Y} {clock}"
     folder = f"{700 + pupil.place}-42 - {pupil.first} {pupil.last} - {when}"
-    return {f"{folder}/lab_1_2 (1).ipynb": work(pupil, False), "index.html": "<html>"}
+    return {f"{folder}/{assignment} (1).ipynb": work(pupil, False), "index.html": "<html>"}
 
 
 _FORMS = {"moodle": _moodle, "canvas": _canvas, "blackboard": _blackboard, "brightspace": _brightspace}

@@ -66,6 +66,37 @@ def test_brightspace_writes_dates_as_the_country_does_in_folders_and_in_files(
     assert found.when == datetime.fromisoformat(time)
 
 
+def test_brightspace_may_have_the_students_own_number_in_front(klass: TinyClass, tmp_path: Path) -> None:
+    with (klass.path / "students.csv").open("a", encoding="utf-8") as students:
+        students.write("n0123456,Mary-Ann,Smith,ma@uni.example,108,\n")
+    report = gather(
+        klass,
+        tmp_path,
+        "12345-67890 - N0123456 - Mary-Ann Smith- 3 October, 2025 205 PM - lab_1_2.ipynb",
+        "12346-67891 - T0123457 - Ada Lovelace - Oct 3, 2025 205 PM/lab_1_2.ipynb",
+        "12347-67892 - Guest - Ben Bär - Oct 3, 2025 205 PM - lab_1_2.ipynb",
+    )
+    assert placed(report).keys() == {"n0123456", "ada"}
+    assert "nobody in the class is called Guest - Ben Bär" in why(report), (
+        "a name that somebody chose is no number"
+    )
+    assert stamp(klass, "n0123456") == "2025-10-03 14:05:00.000000 UTC"
+
+
+def test_what_students_call_their_files_in_google_classroom_says_nothing(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    report = gather(
+        klass,
+        tmp_path,
+        "Classroom/Robotics/Lab 1.2/lab_1_2.ipynb",
+        "Classroom/Robotics/Lab 1.2/lab_1_2 (1).ipynb",
+        "Ada_Lovelace/lab_1_2.ipynb",  # as programs do that fetch the work through Classroom's API
+    )
+    assert placed(report).keys() == {"ada"}
+    assert why(report).count("its name does not say whose it is") == 2
+
+
 def test_a_time_that_nobody_can_read_is_said(klass: TinyClass, tmp_path: Path) -> None:
     name = "12345-67890 - Ada Lovelace - 3 de octubre de 2025 14h05 - lab_1_2.ipynb"
     report = gather(klass, tmp_path, name)

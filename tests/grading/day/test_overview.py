@@ -19,7 +19,10 @@ from autograder.grading.entering.journal import Journal
 from autograder.grading.errors import GradingError
 from autograder.grading.overview import statistics as figures
 from autograder.grading.overview.page import write_report
-from autograder.grading.table.class_table import read_table
+from autograder.grading.rebuilding.fingerprints import Fingerprints
+from autograder.grading.rebuilding.source_points import read_released
+from autograder.grading.reporting.report import Row
+from autograder.grading.table.class_table import ClassTable, read_table
 from autograder.verdict import Criterion, Verdict
 
 if TYPE_CHECKING:
@@ -85,6 +88,45 @@ def test_the_page_needs_nothing_and_links_lead_somewhere(graded: TinyClass) -> N
     assert "Nothing handed in" in text
     assert "6*" in text
     assert page.find(role="img")["aria-label"] == "0 students"  # type: ignore[index]
+
+
+def test_who_improved_after_a_grading_is_shown(graded: TinyClass) -> None:
+    assert "Who improved" not in write_report(graded.path).read_text()
+    graded.submit("eve", 7, 10)
+    graded.submit("jose", "1/0", 4)
+    graded.grade(feedback=True)
+    graded.grade(feedback=True, students=["ada"], again=True)  # the same work once more is no attempt
+    page = BeautifulSoup(write_report(graded.path).read_text(), "html.parser")
+    table = page.find("h2", string="Who improved").find_next("table")  # type: ignore[union-attr]
+    lines = [[cell.get_text(strip=True) for cell in line.find_all("td")] for line in table.find_all("tr")[1:]]  # type: ignore[union-attr]
+    assert lines == [
+        ["Eve O'Neill (eve)", "lab_1_2", "2 times", "3", "17 of 20", "+14"],
+        ["José Núñez (jose)", "lab_1_2", "2 times", "10", "4 of 20", "-6"],
+    ]
+
+
+def test_two_assignments_with_cells_of_one_name_stay_apart(graded: TinyClass) -> None:
+    from own_assignment import write_assignment
+
+    for name in ("one", "two"):
+        write_assignment(graded, name)
+    cells = read_released(ClassDirectory(graded.path), Fingerprints(ClassDirectory(graded.path))).cells
+    assert [cell.exercise for cell in cells["one"]] == [cell.exercise for cell in cells["two"]]
+    points = {"one": 2.0, "two": 1.0}
+    found = [
+        Row("ada", assignment, "small", score, 2, "failed", "assertion_failed", "No.")
+        for assignment, score in points.items()
+    ]
+    table = ClassTable(tuple(found), read_table(ClassDirectory(graded.path)).roster, {})
+    items = figures.items(table, Journal(graded.path / ".autograder" / "journal"))
+    assert [(one.exercise, one.mean, one.handed_in) for one in items] == [
+        ("one.small", 2, 1),
+        ("two.small", 1, 1),
+    ]
+    assert [(one.assignment, one.students) for one in figures.mistakes(table)] == [
+        ("one", ("ada",)),
+        ("two", ("ada",)),
+    ]
 
 
 def test_names_can_be_left_out(graded: TinyClass) -> None:

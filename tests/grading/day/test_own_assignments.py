@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import nbformat
 import pytest
-from nbformat.v4 import new_code_cell, new_notebook
 from nbgrader.api import Gradebook
+from own_assignment import TESTS, graded_cells, hand_in, write_assignment
 
 from autograder.boxes.assertions import verdict_of
 from autograder.boxes.execution import CellRun, Check, Ended
@@ -17,54 +17,9 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from conftest import TinyClass
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
-
-STUB = "def add(a, b):\n    ### BEGIN SOLUTION\n    return a + b\n    ### END SOLUTION"
-TESTS = {
-    "small": ("assert add(1, 2) == 3, 'one and two are three'", 2),
-    "noisy": ("import sys\nprint('a log line', file=sys.stderr)\nassert add(0, 0) == 0", 3),
-    "partial": ("(add(1, 1) == 2) + 0.5", 4),
-    "hidden": ("### BEGIN HIDDEN TESTS\nassert add(-5, 2) == -3\n### END HIDDEN TESTS", 1),
-}
-
-
-def marked(cell: Any, name: str, points: int | None) -> Any:
-    marks = {"grade": points is not None, "solution": points is None, "locked": points is not None}
-    cell.metadata["nbgrader"] = {**marks, "task": False, "schema_version": 3, "grade_id": name}
-    if points is not None:
-        cell.metadata["nbgrader"]["points"] = points
-    return cell
-
-
-def graded_cells() -> list[Any]:
-    """As *Create Assignment* marks them."""
-    tests = [marked(new_code_cell(source), name, points) for name, (source, points) in TESTS.items()]
-    return [marked(new_code_cell(STUB), "add", None), *tests]
-
-
-def write_assignment(tiny: TinyClass) -> None:
-    """An assignment for stock nbgrader beside the lab."""
-    notebook = new_notebook(cells=graded_cells())
-    notebook.metadata["kernelspec"] = {"name": "python3", "display_name": "Python 3", "language": "python"}
-    path = tiny.path / "source" / "own" / "own.ipynb"
-    path.parent.mkdir()
-    nbformat.write(notebook, path)
-    release(ClassDirectory(tiny.path))
-
-
-def hand_in(tiny: TinyClass, student: str, answer: str, assignment: str = "own") -> Path:
-    notebook: Any = nbformat.read(tiny.path / "release" / assignment / f"{assignment}.ipynb", as_version=4)
-    for cell in notebook.cells:
-        if cell.metadata.get("nbgrader", {}).get("grade_id") == "add":
-            cell.source = answer
-    path = tiny.path / "submitted" / student / assignment / f"{assignment}.ipynb"
-    path.parent.mkdir(parents=True)
-    nbformat.write(notebook, path)
-    return path
 
 
 def points(tiny: TinyClass, student: str) -> dict[str, float]:

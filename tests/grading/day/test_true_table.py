@@ -159,6 +159,11 @@ def test_a_policy_of_percent_a_day_with_grace_and_cut_off_is_data(
     tiny.grade(feedback=True)
     assert nbgraders_total(tiny, "jo") == total(tiny, "jo") == 18
     assert "Score: 18.0 / 20.0" in page(tiny, "jo")
+    head = page(tiny, "jo").partition('<div id="toc">')[2].partition("</div>")[0]
+    # Two days of ten percent, and one with the extension: what was taken off, and why.
+    assert "−2" in head
+    assert "handed in 2026-01-11 18:00 UTC, due 2026-01-11 12:00 UTC" in head
+    assert "Being late" not in page(tiny, "ada")
 
 
 def test_points_by_hand_for_late_work_are_taken_off_too(tiny: TinyClass, fake_engine: FakeEngine) -> None:

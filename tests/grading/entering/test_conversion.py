@@ -22,6 +22,7 @@ from autograder.grading.entering import gradebook
 from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.returning.page_head import mark_waiting
 from autograder.grading.returning.sanitize import make_harmless
+from autograder.grading.table.entries import read_entries
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
@@ -85,8 +86,9 @@ def page_as_nbgrader_makes_it(path: Path, file: Path) -> str:
     exporter.register_preprocessor(GetGrades, enabled=True)
     names = {"student": file.parts[-3], "assignment": file.parts[-2], "notebook": file.stem}
     notebook = nbformat.read(file, as_version=4)
-    mark_waiting(notebook, directory.gradebook_url, names)
-    resources = {"nbgrader": {**names, "db_url": directory.gradebook_url}}
+    entry = read_entries(directory.gradebook_url)[names["student"], names["assignment"]]
+    mark_waiting(notebook, entry.cells.get(file.stem, {}))
+    resources = {"nbgrader": {**names, "db_url": directory.gradebook_url, "why_late": entry.why_late}}
     page: str = exporter.from_notebook_node(make_harmless(notebook), resources)[0]
     return page
 

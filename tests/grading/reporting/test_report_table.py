@@ -1,0 +1,52 @@
+"""The printed table shows every student, every result and every total, however many exercises a class has."""
+
+from __future__ import annotations
+
+import io
+
+import pytest
+from rich.console import Console
+
+from autograder.grading.reporting.report import Row, columns
+from autograder.grading.reporting.report_table import tables
+
+STUDENTS = ("ada", "a-student-with-quite-a-long-id", "zoe")
+EXERCISES = {
+    "lab_1_2": ("lab_1_2.talker", "lab_1_2.listener", "why"),
+    "own": ("test_1", "test_2"),
+    "two": ("test_1",),
+}
+ROWS = [
+    Row(student, assignment, exercise, 0.5 + place, 10, "failed", "wrong_text", name="Zoë Zuse")
+    for student in STUDENTS
+    for assignment, exercises in EXERCISES.items()
+    for place, exercise in enumerate(exercises)
+]
+
+
+def printed(width: int, *, diagnoses: bool) -> str:
+    out = io.StringIO()
+    console = Console(file=out, width=width)
+    console.print(*tables(ROWS, console, diagnoses=diagnoses))
+    return out.getvalue()
+
+
+def test_cells_of_one_name_in_two_assignments_are_two_columns() -> None:
+    assert list(columns(ROWS).values()) == [*EXERCISES["lab_1_2"], "own.test_1", "test_2", "two.test_1"]
+
+
+@pytest.mark.parametrize(("width", "parts"), [(50, 6), (60, 3), (80, 2), (200, 1)])
+def test_what_is_too_wide_is_several_tables(width: int, parts: int) -> None:
+    text = printed(width, diagnoses=False)
+    assert "…" not in text
+    assert text.count("zoe") == text.count("student") - text.count("a-student") == parts
+    assert text.count("total") == 1
+    assert text.count("7/60") == len(STUDENTS)
+    for score in ("0.5/10", "1.5/10", "2.5/10"):
+        assert text.count(score) == len(STUDENTS) * {"0.5/10": 3, "1.5/10": 2, "2.5/10": 1}[score]
+
+
+def test_diagnoses_stand_beside_the_points_where_there_is_room() -> None:
+    text = printed(130, diagnoses=True)
+    assert text.count("/10 wrong_text") == len(ROWS)
+    assert text.count("7/60") == len(STUDENTS)
