@@ -8,6 +8,10 @@ window._JUPYTERLAB["ros2-course-panel"] = (() => {
 
   const WIDE = 1000; // pixels of a window that has room for a notebook beside the panel
 
+  // A dialog is never wider than the window: what Validate says of a cell is one long line for each of its own.
+  const DIALOGS = `body .jp-Dialog-content { box-sizing: border-box; max-width: min(1000px, 100vw - 16px); }
+    body .jp-Dialog-content pre { overflow-wrap: anywhere; white-space: pre-wrap; }`;
+
   // JupyterLab paints what is of this class in the colour of its theme.
   const ICON = `<svg xmlns="http://www.w3.org/2000/svg" width="16" viewBox="0 0 24 24"><g class="jp-icon3" fill="#616161">
     <path d="M5 6h2v12H5zM7 11h10v2H7z"/><circle cx="6" cy="4.5" r="3"/><circle cx="6" cy="19.5" r="3"/><circle cx="18" cy="12" r="3"/>
@@ -25,6 +29,12 @@ window._JUPYTERLAB["ros2-course-panel"] = (() => {
     widget.node.append(frame);
     frame.src = `${base}course`;
     return widget;
+  }
+
+  function keepDialogsInSight() {
+    const style = document.createElement("style");
+    style.textContent = DIALOGS;
+    document.head.append(style);
   }
 
   function actions(app, widget) {
@@ -52,6 +62,7 @@ window._JUPYTERLAB["ros2-course-panel"] = (() => {
         optional: [ILayoutRestorer],
         activate(app, restorer) {
           const widget = panel(Widget, LabIcon, PageConfig.getBaseUrl());
+          keepDialogsInSight();
           window.courseInLab = actions(app, widget);
           restorer?.add(widget, widget.id);
           app.shell.add(widget, "left", { rank: 10 });
