@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from random import Random
 
-    from autograder.kit.callers import ActionCaller, Caller
+    from autograder.kit.counterparts import ActionCaller, ActionCounterpart, Caller, Server, Speaker
     from autograder.kit.evidence import Evidence, Part
     from autograder.kit.runners import Runner
 
@@ -78,50 +78,6 @@ class Mistake:
     key: str
     recognise: Callable[[Evidence], Advice | None]
     certain: bool = False
-
-
-class Speaker(Protocol):
-    """A publisher of the judge's."""
-
-    def send(self, **fields: Any) -> None:
-        """Publish one message with these fields."""
-        ...
-
-
-class Server(Protocol):
-    """A service server of the judge's."""
-
-    def release(self) -> None:
-        """Give the answer that was held back."""
-        ...
-
-    def close(self) -> None:
-        """Take the service away."""
-        ...
-
-
-class ActionCounterpart(Protocol):
-    """An action server of the judge's that does only what the scenario tells it to."""
-
-    def await_goal(self, within: float) -> bool:
-        """Wait until a goal arrived and was answered; False where none came in ``within`` seconds."""
-        ...
-
-    def send_feedback(self, **fields: Any) -> None:
-        """Send one feedback message for the current goal."""
-        ...
-
-    def await_cancel(self, within: float) -> bool:
-        """Wait until somebody asked to cancel the current goal; False where nobody did."""
-        ...
-
-    def await_result_request(self, within: float) -> bool:
-        """Wait until somebody asked for the result."""
-        ...
-
-    def finish(self, status: str, **fields: Any) -> None:
-        """End the goal with ``"succeeded"``, ``"canceled"`` or ``"aborted"`` and this result."""
-        ...
 
 
 class Bench(Protocol):

@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, cast
+
 import pytest
 
 from autograder.kit.evidence import Event, Part
+from autograder.kit.giving_up import LATENESS
 from autograder.kit.lateness import (
+    ANSWERS_LATE,
+    ANSWERS_SOON,
     PATIENT,
     PATIENT_WITH_AN_ANSWER,
+    SOON,
+    TRIES,
+    meets_late_action,
     was_patient,
     was_patient_with_an_answer,
 )
+
+if TYPE_CHECKING:
+    from autograder.kit.model import Bench
 
 SEEN = Event(0.4, "interface", "graph", {"nodes": ["/client"]})
 
@@ -61,3 +72,48 @@ def test_patience_with_an_answer_is_counted_from_the_last_request(
     events: list[Event], expected: bool
 ) -> None:
     assert was_patient_with_an_answer(Part("", {}, events), ["goal", "cancel"]) is expected
+
+
+class FakeBench:
+    """A bench on which each run brings the next of some parts."""
+
+    in_a_cell = False
+
+    def __init__(self, *runs: list[Event]) -> None:
+        self._runs = list(runs)
+        self.met: list[tuple[float, float]] = []
+
+    def meet(self, lateness: float, held: float) -> bool:
+        self.met.append((lateness, held))
+        return True
+
+    def again(self) -> None:
+        self._runs.pop(0)
+
+    def seen(self) -> Part:
+        return Part("", {}, self._runs[0])
+
+
+LATE, SOONER, BOTH_SOON = (LATENESS, ANSWERS_LATE), (SOON, ANSWERS_LATE), (SOON, ANSWERS_SOON)
+MISSED_SERVER = [SEEN, ended(0.4 + PATIENT)]
+MISSED_ANSWER = [GOAL, said(1.1 + PATIENT_WITH_AN_ANSWER), ended(2.2)]
+DONE = [GOAL, Event(1.2, "result_request", "/fibonacci"), ended(9.0)]
+
+
+@pytest.mark.parametrize(
+    ("runs", "met"),
+    [
+        ([DONE], [LATE]),
+        ([[SEEN, ended(0.9)]], [LATE]),
+        ([MISSED_SERVER, DONE], [LATE, SOONER]),
+        ([MISSED_ANSWER, DONE], [LATE, BOTH_SOON]),
+        ([MISSED_SERVER, MISSED_ANSWER, DONE], [LATE, SOONER, BOTH_SOON]),
+        ([MISSED_ANSWER] * (TRIES + 1), [LATE] + [BOTH_SOON] * TRIES),
+    ],
+)
+def test_a_patient_client_of_an_action_is_started_again_with_less_to_wait_for(
+    runs: list[list[Event]], met: list[tuple[float, float]]
+) -> None:
+    bench = FakeBench(*runs)
+    meets_late_action(cast("Bench", bench), bench.meet, ["goal"])
+    assert bench.met == met

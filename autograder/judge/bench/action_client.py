@@ -28,7 +28,7 @@ GRAPH_POLL = 0.004
 
 
 class RecordedActionClient:
-    """Implements :class:`autograder.kit.callers.ActionCaller`."""
+    """Implements :class:`autograder.kit.counterparts.ActionCaller`."""
 
     def __init__(
         self,

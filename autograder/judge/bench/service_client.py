@@ -22,7 +22,7 @@ GRAPH_POLL = 0.004
 
 
 class RecordedCaller:
-    """Implements :class:`autograder.kit.callers.Caller`."""
+    """Implements :class:`autograder.kit.counterparts.Caller`."""
 
     def __init__(
         self,

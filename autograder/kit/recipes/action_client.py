@@ -17,11 +17,12 @@ from autograder.kit.goal_reports import ABORTED, ABSENT, FEEDBACKS, LATE, REFUSE
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import hold_back, meets_late_action
 from autograder.kit.meant_errors import OTHER_SLIPS
-from autograder.kit.model import ActionCounterpart, Bench, Look, Mistake
+from autograder.kit.model import Bench, Look, Mistake
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from autograder.kit.counterparts import ActionCounterpart
     from autograder.kit.evidence import Evidence
 
 ORDERS = (11, 30)

@@ -16,7 +16,7 @@ from autograder.kit.model import Advice, Bench, Finding, Look, Mistake
 if TYPE_CHECKING:
     from random import Random
 
-    from autograder.kit.callers import Caller
+    from autograder.kit.counterparts import Caller
     from autograder.kit.evidence import Event, Evidence, Part
 
 CALLS = "calls"

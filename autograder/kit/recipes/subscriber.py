@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from random import Random
 
+    from autograder.kit.counterparts import Speaker
     from autograder.kit.evidence import Event, Evidence, Part
-    from autograder.kit.model import Speaker
 
 SINGLY = 12
 """Texts that are sent each once the one before was said."""

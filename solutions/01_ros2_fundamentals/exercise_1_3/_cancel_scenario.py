@@ -8,6 +8,8 @@ on its topic tells then.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from exercise_1_3._cancel_evidence import (
     FIRST_FEEDBACK,
     HONOURED,
@@ -19,7 +21,10 @@ from exercise_1_3._cancel_evidence import (
 )
 
 from autograder.kit.lateness import hold_back, meets_late_action
-from autograder.kit.model import ActionCounterpart, Bench, Look
+from autograder.kit.model import Bench, Look
+
+if TYPE_CHECKING:
+    from autograder.kit.counterparts import ActionCounterpart
 
 WITHOUT_CANCEL = 19
 """Feedback messages that are sent to a client that does not cancel: all that a goal of order 20 has."""

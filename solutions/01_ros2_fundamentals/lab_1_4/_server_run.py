@@ -23,7 +23,7 @@ from autograder.kit.model import Bench, Look
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from autograder.kit.callers import ActionCaller
+    from autograder.kit.counterparts import ActionCaller
     from autograder.kit.evidence import Part
 
 CANCEL_AFTER = 2

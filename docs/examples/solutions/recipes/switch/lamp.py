@@ -9,7 +9,7 @@ from autograder.kit.model import Bench, Finding
 from autograder.kit.recipes.own_scenario import OwnScenario
 
 if TYPE_CHECKING:
-    from autograder.kit.callers import Caller
+    from autograder.kit.counterparts import Caller
     from autograder.kit.evidence import Part
 
 PHASES = ("before it was switched on", "on", "off again", "on again")
