@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 WIDTH = 600
+SIDE_PANEL = 250
+"""Pixels of the panel on the left in a window of 600, in which the same page is shown."""
 MOST_TABS = 60
 """Stops of the Tab key from a cell to the hint below it."""
 TOO_WIDE = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
@@ -35,11 +37,12 @@ def assert_in_sight(one: Locator) -> None:
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_the_course_page_fits(page: Page, lab: str, scheme: str) -> None:
-    page.set_viewport_size({"width": WIDTH, "height": 900})
+@pytest.mark.parametrize("width", [WIDTH, SIDE_PANEL])
+def test_the_course_page_fits(page: Page, lab: str, scheme: str, width: int) -> None:
+    page.set_viewport_size({"width": width, "height": 900})
     page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
     page.goto(lab.format("course"))
-    look(page, f"narrow-course-{scheme}")
+    look(page, f"course-{width}-{scheme}")
     assert page.evaluate(TOO_WIDE) <= 0
 
 
