@@ -32,6 +32,7 @@ EXERCISES = (
     "lab_1_2.programs",
     "lab_1_3.interface",
     "lab_1_3.programs",
+    "lab_1_4.programs",
     "exercise_1_1.remap",
 )
 
