@@ -15,8 +15,9 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder import course, exercises, masters
+from autograder import course, exercises
 from autograder.judge.serving.process import JudgeDied, JudgeProcess
+from autograder.masters.reference import reference_source
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -107,7 +108,7 @@ def program(exercise_id: str) -> str:
     master = exercises.path(exercise_id).with_name(course.LAB)
     if not master.is_file() or exercise_id not in master.read_text(encoding="utf-8"):
         raise CannotRecord(f"{master} does not check {exercise_id}")
-    solution = masters.reference_source(master, exercise_id)
+    solution = reference_source(master, exercise_id)
     return solution.source + _CALL.format(exercise=exercise_id, subject=solution.subject)
 
 

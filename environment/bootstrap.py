@@ -139,12 +139,14 @@ def set_up(place: Place, environ: Mapping[str, str], with_tests: bool, extras: S
     log_path = place.notes / "setup.log"
     with log_path.open("a", encoding="utf-8") as log:
         system_packages.require("setup", log, say)
-        steps = Setup(place, ros, sourced, log).steps(with_tests, _extras(place, extras))
+        setup = Setup(place, ros, sourced, log)
+        steps = setup.steps(with_tests, _extras(place, extras))
         try:
             done = run_steps(steps, place.notes / "stamps", place.root, say)
         except SetupError:
             _explain_failure(log_path)
             raise
+        setup.compile_modules()
         _provide("sandbox", log, "so a class cannot be graded here; everything else works")
         if with_tests:
             _provide("tests", log, "so what needs it is skipped")

@@ -5,6 +5,7 @@ Only the standard library is used: this runs before anything is installed.
 
 from __future__ import annotations
 
+import contextlib
 import shlex
 import shutil
 import subprocess
@@ -193,6 +194,19 @@ class Setup:
         write_jupyter_files(self.place.prefix, self.place.root)
         install: Command = [self.place.python, "-m", "ipykernel", "install", *kernel_install_options()]
         self._run("registering the kernel", install)
+
+    def compile_modules(self) -> None:
+        """Compile the course's own modules, those that have changed.
+
+        Where a user's Python keeps no bytecode (``PYTHONDONTWRITEBYTECODE``), or the folder is somebody else's, each
+        process would compile what it imports anew. A module that is just being written may be broken: whoever imports
+        it is told.
+        """
+        root = self.place.root
+        labs = [file for name in ("solutions", "exercises") for file in sorted(root.glob(f"{name}/*/*/*.py"))]
+        command: Command = [self.place.python, "-m", "compileall", "-q", "autograder", "environment", *labs]
+        with contextlib.suppress(SetupError):
+            self._run("compiling the course's modules", command)
 
     def _install_project(self) -> None:
         # "compat" puts the folder itself on the path, so that `environment` can be imported too.

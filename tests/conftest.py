@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import os
 import signal
 import sys
 from typing import TYPE_CHECKING
@@ -17,6 +18,11 @@ import autograder.grading  # noqa: F401
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+# Where a user's Python keeps no bytecode, each of the thousand processes that tests start would compile anew what it
+# imports, and each process of tests all tests.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # Started in the background of a shell without job control, a process ignores Ctrl-C, and so does all that it starts
 # (POSIX, "Asynchronous Lists"). Tests send SIGINT to what they start.

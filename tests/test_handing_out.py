@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder import exercises, masters
+from autograder import exercises
 from autograder.handing_out import CannotHandOut, hand_out
+from autograder.masters.layout import lab_name, masters
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -44,10 +45,8 @@ def pairs(text: str) -> set[tuple[str, str]]:
 def solutions() -> dict[str, set[tuple[str, str]]]:
     """By the lab."""
     return {
-        masters.lab_name(master): set().union(
-            *map(pairs, SOLUTION.findall(master.read_text(encoding="utf-8")))
-        )
-        for master in masters.masters(ROOT)
+        lab_name(master): set().union(*map(pairs, SOLUTION.findall(master.read_text(encoding="utf-8"))))
+        for master in masters(ROOT)
     }
 
 

@@ -16,9 +16,10 @@ from autograder.cli.ending import NO, fail
 )
 def build(only_check: bool) -> None:
     """Derive the chapter notebooks from their masters."""
-    from autograder import course, masters
+    from autograder import course
+    from autograder.masters.chapters import build_command
 
-    sys.exit(masters.build_command(course.root(), check=only_check))
+    sys.exit(build_command(course.root(), check=only_check))
 
 
 @click.command()
@@ -33,12 +34,13 @@ def build(only_check: bool) -> None:
 )
 def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) -> None:
     """Run every notebook: masters must earn full marks, chapters none, without an error."""
-    from autograder import course, masters
+    from autograder import course
     from autograder.execution import NothingToExecuteError, execute_command
+    from autograder.masters.errors import MasterError
 
     try:
         sys.exit(execute_command(course.root(), only=notebooks, jobs=jobs, reports=reports))
-    except (NothingToExecuteError, masters.MasterError) as error:
+    except (NothingToExecuteError, MasterError) as error:
         fail(str(error))
 
 
@@ -87,9 +89,10 @@ def new_exercise(exercise: str, recipe: str, chapter: str | None) -> None:
 @click.option("--jobs", type=click.IntRange(min=1), default=4, show_default=True, help="Answers at once.")
 def try_exercise(exercise: str, only: tuple[str, ...], jobs: int) -> None:
     """Record EXERCISE where it is new, judge its right and wrong answers, and show what is not as expected."""
-    from autograder import exercises, masters, recording
+    from autograder import exercises, recording
     from autograder.authoring import trying
     from autograder.authoring.answer_tables import BadTable
+    from autograder.masters.errors import MasterError
 
     try:
         fits = trying.try_exercise(exercise, only=only, jobs=jobs, tell=click.echo)
@@ -97,7 +100,7 @@ def try_exercise(exercise: str, only: tuple[str, ...], jobs: int) -> None:
         BadTable,
         exercises.BrokenExercise,
         exercises.UnknownExercise,
-        masters.MasterError,
+        MasterError,
         recording.CannotRecord,
         trying.NothingToTry,
     ) as error:

@@ -67,7 +67,7 @@ def execute_command(
 
     Raises:
         NothingToExecuteError: A name in ``only`` is unknown, or a chapter was not built.
-        autograder.masters.MasterError: A master cannot be used.
+        autograder.masters.errors.MasterError: A master cannot be used.
     """
     began = time.monotonic()
     console = console or Console(stderr=True)

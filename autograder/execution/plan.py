@@ -67,7 +67,7 @@ def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
 
     Raises:
         NothingToExecuteError: A name is not there, or a chapter is missing.
-        autograder.masters.MasterError: A master cannot be used.
+        autograder.masters.errors.MasterError: A master cannot be used.
     """
     found = masters(root)
     known = [lab_name(master) for master in found]

@@ -66,7 +66,8 @@ def released_text(lab: Path) -> bytes:
     kept = course.released(lab)
     if kept.is_file():
         return kept.read_bytes()
-    from autograder.masters import release_text, source_notebook  # no part of what students are handed
+    from autograder.masters.release import release_text  # no part of what students are handed
+    from autograder.masters.source import source_notebook
 
     return release_text(source_notebook(lab / course.LAB)).encode()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -139,6 +140,22 @@ def test_the_commands_of_the_set_up_see_neither_another_ros_nor_another_python(t
     assert f"VIRTUAL_ENV={tmp_path}/.venv" in lines
     assert f"AMENT_PREFIX_PATH={tmp_path}/.venv" in lines
     assert not [line for line in lines if "humble" in line or line.startswith("PYTHONHOME")]
+
+
+def test_modules_are_compiled_also_for_a_python_that_keeps_no_bytecode(tmp_path: Path) -> None:
+    place = Place(tmp_path, Path(sys.executable))
+    place.python.parent.mkdir(parents=True)
+    place.python.symlink_to(sys.executable)
+    lab = "solutions/a_chapter/a_lab"
+    files = {"autograder/engine.py", "environment/steps.py", f"{lab}/talker.py", f"{lab}/unfinished.py"}
+    for name in files | {f"{lab}/talker.answers/wrong/answer.py"}:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("def (" if "unfinished" in name else "x = 1")
+    log = tmp_path / "log.txt"
+    with log.open("w") as output:
+        Setup(place, Ros("wheels"), {"PYTHONDONTWRITEBYTECODE": "1"}, output).compile_modules()
+    compiled = {path.name.partition(".")[0] for path in tmp_path.rglob("*.pyc")}
+    assert compiled == {"engine", "steps", "talker"}, log.read_text()
 
 
 # What is looked at before anything is done.

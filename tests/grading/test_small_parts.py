@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import errno
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -151,3 +153,9 @@ def test_a_cell_that_a_spreadsheet_would_execute_is_defused(tmp_path: Path, text
 
 def test_no_text_can_forge_a_line_in_the_terminal() -> None:
     assert printable("a\x1b[2Jb\nc\udcff") == "a\\x1b[2Jb\\nc\\udcff"
+
+
+def test_a_class_without_new_work_waits_for_no_import_of_nbgrader() -> None:
+    asked = "import sys, autograder.grading.batch; print(*{'nbgrader', 'jupytext', 'nbconvert'} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == []

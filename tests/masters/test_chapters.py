@@ -38,7 +38,8 @@ def test_every_chapter_is_in_step_with_its_master() -> None:
 def test_another_process_builds_the_same_bytes() -> None:
     # Another hash seed, another folder: nothing of either may be in a chapter.
     code = (
-        "import sys; from pathlib import Path; from autograder.masters import release_text, source_notebook\n"
+        "import sys; from pathlib import Path; from autograder.masters.release import release_text\n"
+        "from autograder.masters.source import source_notebook\n"
         "for master in sys.argv[1:]: sys.stdout.write(release_text(source_notebook(Path(master))))"
     )
     result = subprocess.run(

@@ -10,6 +10,7 @@ from nbgrader.converters import GenerateAssignment
 from nbgrader.coursedir import CourseDirectory
 
 from autograder.boxes.limits import Limits
+from autograder.grading.classes import schema_version
 from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, ClassDirectory
 from autograder.grading.classes.seeds import create_secret
 from autograder.grading.entering.writer import quiet
@@ -209,7 +210,7 @@ def release(directory: ClassDirectory, assignments: Sequence[str] = ()) -> None:
         converter = GenerateAssignment(coursedir=course, config=directory.config)
         converter.force = True
         try:
-            with quiet(directory.state):
+            with quiet(directory.state), schema_version.read_here():
                 converter.start()
         except Exception as error:
             raise GradingError(

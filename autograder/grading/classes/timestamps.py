@@ -5,8 +5,6 @@ from __future__ import annotations
 from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING
 
-from nbgrader.utils import parse_utc
-
 from autograder.grading.classes.class_directory import STATE_NAME
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
@@ -86,11 +84,15 @@ def handed_in_at(folder: Path) -> datetime | None:
         ValueError: What was written down is no time, or one at which nobody can have handed in anything.
     """
     stamp = read_timestamp(folder)
+    if not stamp:
+        return None
+    from nbgrader.utils import parse_utc  # here, since it takes half a second: most classes have no such file
+
     try:
-        at: datetime | None = parse_utc(stamp) if stamp else None
+        at: datetime = parse_utc(stamp)
     except (ValueError, OverflowError) as error:
         raise ValueError(f"{folder / TIMESTAMP} holds no time: {stamp[:60]!r}") from error
-    if at is not None and not _EARLIEST <= at <= datetime.now(tz=UTC).replace(tzinfo=None) + _AHEAD:
+    if not _EARLIEST <= at <= datetime.now(tz=UTC).replace(tzinfo=None) + _AHEAD:
         raise ValueError(
             f"{folder / TIMESTAMP} says {stamp[:60]}, when nobody can have handed in anything for this course: "
             "write the right time into it, or remove it"

@@ -7,6 +7,7 @@ import threading
 from typing import TYPE_CHECKING, Any
 
 from rclpy.context import Context
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
@@ -32,6 +33,22 @@ class JudgeFailed(RuntimeError):
     """A callback of the judge's raised: the subject could not be checked."""
 
 
+class _QuietNode(Node):
+    """A node whose endpoints have the events that were asked for, and no others.
+
+    rclpy gives each endpoint two that only log a warning. The executor takes all events of its node into each of its
+    turns, and a check in simulated time has some hundred turns.
+    """
+
+    def create_publisher(self, *arguments: Any, **options: Any) -> Any:
+        options.setdefault("event_callbacks", PublisherEventCallbacks(use_default_callbacks=False))
+        return super().create_publisher(*arguments, **options)
+
+    def create_subscription(self, *arguments: Any, **options: Any) -> Any:
+        options.setdefault("event_callbacks", SubscriptionEventCallbacks(use_default_callbacks=False))
+        return super().create_subscription(*arguments, **options)
+
+
 class Wire:
     """One participant on one domain. Made fresh for each part: a fresh participant is met at once.
 
@@ -46,7 +63,7 @@ class Wire:
         self.context = Context()
         self.context.init(args=["--ros-args", "--disable-external-lib-logs"], domain_id=domain_id)
         with receivers_wait():
-            self.node = Node(
+            self.node: Node = _QuietNode(
                 f"judge_{secrets.token_hex(4)}",
                 context=self.context,
                 use_global_arguments=False,

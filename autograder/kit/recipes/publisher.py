@@ -30,7 +30,7 @@ SURE = 2
 """Messages that a publisher has sent that surely was there: a single one may come before anybody can hear it."""
 BURST = 0.3
 """Seconds within which a program that has ended may have published all at once, on a busy machine."""
-_NUMBER, _WHOLE = r"-?\d+(?:[.,]\d+|e[+-]?\d+)*", r"-?\d{1,18}"
+_NUMBER, _WHOLE = re2.compile(r"-?\d+(?:[.,]\d+|e[+-]?\d+)*"), re2.compile(r"-?\d{1,18}")
 
 
 @dataclass(frozen=True)
@@ -122,13 +122,13 @@ class Publisher:
 
 def template(text: str) -> str:
     """A text with a ``#`` for each whole number."""
-    return re2.sub(_NUMBER, lambda number: "#" if re2.fullmatch(_WHOLE, number[0]) else number[0], text)
+    return str(_NUMBER.sub(lambda number: "#" if _WHOLE.fullmatch(number[0]) else number[0], text))
 
 
 def counters(texts: Sequence[str]) -> list[int]:
     """The last number of each text, where that is a whole one."""
-    found = [numbers[-1] for text in texts if (numbers := re2.findall(_NUMBER, text))]
-    return [int(number) for number in found if re2.fullmatch(_WHOLE, number)]
+    found = [numbers[-1] for text in texts if (numbers := _NUMBER.findall(text))]
+    return [int(number) for number in found if _WHOLE.fullmatch(number)]
 
 
 class Hears:

@@ -1,11 +1,14 @@
 from __future__ import annotations
 
+import contextlib
 import errno
+import sqlite3
 from pathlib import Path
 
 import nbformat
 import pytest
 from conftest import MASTER, TinyClass, write_master
+from nbgrader import api
 
 from autograder.grading.classes.new_class import new_class
 from autograder.grading.errors import ClassExists, DiskFull, GradingError
@@ -24,6 +27,12 @@ def test_what_is_handed_out_has_no_answer_and_the_source_has(tiny: TinyClass) ->
     assert "return 10\n" not in released.replace("return 10.0", "")
     assert "TODO: return ten" in released
     assert "return 10\\n" in source
+
+
+def test_its_gradebook_has_the_version_that_nbgraders_own_would_have(tiny: TinyClass) -> None:
+    with contextlib.closing(sqlite3.connect(tiny.path / "gradebook.db")) as book:
+        versions = book.execute("SELECT version_num FROM alembic_version").fetchall()
+    assert versions == [(api.get_alembic_version(),)]
 
 
 def test_only_notebooks_with_a_check_become_assignments(course: Path, tmp_path: Path) -> None:

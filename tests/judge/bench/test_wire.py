@@ -48,6 +48,13 @@ def test_an_error_of_a_callback_is_the_judges_failure() -> None:
         assert isinstance(wire.failure, ValueError)
 
 
+def test_its_turns_wait_for_no_event_that_nobody_asked_for() -> None:
+    with domain.lease() as domain_id, Wire(domain_id) as wire:
+        wire.node.create_publisher(String, "spoken", 10)
+        wire.node.create_subscription(String, "heard", lambda _: None, 10)
+        assert list(wire.node.waitables) == []
+
+
 MESSAGES = 5
 
 
