@@ -98,11 +98,16 @@ class Launched:
         """Whether all is known of the launch: each program's ends are on the graph, or one too many is."""
         if self.elsewhere or not (self.publishers and self.subscriptions):
             return True
+        return self.moved_by_rules and self.talkers < NODES and self.all_are_there
+
+    @property
+    def all_are_there(self) -> bool:
+        """Whether each program that was started has an end of a topic on the graph, or one has that does not tell."""
         known = {process for _, _, process in self._ends}
         started = processes(self._part)
         parents = {process.parent for process in started}
         programs = {_lower(process.pid) for process in started if process.pid not in parents}
-        return self.moved_by_rules and self.talkers < NODES and (programs <= known or 0 in known)
+        return programs <= known or 0 in known
 
     @property
     def _ends(self) -> set[tuple[str, str, int]]:

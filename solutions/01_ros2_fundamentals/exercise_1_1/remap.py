@@ -62,7 +62,7 @@ def by_the_launch(seen: Launched, _: Launched) -> Finding:
     return Finding(seen.moved_by_rules, expected, some if count else "no program on it was given a rule")
 
 
-@remap.mistake("only_one_remapped", certain=True)
+@remap.mistake("only_one_remapped", certain=lambda seen: seen.all_are_there)
 def only_one_remapped(seen: Launched, _: Launched) -> Advice | None:
     """One end was moved, the other stayed behind."""
     talks, listens = seen.topic in seen.publishers, seen.topic in seen.subscriptions
@@ -77,7 +77,7 @@ def only_one_remapped(seen: Launched, _: Launched) -> Advice | None:
     )
 
 
-@remap.mistake("not_remapped", certain=True)
+@remap.mistake("not_remapped", certain=lambda seen: seen.all_are_there)
 def not_remapped(seen: Launched, _: Launched) -> Advice | None:
     """Both run, both under another name than asked for."""
     there = seen.publishers | seen.subscriptions

@@ -1,0 +1,55 @@
+"""How sure the remapping exercise is of what a launch file left behind: no ROS is started."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder import exercises
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.launch_report import Process, process_line
+
+STRING = "std_msgs/msg/String"
+NEW, OLD = "/robot/status_updates", "/chatter"
+REFERENCE = Reference("exercise_1_1.remap", {"publisher": {NEW: STRING}})
+RULES = ("--ros-args", "-r", f"chatter:={NEW}")
+
+
+def _evidence(*started: int, talkers: dict[int, str], listener: int) -> Evidence:
+    """Three or fewer programs of a launch: which process publishes under which name, and which one listens."""
+    launched = [
+        Event(0.0, "output", "stdout", {"text": process_line(Process(pid, 1, ("program", *RULES)))})
+        for pid in started
+    ]
+    ends = [["publisher", name, process] for process, name in talkers.items()]
+    ends.append(["subscription", NEW, listener])
+    interface = Event(
+        1.0,
+        "interface",
+        "",
+        {
+            "publisher": dict.fromkeys(talkers.values(), STRING),
+            "subscription": {NEW: STRING},
+            "ends": ends,
+        },
+    )
+    return Evidence([Part("launching", {"text": "status 1"}, [*launched, interface])], REFERENCE)
+
+
+@pytest.mark.parametrize(
+    ("started", "certain"),
+    [
+        pytest.param((11, 12), True, id="all programs are on the graph"),
+        pytest.param((11, 12, 13), False, id="a third one may be the talker that was moved"),
+    ],
+)
+def test_who_was_not_moved_is_certain_once_all_programs_are_there(
+    started: tuple[int, ...], certain: bool
+) -> None:
+    seen = _evidence(*started, talkers={11: OLD}, listener=12)
+    told = [
+        mistake
+        for mistake in exercises.get("exercise_1_1.remap").mistakes
+        if mistake.key == "only_one_remapped" and mistake.recognise(seen)
+    ]
+    assert told
+    assert told[0].certain is certain
