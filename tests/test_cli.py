@@ -164,4 +164,4 @@ def test_a_judge_that_cannot_judge_ends_with_2_and_accuses_nobody(
     )
     assert done.returncode == 2
     assert "COULD NOT BE CHECKED" in done.stdout
-    assert "autograder record lab_1_2.talker" in " ".join(done.stdout.split())
+    assert "./course record lab_1_2.talker" in " ".join(done.stdout.split())

@@ -1,4 +1,4 @@
-"""An appeal file: one check of one student, as JSON that a person reads and ``autograder replay`` judges again."""
+"""An appeal file: one check of one student, as JSON that a person reads and ``./course replay`` judges again."""
 
 from __future__ import annotations
 
@@ -101,12 +101,12 @@ def read(path: Path) -> Opened:
     except (ValueError, RecursionError) as error:
         raise BadAppeal(
             f"{path} is no appeal file, or only a part of one ({error}). Write it again: "
-            "autograder appeal CLASS STUDENT EXERCISE"
+            "./course appeal CLASS STUDENT EXERCISE"
         ) from error
     if not isinstance(content, dict) or content.pop("format", None) != FORMAT:
         raise BadAppeal(
             f"{path} is JSON, but not an appeal file of this version of the course ({FORMAT}). "
-            "`autograder appeal CLASS STUDENT EXERCISE` writes one."
+            "`./course appeal CLASS STUDENT EXERCISE` writes one."
         )
     content.pop("about", None)
     mark = content.pop("mark", None)

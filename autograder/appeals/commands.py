@@ -1,4 +1,4 @@
-"""``autograder replay``, and the option of ``autograder check`` that writes the messages of a check."""
+"""``./course replay``, and the option of ``./course check`` that writes the messages of a check."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ def replay(kept: Kept) -> Replay:
     if kept.cut:
         raise CannotReplay(
             f"the judge saw more in this check than is kept, and no verdict follows from a part of it: {kept.cut}. "
-            "`autograder grade --student STUDENT --again` makes the check anew, with the same inputs."
+            "`./course grade --student STUDENT --again` makes the check anew, with the same inputs."
         )
     try:
         exercise = exercises.get(then.exercise)

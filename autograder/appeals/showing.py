@@ -26,7 +26,7 @@ def lines(opened: Opened, again: Replay) -> Iterator[str]:
     else:
         yield "the same verdict, points and diagnosis"
     if opened.edited:
-        yield "note: this file was changed after it was written; `autograder appeal` writes the true one again"
+        yield "note: this file was changed after it was written; `./course appeal` writes the true one again"
     yield from (f"note: {note}" for note in again.notes)
 
 

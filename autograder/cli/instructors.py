@@ -249,7 +249,7 @@ def appeal(folder: Path, student: str, exercise: str, output: Path | None) -> No
     """Write down all about the check of EXERCISE by STUDENT in the class FOLDER.
 
     What the student wrote, what was expected, what the judge saw, what it decided, and with which course. The file is
-    JSON to read, and `autograder replay` judges it again.
+    JSON to read, and `./course replay` judges it again.
     """
     from autograder import grading
 
@@ -269,7 +269,7 @@ def appeal(folder: Path, student: str, exercise: str, output: Path | None) -> No
     help="Also where no sandbox is possible. Submissions then run with all your rights.",
 )
 def worker(scheduler: str | None, jobs: int | None, name: str | None, unsafe_no_sandbox: bool) -> None:
-    """Work for `autograder grade --scheduler`, until Ctrl-C or until the scheduler ends."""
+    """Work for `./course grade --scheduler`, until Ctrl-C or until the scheduler ends."""
     from autograder.grading.cluster import connection
 
     with grading_errors():

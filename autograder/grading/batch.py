@@ -185,7 +185,7 @@ class _Batch:
             if is_not_believed(submission.folder):
                 self._notices.append(
                     f"{submission.student}/{submission.assignment}: its timestamp.txt was not written by "
-                    "`autograder collect`, as the others of this class were, and is not believed"
+                    "`./course collect`, as the others of this class were, and is not believed"
                 )
             chosen = not assignments or submission.assignment in assignments
             chosen = chosen and (not students or submission.student in students)
@@ -220,8 +220,8 @@ class _Batch:
         )
         if older:
             self._notices.append(
-                f"{older} submissions had been graded with another version of the course; `autograder compare` says "
-                "who has other points since, and `autograder grade --dry-run` says it before a run"
+                f"{older} submissions had been graded with another version of the course; `./course compare` says "
+                "who has other points since, and `./course grade --dry-run` says it before a run"
             )
         for work in self._works:
             if again:

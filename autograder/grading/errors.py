@@ -21,7 +21,7 @@ class NotAClass(GradingError):
     def __init__(self, path: Path, missing: str) -> None:
         super().__init__(
             f"{path} is not a class directory: {missing}. "
-            f"Name the folder that `autograder new-class` made, or make one: autograder new-class {path}"
+            f"Name the folder that `./course new-class` made, or make one: ./course new-class {path}"
         )
 
 

@@ -1,7 +1,7 @@
 """``nbgrader autograde`` and ``nbgrader generate_feedback`` on a class of ours, as commands or as formgrader's buttons.
 
 nbgrader's own conversion has no judge, and copies whatever lies in a submission: a pipe would hold it up for ever,
-and a file with a hole of a terabyte would fill the disk. So its steps are replaced by those of ``autograder grade``.
+and a file with a hole of a terabyte would fill the disk. So its steps are replaced by those of ``./course grade``.
 The class's configuration names exporters of ours. nbgrader makes an exporter before it converts the first notebook, and
 ours hands the converter that made it to :func:`take_over`.
 """
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 CANNOT = 2
-"""The exit code of ``autograder grade`` where something could not be checked or had to be refused."""
+"""The exit code of ``./course grade`` where something could not be checked or had to be refused."""
 
 
 class _Ours(BaseConverter):
@@ -43,7 +43,7 @@ class _Ours(BaseConverter):
 
         Raises:
             NbGraderException: Not all of them could be; the log has a line for each.
-            SystemExit: The same, where nbgrader runs as a command: with the exit code of ``autograder grade``, which
+            SystemExit: The same, where nbgrader runs as a command: with the exit code of ``./course grade``, which
                 nbgrader would make a 1.
         """
         try:
@@ -79,7 +79,7 @@ class _Ours(BaseConverter):
 
 
 class _OurAutograde(_Ours, Autograde):
-    """``nbgrader autograde``: what ``autograder grade`` does, without pages of feedback."""
+    """``nbgrader autograde``: what ``./course grade`` does, without pages of feedback."""
 
     def _convert(self, directory: ClassDirectory, chosen: dict[str, list[str]]) -> list[str]:
         problems: list[str] = []
@@ -100,7 +100,7 @@ class _OurAutograde(_Ours, Autograde):
 
 
 class _OurFeedback(_Ours, GenerateFeedback):
-    """``nbgrader generate_feedback``: the pages that ``autograder grade`` makes, for what is graded already."""
+    """``nbgrader generate_feedback``: the pages that ``./course grade`` makes, for what is graded already."""
 
     def _convert(self, directory: ClassDirectory, chosen: dict[str, list[str]]) -> list[str]:
         check_configuration(directory)

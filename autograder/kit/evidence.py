@@ -237,9 +237,7 @@ class Reference:
         for part in self.parts:
             if part.name == name:
                 return part
-        raise KeyError(
-            f"the reference output of {self.exercise} has no part {name!r}: run `autograder record`"
-        )
+        raise KeyError(f"the reference output of {self.exercise} has no part {name!r}: run `./course record`")
 
     def only(self, role: str) -> tuple[str, str]:
         """The name and type of the one endpoint of a role.

@@ -50,7 +50,7 @@ def test_another_layout_is_no_edit(file: Path) -> None:
 def test_a_cut_file_says_what_to_do(file: Path) -> None:
     file.write_bytes(file.read_bytes()[:-200])
     with pytest.raises(
-        appeal_file.BadAppeal, match=r"only a part of one.*autograder appeal CLASS STUDENT EXERCISE"
+        appeal_file.BadAppeal, match=r"only a part of one.*./course appeal CLASS STUDENT EXERCISE"
     ):
         appeal_file.read(file)
 

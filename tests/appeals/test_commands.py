@@ -1,4 +1,4 @@
-"""``autograder replay`` and ``autograder check --mcap``: what they print, and with which exit code they end."""
+"""``./course replay`` and ``./course check --mcap``: what they print, and with which exit code they end."""
 
 from __future__ import annotations
 

@@ -316,7 +316,7 @@ def test_a_folder_that_is_no_class_says_what_to_do(tmp_path: Path) -> None:
     from autograder.grading.batch import grade
 
     for path in (tmp_path / "missing", tmp_path):
-        with pytest.raises(NotAClass, match="autograder new-class"):
+        with pytest.raises(NotAClass, match=r"\./course new-class"):
             grade(path)
 
 

@@ -1,4 +1,4 @@
-"""Plain nbgrader and ``autograder grade`` are two doors to one engine: the same points behind both."""
+"""Plain nbgrader and ``./course grade`` are two doors to one engine: the same points behind both."""
 
 from __future__ import annotations
 

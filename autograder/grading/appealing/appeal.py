@@ -41,7 +41,7 @@ def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = N
     try:
         task = exercises.get(exercise_id).task
     except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
-        raise GradingError(f"{error} `autograder check` lists the exercises.") from error
+        raise GradingError(f"{error} `./course check` lists the exercises.") from error
     with clear_disk_errors(directory.path):
         content = dump(_appeal(directory, student, exercise_id, task))
         to = (to or directory.path / FOLDER / f"{student}-{exercise_id}.json").absolute()
@@ -53,7 +53,7 @@ def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = N
 
 
 def _appeal(directory: ClassDirectory, student: str, exercise_id: str, task: str) -> Appeal:
-    again = f"autograder grade {directory.path} --student {student}"
+    again = f"./course grade {directory.path} --student {student}"
     found = EvidenceFolder(directory).find(student, exercise_id)
     if found is None:
         raise GradingError(_why_nothing(directory, student, exercise_id, again))
@@ -113,5 +113,5 @@ def _why_nothing(directory: ClassDirectory, student: str, exercise_id: str, agai
                 )
     return (
         f"No check of {exercise_id} by {student!r} was graded here: the class has the assignments "
-        f"{', '.join(directory.assignments()) or 'none'}. `autograder attempts {directory.path} STUDENT` says what was."
+        f"{', '.join(directory.assignments()) or 'none'}. `./course attempts {directory.path} STUDENT` says what was."
     )

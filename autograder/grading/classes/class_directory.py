@@ -111,7 +111,7 @@ class ClassDirectory:
         if not any("WireExecute" in step for step in steps):
             raise ClassIncomplete(
                 f"{self.path / CONFIG_NAME} does not grade with the judge. Make a class with "
-                f"`autograder new-class` and copy the lines on Autograde from its {CONFIG_NAME}."
+                f"`./course new-class` and copy the lines on Autograde from its {CONFIG_NAME}."
             )
         url = str(config.CourseDirectory.get("db_url") or "sqlite:")
         if not url.startswith("sqlite:") and not config.CourseDirectory.get("course_id"):

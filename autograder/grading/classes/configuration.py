@@ -101,13 +101,13 @@ def check_configuration(directory: ClassDirectory) -> None:
         instead = f" {_INSTEAD[option]}." if option in _INSTEAD else ""
         raise ClassIncomplete(
             f"{path} sets c.{option}, which has no effect on how submissions are graded here: delete that line, or "
-            f"write it as in a class that `autograder new-class` makes.{instead}"
+            f"write it as in a class that `./course new-class` makes.{instead}"
         )
     for section in ("Autograde", "GenerateFeedback"):
         if not directory.config[section].get("exporter_class"):
             raise ClassIncomplete(
                 f"{path} does not set c.{section}.exporter_class, so that nbgrader's own commands would go past the "
-                "judge: copy the line from a class that `autograder new-class` makes."
+                "judge: copy the line from a class that `./course new-class` makes."
             )
 
 

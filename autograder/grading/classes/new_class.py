@@ -42,7 +42,7 @@ c.CourseDirectory.root = os.path.dirname(os.path.abspath(__file__))
 # What students get: each solution replaced by its TODO comment, given cells locked.
 c.GenerateAssignment.preprocessors = release_preprocessors()
 
-# How a submission is graded: the judge watches each check cell on the wire, whether it is `autograder grade`,
+# How a submission is graded: the judge watches each check cell on the wire, whether it is `./course grade`,
 # `nbgrader autograde` or formgrader's button that starts it. Without the first line, the second one refuses to grade.
 c.Autograde.exporter_class = "autograder.grading.exporter.SubmissionExporter"
 c.Autograde.autograde_preprocessors = ["autograder.grading.preprocessors.WireExecute"]
@@ -51,7 +51,7 @@ c.Autograde.autograde_preprocessors = ["autograder.grading.preprocessors.WireExe
 c.GenerateFeedback.exporter_class = "autograder.grading.pages.FeedbackExporter"
 c.HTMLExporter.filters = {{"markdown2html": "autograder.grading.pages.markdown_to_html"}}
 
-# `nbgrader export` and `autograder grade` each write a table: give nbgrader's a name of its own. In neither does
+# `nbgrader export` and `./course grade` each write a table: give nbgrader's a name of its own. In neither does
 # a spreadsheet find a formula.
 c.ExportApp.plugin_class = "autograder.grading.export.SafeCsvExport"
 c.ExportPlugin.to = "nbgrader_export.csv"
@@ -87,7 +87,7 @@ class NewClass:
                 f"{self.path} is a class with these assignments: {', '.join(self.assignments)}.",
                 f"Hand out       {self.path / 'release'}",
                 f"Put work into  {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
-                f"Then           autograder grade {self.path}",
+                f"Then           ./course grade {self.path}",
             )
         )
 
@@ -136,7 +136,7 @@ def _check_place(path: Path, course_root: Path) -> None:
         raise ClassExists(f"{path} is there already and is not a folder. Choose another name.")
     if path.is_dir() and any(path.iterdir()):
         raise ClassExists(
-            f"{path} is not empty. Choose another name, or grade the class there: autograder grade {path}"
+            f"{path} is not empty. Choose another name, or grade the class there: ./course grade {path}"
         )
     repository = course_root.resolve()
     place = path.resolve()

@@ -27,7 +27,7 @@ _AHEAD = timedelta(days=1)
 def read_timestamp(folder: Path) -> str:
     """What is written in the file; empty where there is none, or where it is no ordinary file.
 
-    Where work is collected with ``autograder collect``, the file counts only as far as that has written it: a student
+    Where work is collected with ``./course collect``, the file counts only as far as that has written it: a student
     can put one into what is handed in.
     """
     records = CollectedRecords(folder.parent.parent.parent / STATE_NAME)
@@ -59,7 +59,7 @@ def companions(folder: Path) -> dict[str, bytes]:
 
 
 def is_not_believed(folder: Path) -> bool:
-    """Whether a submission brings a file of its own along in a class whose times come from ``autograder collect``."""
+    """Whether a submission brings a file of its own along in a class whose times come from ``./course collect``."""
     records = CollectedRecords(folder.parent.parent.parent / STATE_NAME)
     return (
         records.is_used

@@ -57,4 +57,4 @@ def show(report: CollectReport, console: Console | None = None) -> None:
         + (f", {len(report.others)} for other assignments" if report.others else "")
     )
     if report.placed:
-        line(f"Then         autograder grade {report.path}")
+        line(f"Then         ./course grade {report.path}")

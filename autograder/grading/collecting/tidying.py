@@ -51,7 +51,7 @@ def tidy(directory: ClassDirectory, *, moves: bool = True) -> Tidied:
                 Refused(
                     entry,
                     f"whose it is cannot be seen: put it into {submitted}/<student>/<assignment>/, or hand it to "
-                    "`autograder collect`",
+                    "`./course collect`",
                 )
             )
     alike = defaultdict(list)

@@ -71,7 +71,7 @@ def export(
     if table.stale:
         notices.append(
             f"{len(table.stale)} submissions came or changed after the last grading, or could not be graded: "
-            f"{', '.join(table.stale[:5])}{' …' if len(table.stale) > 5 else ''}. Grade first: autograder grade {path}"
+            f"{', '.join(table.stale[:5])}{' …' if len(table.stale) > 5 else ''}. Grade first: ./course grade {path}"
         )
     return Exported(tuple(written), tuple(notices))
 

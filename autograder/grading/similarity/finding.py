@@ -73,7 +73,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
             if _concerns(directory, one, assignment)
         ),
         *(
-            f"not compared {path}: it belongs at {place}, where `autograder grade` puts it"
+            f"not compared {path}: it belongs at {place}, where `./course grade` puts it"
             for path, place in beside.waiting
             if assignment in ("", place.parent.name)
         ),

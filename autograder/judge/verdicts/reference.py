@@ -42,10 +42,10 @@ def load(exercise_id: str) -> Reference:
     try:
         return parse(json.loads(file.read_text(encoding="utf-8")))
     except FileNotFoundError as error:
-        raise NoReference(f"{file} does not exist: run `autograder record {exercise_id}`") from error
+        raise NoReference(f"{file} does not exist: run `./course record {exercise_id}`") from error
     except (ValueError, KeyError, TypeError) as error:
         raise NoReference(
-            f"{file} is not a reference output ({error}): run `autograder record {exercise_id}`"
+            f"{file} is not a reference output ({error}): run `./course record {exercise_id}`"
         ) from error
 
 
@@ -59,7 +59,7 @@ def digest(exercise_id: str) -> str:
     try:
         return hashlib.sha256(file.read_bytes()).hexdigest()
     except OSError as error:
-        raise NoReference(f"{file} cannot be read: run `autograder record {exercise_id}`") from error
+        raise NoReference(f"{file} cannot be read: run `./course record {exercise_id}`") from error
 
 
 def parse(data: Mapping[str, Any]) -> Reference:

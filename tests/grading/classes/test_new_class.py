@@ -38,7 +38,7 @@ def test_its_gradebook_has_the_version_that_nbgraders_own_would_have(tiny: TinyC
 def test_only_notebooks_with_a_check_become_assignments(course: Path, tmp_path: Path) -> None:
     made = new_class(tmp_path / "class", course)
     assert made.assignments == ("lab_1_2",)
-    assert "autograder grade" in made.summary()
+    assert "./course grade" in made.summary()
     nbformat.validate(nbformat.read(made.path / "release" / "lab_1_2" / "lab_1_2.ipynb", as_version=4))
 
 

@@ -78,7 +78,7 @@ def test_loose_files_and_zips_are_named(tiny: TinyClass, fake_engine: FakeEngine
     (tiny.path / "submitted" / "moodle.zip").write_bytes(zipped({"a": "b"}))
     report = tiny.grade()
     assert {one.path.name for one in report.refused} == {"lab_1_2.ipynb", "work.zip", "moodle.zip"}
-    assert "autograder collect" in refused(report)
+    assert "./course collect" in refused(report)
 
 
 def test_a_name_as_a_mac_writes_it_is_the_same_name(tiny: TinyClass, fake_engine: FakeEngine) -> None:

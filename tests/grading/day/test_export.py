@@ -177,7 +177,7 @@ def test_a_workbook_holds_the_same_and_no_formula(graded: TinyClass) -> None:
 def test_what_waits_and_what_is_not_graded_is_said(graded: TinyClass) -> None:
     graded.submit("ada", 2, 2)
     done = export(graded.path, "csv")
-    assert any("ada/lab_1_2" in notice and "autograder grade" in notice for notice in done.notices)
+    assert any("ada/lab_1_2" in notice and "./course grade" in notice for notice in done.notices)
     graded.grade()
     done = export(graded.path, "csv")
     assert any("1 results wait for a person" in notice for notice in done.notices)

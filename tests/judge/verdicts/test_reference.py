@@ -65,5 +65,5 @@ def test_a_missing_or_broken_one_says_what_to_do(
     monkeypatch.setattr(reference, "reference_path", lambda _: file)
     if content is not None:
         file.write_text(content, encoding="utf-8")
-    with pytest.raises(reference.NoReference, match=r"autograder record lab_1_2\.talker"):
+    with pytest.raises(reference.NoReference, match=r"./course record lab_1_2\.talker"):
         reference.load("lab_1_2.talker")
