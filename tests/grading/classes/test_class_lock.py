@@ -147,7 +147,7 @@ def test_the_command_of_nbgrader_does_nothing_while_a_batch_runs(
     fake_engine.before = lambda _: ended.append(command(tiny, "nbgrader", "autograde", "lab_1_2", "--force"))
     tiny.grade()
     (autograde,) = ended
-    assert autograde.returncode == 1
+    assert autograde.returncode == 2
     assert re.search(f"Another grading run is at work in .*{WHO}", autograde.stderr)
     assert "Traceback" not in autograde.stderr
     assert tiny.scores("ada") == {TALKER: 3, LISTENER: 4}
