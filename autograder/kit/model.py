@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from autograder.kit.runners import Runner
 
 
-class Look(StrEnum):
+class Pace(StrEnum):
     """How time passes while the judge looks at a subject."""
 
     FAST = "fast"
@@ -71,8 +71,7 @@ class Mistake:
         key: A stable name, listed in ``docs/mistakes.md``.
         recognise: Gives the advice where the evidence shows this mistake, else None.
         certain: The evidence proves the failure whatever the machine's load was, so a second look in real
-            time
-            would only cost the student time.
+            time would only cost the student time.
     """
 
     key: str
@@ -83,7 +82,7 @@ class Mistake:
 class Bench(Protocol):
     """What a scenario can do. Every wait ends at an event or at its limit, and says which."""
 
-    look: Look
+    pace: Pace
     before: Evidence | None
     """In a second look: what the first one brought."""
     random: Random

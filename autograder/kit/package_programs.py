@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.model import Advice, Look
+from autograder.kit.model import Advice, Pace
 from autograder.kit.workspace_report import report_of
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from autograder.kit.model import Bench
     from autograder.kit.workspace_report import PackageReport, WorkspaceReport
 
-BEGINNING = {Look.FAST: 4.0, Look.REAL_TIME: 15.0}
+BEGINNING = {Pace.FAST: 4.0, Pace.REAL_TIME: 15.0}
 """Seconds of wall time in which a program or its build must have said its first word."""
 BUILDING = 180.0
 """Seconds of wall time that a build may take; a Python package needs one."""
@@ -50,7 +50,7 @@ class Entry:
 def await_build(bench: Bench) -> None:
     """Wait until the workspace of a subject that was just started is built, where it is one."""
     # A command may say nothing while it waits for the judge: nobody must wait for its words then.
-    bench.await_sign_of_life(BEGINNING[bench.look])
+    bench.await_sign_of_life(BEGINNING[bench.pace])
     if bench.wait_until(lambda evidence: report_of(evidence.main, "found") is not None, 0.0):
         bench.wait_until(lambda evidence: report_of(evidence.main) is not None, BUILDING)
 

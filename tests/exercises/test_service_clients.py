@@ -12,7 +12,7 @@ from exercise_1_2 import three_ints as exercise_1_2_three_ints
 from lab_1_3 import client as lab_1_3_client
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.model import Look
+from autograder.kit.model import Pace
 from autograder.kit.numbers_said import mentions
 from autograder.kit.recipes import service_client
 from autograder.kit.recipes.service_client import Run, answering, has_spoken, is_done
@@ -165,7 +165,7 @@ def test_one_wrong_report_beside_a_right_one_is_wrong(after: list[Event], right:
 
 @pytest.mark.parametrize("lateness", [0.0, 1.5])
 def test_the_service_comes_when_its_client_is_known_so_that_no_call_gets_lost(lateness: float) -> None:
-    bench = MagicMock(look=Look.FAST)
+    bench = MagicMock(pace=Pace.FAST)
     bench.reference.only.return_value = ("/add_two_ints", "my_robot_interfaces/srv/AddTwoInts")
     service_client.meets_service(bench, Run(BIASED, (1, 2)), 1, 1.0, lateness=lateness)
     order = [
@@ -187,7 +187,7 @@ def test_who_waited_long_and_missed_an_answer_is_started_again_and_not_for_ever(
     monkeypatch.setattr(service_client, "meets_service", meets_service)
     monkeypatch.setattr(service_client, "reports", lambda _: len(held) > missed)
     monkeypatch.setattr(service_client, "was_patient_with_an_answer", lambda *_: True)
-    bench = MagicMock(look=Look.FAST, random=Random(0))
+    bench = MagicMock(pace=Pace.FAST, random=Random(0))
     assert service_client.called(bench, Run(BIASED, (1, 2), held=1), 1)
     assert held == [1, *[0] * (runs - 1)]
     assert bench.again.call_count == runs - 1

@@ -22,7 +22,7 @@ from autograder.judge.bench.topics import LogReader, RecordedPublisher, Recorded
 from autograder.judge.bench.wire import JudgeFailed, Wire
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part, Reference
 from autograder.kit.giving_up import patience, spared, willing
-from autograder.kit.model import Look
+from autograder.kit.model import Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from autograder.judge.subjects.subject import Subject
 
-SETTLED = {Look.FAST: 1.0, Look.REAL_TIME: 3.0}
+SETTLED = {Pace.FAST: 1.0, Pace.REAL_TIME: 3.0}
 """Seconds without a change of the graph after which a command is taken to have made all that it makes."""
 GRAPH_LOOK = 0.02
 """Seconds between two queries of the graph that are written down."""
@@ -53,11 +53,11 @@ class TestBench:
         subject: Subject,
         domain_id: int,
         reference: Reference,
-        look: Look,
+        pace: Pace,
         random: Random,
         before: Evidence | None = None,
     ) -> None:
-        self.look = look
+        self.pace = pace
         self.random = random
         self.reference = reference
         self.in_a_cell = subject.shares_participant
@@ -93,7 +93,7 @@ class TestBench:
             self._log = LogReader(self._wire, self._recorder)
             self._subject.renew()
             self._recorder.take_in = partial(self._wire.take_in, lambda: self._recorder.count)
-        self._on_graph = Presence(self._wire.node, self._recorder, self._subject, SETTLED[self.look])
+        self._on_graph = Presence(self._wire.node, self._recorder, self._subject, SETTLED[self.pace])
 
     def again(self) -> None:
         """Begin the last part anew: what was seen of it does not count."""
@@ -229,7 +229,7 @@ class TestBench:
         self._presence.note_interface()
 
     def _evidence(self) -> Evidence:
-        return Evidence([self._recorder.part()], self.reference, self.look is Look.REAL_TIME)
+        return Evidence([self._recorder.part()], self.reference, self.pace is Pace.REAL_TIME)
 
     # --- counterparts --------------------------------------------------------------------------------------
 
@@ -325,7 +325,7 @@ class TestBench:
     ) -> bool:
         """Let ``seconds`` of the subject's time pass, or fewer where ``until`` holds or nothing happens."""
         over = until or (lambda: False)
-        if self.look is Look.FAST and self._follow_clock():
+        if self.pace is Pace.FAST and self._follow_clock():
             assert self._clock is not None
             turns = self._clock.run(seconds, lambda: over() or self._subject.ended)
             self.doubtful = self.doubtful or self._clock.doubtful
@@ -379,7 +379,7 @@ class TestBench:
 
     def settle(self) -> None:
         """Ask each node of the subject's twice; a node that did not answer once is not asked again in this part."""
-        limit = clock.ANSWER_LIMIT if self.look is Look.FAST else clock.PATIENT_ANSWER
+        limit = clock.ANSWER_LIMIT if self.pace is Pace.FAST else clock.PATIENT_ANSWER
         for node in self._presence.counterparts():
             if node.full in self._deaf or self._subject.ended:
                 continue

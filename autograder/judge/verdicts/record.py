@@ -9,7 +9,7 @@ from autograder.judge.bench.bench import TestBench
 from autograder.judge.verdicts.trial import look
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.launch_report import processes
-from autograder.kit.model import Exercise, Look
+from autograder.kit.model import Exercise, Pace
 from autograder.kit.runners import RunsPrograms
 from autograder.kit.workspace_report import report_of
 
@@ -39,7 +39,7 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
         raise NotRecordable(f"{exercise.id}: the reference solution showed no {' or '.join(exercise.roles)}")
     bare = Reference(exercise.id, interface)
     for _ in range(LOOKS):
-        seen = look(exercise, subject, bare, Look.FAST, seed=SEED, domain_id=domain_id)
+        seen = look(exercise, subject, bare, Pace.FAST, seed=SEED, domain_id=domain_id)
         if not seen.doubtful:
             return Reference(exercise.id, interface, seen.evidence.parts)
     raise NotRecordable(
@@ -54,7 +54,7 @@ def as_evidence(recorded: Reference) -> Evidence:
 
 
 def _interface(exercise: Exercise, subject: Subject, domain_id: int) -> dict[str, dict[str, str]]:
-    bench = TestBench(subject, domain_id, Reference(exercise.id, {}), Look.FAST, Random(SEED))
+    bench = TestBench(subject, domain_id, Reference(exercise.id, {}), Pace.FAST, Random(SEED))
     try:
         found: dict[str, dict[str, str]] = {}
         for program in _programs(exercise):

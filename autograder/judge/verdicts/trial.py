@@ -12,7 +12,7 @@ from autograder.judge.verdicts import timeline
 from autograder.judge.verdicts.deciding import Undecided, limited, undecidable
 from autograder.kit.crashes import traceback_of
 from autograder.kit.evidence import Evidence, Reference
-from autograder.kit.model import Advice, Exercise, Look, Mistake
+from autograder.kit.model import Advice, Exercise, Mistake, Pace
 from autograder.verdict import Criterion, Diagnosis, State, Verdict
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def check(
     """
     began = time.monotonic()
     subject.begin(domain_id)
-    seen = look(exercise, subject, reference, Look.FAST, seed=seed, domain_id=domain_id)
+    seen = look(exercise, subject, reference, Pace.FAST, seed=seed, domain_id=domain_id)
     evidence = seen.evidence
     try:
         with limited():
@@ -93,7 +93,7 @@ def _look_again(
         exercise,
         subject,
         reference,
-        Look.REAL_TIME,
+        Pace.REAL_TIME,
         seed=seed,
         domain_id=domain_id,
         before=seen.evidence,
@@ -105,14 +105,14 @@ def look(
     exercise: Exercise,
     subject: Subject,
     reference: Reference,
-    how: Look,
+    pace: Pace,
     *,
     seed: str,
     domain_id: int,
     before: Evidence | None = None,
 ) -> Seen:
     """Run the scenario once and hand over what was seen; ``before`` is what the first look brought."""
-    bench = TestBench(subject, domain_id, reference, how, Random(seed), before)
+    bench = TestBench(subject, domain_id, reference, pace, Random(seed), before)
     try:
         exercise.scenario(bench)
     finally:
@@ -120,7 +120,7 @@ def look(
     # A scenario may draw the order of its parts; what is said of them must not depend on it.
     places = {part.name: place for place, part in enumerate(reference.parts)}
     parts = sorted(bench.parts, key=lambda part: places.get(part.name, len(places)))
-    return Seen(Evidence(parts, reference, how is Look.REAL_TIME), bench.doubtful)
+    return Seen(Evidence(parts, reference, pace is Pace.REAL_TIME), bench.doubtful)
 
 
 def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:

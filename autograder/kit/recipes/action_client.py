@@ -17,7 +17,7 @@ from autograder.kit.goal_reports import ABORTED, ABSENT, FEEDBACKS, LATE, REFUSE
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import hold_back, meets_late_action
 from autograder.kit.meant_errors import OTHER_SLIPS
-from autograder.kit.model import Bench, Look, Mistake
+from autograder.kit.model import Bench, Mistake, Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 
 ORDERS = (11, 30)
 """The smallest and the largest order that the client is given."""
-PACE = {Look.FAST: 0.5, Look.REAL_TIME: 1.5}
+SHOWN_WITHIN = {Pace.FAST: 0.5, Pace.REAL_TIME: 1.5}
 """Seconds at most in which a client shows a feedback message before the next one is sent."""
 HASTE = 0.2
 """What that is multiplied with once it was used up: who shows nothing is not waited for again and again."""
 GOAL_LIMIT = 15.0
 """Seconds in which a goal must arrive once the client is on the graph."""
-END_LIMIT = {Look.FAST: 3.0, Look.REAL_TIME: 8.0}
+END_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 8.0}
 """Seconds in which a client must ask for the result, must have reported it, must have ended after a refusal."""
 AFTERMATH = 1.0
 """Seconds in which a client that has reported may end, or say more."""
@@ -119,15 +119,15 @@ def works_on_a_goal(bench: Bench, server: ActionCounterpart, status: str, feedba
     result = sorted(bench.random.sample(range(10**9, 2 * 10**9), 4))
     done = server.await_goal(GOAL_LIMIT)
     if done:
-        pace = PACE[bench.look]
+        wait = SHOWN_WITHIN[bench.pace]
         for count in range(3, 3 + feedbacks):
             server.send_feedback(partial_sequence=numbers[:count])
-            if not bench.wait_until(lambda seen: not unshown_feedback(seen.main), pace):
-                pace = PACE[bench.look] * HASTE
-        server.await_result_request(END_LIMIT[bench.look])
+            if not bench.wait_until(lambda seen: not unshown_feedback(seen.main), wait):
+                wait = SHOWN_WITHIN[bench.pace] * HASTE
+        server.await_result_request(END_LIMIT[bench.pace])
         hold_back(bench, "result_request")
         server.finish(status, sequence=result)
-        done = bench.wait_until(is_done, END_LIMIT[bench.look])
+        done = bench.wait_until(is_done, END_LIMIT[bench.pace])
     if done or bench.await_end(0.0):
         bench.await_end(AFTERMATH)
         return True
@@ -147,7 +147,7 @@ def refused(bench: Bench) -> None:
     """One run with a server that refuses every goal."""
     inputs = begin(bench, REFUSED)
     if meets_server(bench, inputs, accept=False).await_goal(GOAL_LIMIT):
-        bench.await_end(END_LIMIT[bench.look])
+        bench.await_end(END_LIMIT[bench.pace])
     bench.stop()
 
 

@@ -14,7 +14,7 @@ from autograder.kit import common_mistakes as common
 from autograder.kit import workspace_mistakes as workspace
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.launch_report import Process, processes, remappings
-from autograder.kit.model import Advice, Bench, Look, Mistake
+from autograder.kit.model import Advice, Bench, Mistake, Pace
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
@@ -23,13 +23,13 @@ NODES = 2
 """Programs that are to be started, each with a rule."""
 MESSAGES = 2
 """Messages of the publisher's that are waited for."""
-SAYING = {Look.FAST: 2.0, Look.REAL_TIME: 5.0}
+SAYING = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 """Seconds of wall time in which the other program must have said the judge's text."""
-BEGINNING = {Look.FAST: 20.0, Look.REAL_TIME: 40.0}
+BEGINNING = {Pace.FAST: 20.0, Pace.REAL_TIME: 40.0}
 """Seconds of wall time in which a launch must have started its first process, or ended."""
 BUILDING = 180.0
 """Seconds of wall time that building the student's workspace may take."""
-PAUSE = {Look.FAST: 3.0, Look.REAL_TIME: 10.0}
+PAUSE = {Pace.FAST: 3.0, Pace.REAL_TIME: 10.0}
 """Seconds of wall time that a launch may let pass between its first process and its second."""
 LATE = 3.0
 """Seconds of wall time, of six periods, in which the publisher must have spoken."""
@@ -179,18 +179,18 @@ class LaunchFile:
         bench.listen(topic, type_name)
         speaker = bench.speak(topic, type_name)
         bench.start()
-        bench.wait_until(_has_begun, BUILDING + BEGINNING[bench.look], quiet=BUILDING)
-        bench.wait_until(lambda evidence: len(_of_nodes(evidence.main)) >= NODES, PAUSE[bench.look])
+        bench.wait_until(_has_begun, BUILDING + BEGINNING[bench.pace], quiet=BUILDING)
+        bench.wait_until(lambda evidence: len(_of_nodes(evidence.main)) >= NODES, PAUSE[bench.pace])
         talks = bench.await_endpoint("publisher", topic)
         listens = bench.await_endpoint("subscription", topic)
         if listens:
             speaker.send(data=text)
-            bench.wait_until(lambda evidence: _says_its_text(evidence.main), SAYING[bench.look])
+            bench.wait_until(lambda evidence: _says_its_text(evidence.main), SAYING[bench.pace])
         if talks:
             bench.wait_until(lambda evidence: len(self.seen(evidence).heard) >= MESSAGES, LATE)
         if talks and listens:
             # The launch's processes are reported beside the wire, and a third one may still be on its way to the graph.
-            bench.watch_graph(lambda evidence: self.seen(evidence).is_settled, PAUSE[bench.look])
+            bench.watch_graph(lambda evidence: self.seen(evidence).is_settled, PAUSE[bench.pace])
         bench.stop()
 
     def _launch_error(self, evidence: Evidence) -> Advice | None:

@@ -11,13 +11,13 @@ from autograder.kit import common_mistakes as common
 from autograder.kit import package_programs as programs
 from autograder.kit import workspace_mistakes as workspace
 from autograder.kit.draft import OWN, OWN_LATE
-from autograder.kit.model import Bench, Finding, Look, Mistake
+from autograder.kit.model import Bench, Finding, Mistake, Pace
 from autograder.kit.runners import RunsProgram
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
 
-SAYING = {Look.FAST: 2.0, Look.REAL_TIME: 5.0}
+SAYING = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 """Seconds of wall time, after its node appeared, in which it must have said its line."""
 LATE = 0.3
 """Seconds without any event after which the log of a program that said its line has arrived."""
@@ -101,14 +101,14 @@ class Program:
 
     def scenario(self, bench: Bench) -> None:
         """Build and run it; look for its node and its line."""
-        for run in range(1, TRIES + 1 if bench.look is Look.REAL_TIME else 2):
+        for run in range(1, TRIES + 1 if bench.pace is Pace.REAL_TIME else 2):
             bench.part(self._part if run == 1 else f"{self._part}, run {run}")
             bench.start()
             programs.await_build(bench)
             there = bench.await_node()
-            bench.wait_until(lambda evidence: Ran(evidence).says_it, SAYING[bench.look])
+            bench.wait_until(lambda evidence: Ran(evidence).says_it, SAYING[bench.pace])
             if there:
-                bench.run_time(SAYING[bench.look], quiet=LATE)
+                bench.run_time(SAYING[bench.pace], quiet=LATE)
             bench.note_its_log()
             bench.stop()
             if there:

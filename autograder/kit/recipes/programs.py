@@ -10,14 +10,14 @@ from autograder.kit import common_mistakes as common
 from autograder.kit import package_programs as package
 from autograder.kit import workspace_mistakes as workspace
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part
-from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Look, Mistake
+from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake, Pace
 from autograder.kit.runners import RunsPrograms
 from autograder.kit.workspace_report import report_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-ENDING = {Look.FAST: 3.0, Look.REAL_TIME: 10.0}
+ENDING = {Pace.FAST: 3.0, Pace.REAL_TIME: 10.0}
 """Seconds of wall time in which a program must have ended after Ctrl-C; it takes a tenth of one."""
 
 _ROLES = ("publisher", "subscription", "client", "service", "action_client", "action_server")
@@ -116,7 +116,7 @@ class _OneProgram:
         self.built = report is None or report.built
 
     def stop(self) -> None:
-        self._bench.press_ctrl_c(ENDING[self._bench.look])
+        self._bench.press_ctrl_c(ENDING[self._bench.pace])
         self._bench.stop()
 
 

@@ -11,7 +11,7 @@ import re2
 from autograder.kit import common_mistakes as common
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.hangs import HANGS
-from autograder.kit.model import Advice, Bench, Finding, Look, Mistake
+from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.rate import ROW, Rate, confirmed, rate_of, simulated
 
 if TYPE_CHECKING:
@@ -142,7 +142,7 @@ class Hears:
     roles = ("publisher",)
 
     def __init__(self, messages: int = 8, long_run: int = 20) -> None:
-        self._messages = {Look.FAST: messages, Look.REAL_TIME: ROW}
+        self._messages = {Pace.FAST: messages, Pace.REAL_TIME: ROW}
         self._long_run = long_run
         self._text: Judge[Publisher] | None = None
         self._course: Judge[Publisher] | None = None
@@ -171,14 +171,14 @@ class Hears:
         bench.stop()
 
     def _hear(self, bench: Bench, topic: str, period: float) -> None:
-        enough = self._enough(bench.before) if bench.look is Look.REAL_TIME else self._messages[bench.look]
+        enough = self._enough(bench.before) if bench.pace is Pace.REAL_TIME else self._messages[bench.pace]
         _listen(bench, topic, enough, period)
-        if bench.look is Look.FAST and bench.wait_until(self._is_simulated, 0.0):
+        if bench.pace is Pace.FAST and bench.wait_until(self._is_simulated, 0.0):
             enough = self._long_run
             _listen(bench, topic, enough, period)
             if not bench.in_a_cell:
                 bench.await_end(PERSISTS)
-        elif bench.look is Look.REAL_TIME and bench.heard(topic) >= enough:
+        elif bench.pace is Pace.REAL_TIME and bench.heard(topic) >= enough:
             # A row of messages in which none was late has twice the time to come.
             bench.wait_until(
                 lambda evidence: self.keeps_rate(evidence).passed, enough * period, quiet=SILENCE * period
@@ -189,16 +189,16 @@ class Hears:
     def _is_simulated(self, evidence: Evidence) -> bool:
         """Whether its messages follow the simulated clock: the first ones may have come before it."""
         topic, _ = evidence.reference.only("publisher")
-        return len(simulated(evidence.main.of("message", topic))) >= self._messages[Look.FAST] // 2
+        return len(simulated(evidence.main.of("message", topic))) >= self._messages[Pace.FAST] // 2
 
     def _enough(self, before: Evidence | None) -> int:
         """Messages to listen to in real time: as many as in simulated time where it stopped or stumbled in that."""
         if before is None or not self._is_simulated(before):
-            return self._messages[Look.REAL_TIME]
+            return self._messages[Pace.REAL_TIME]
         topic, _ = before.reference.only("publisher")
         rate = rate_of(before.main.of("message", topic), reference_period(before.reference))
         stumbled = (rate is not None and not rate.even) or not self._holds(self._course, before)
-        return self._long_run if stumbled else self._messages[Look.REAL_TIME]
+        return self._long_run if stumbled else self._messages[Pace.REAL_TIME]
 
     def _holds(self, judge: Judge[Publisher] | None, evidence: Evidence) -> bool:
         return judge is None or judge(self.seen(evidence), self.expected(evidence)).passed
@@ -211,7 +211,7 @@ class Hears:
         if evidence.real_time:
             enough = self._enough(evidence.before)
         else:
-            enough = self._long_run if self._is_simulated(evidence) else self._messages[Look.FAST]
+            enough = self._long_run if self._is_simulated(evidence) else self._messages[Pace.FAST]
         heard = evidence.main.of("message", topic)
         # Who has ended by itself will never have published enough: the task has no end.
         return Publisher(

@@ -21,7 +21,7 @@ from autograder.kit.giving_up import GIVE_UP_LIMIT, LATENESS
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import SOON, TRIES, was_patient, was_patient_with_an_answer
 from autograder.kit.meant_errors import OTHER_SLIPS
-from autograder.kit.model import Advice, Bench, Finding, Look, Mistake
+from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.service_calls import (
     ABSENT,
     HANGS_AFTER,
@@ -44,13 +44,13 @@ CALL_LIMIT = 15.0
 """Seconds of wall time in which a client that has its service must be done."""
 AFTERMATH = 1.0
 """Seconds in which a client that has reported its sum may end, or go on and show what else it does."""
-SAYS_MORE = {Look.FAST: 2.0, Look.REAL_TIME: 5.0}
+SAYS_MORE = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 """Seconds in which a client that has said something of its last answer, and not the sum, may still say it."""
 HELD = 0.5
 """Seconds for which an answer is held back: longer than anybody takes who does not really wait for it."""
 PATIENCE_IN_LATE = (4.0, 5.0)
 """Between which the patience is drawn that a function is told to have where the service comes late."""
-PATIENCE_ELSEWHERE = {Look.FAST: (1.2, 2.0), Look.REAL_TIME: (2.0, 2.6)}
+PATIENCE_ELSEWHERE = {Pace.FAST: (1.2, 2.0), Pace.REAL_TIME: (2.0, 2.6)}
 """The same for all other runs, with a service and without."""
 
 
@@ -99,7 +99,7 @@ def _patience(bench: Bench, bounds: tuple[float, float]) -> float:
 
 def called(bench: Bench, run: Run, calls: int) -> bool:
     """One run with a service; whether the subject came to an end of its work."""
-    patience = _patience(bench, PATIENCE_IN_LATE if run.name == LATE else PATIENCE_ELSEWHERE[bench.look])
+    patience = _patience(bench, PATIENCE_IN_LATE if run.name == LATE else PATIENCE_ELSEWHERE[bench.pace])
     bench.part(run.name, numbers=list(run.numbers), patience_sec=patience)
     if run.name != LATE:
         done = meets_service(bench, run, calls, patience)
@@ -129,7 +129,7 @@ def meets_service(bench: Bench, run: Run, calls: int, patience: float, *, latene
         lateness: Seconds after its client at which the service comes.
     """
     service, type_name = bench.reference.only("client")
-    bench.start(*run.numbers, patience_sec=patience, spare=lateness if bench.look is Look.FAST else 0.0)
+    bench.start(*run.numbers, patience_sec=patience, spare=lateness if bench.pace is Pace.FAST else 0.0)
     # The service comes when the judge has met its client. Where it was there before, the client may know it first, and
     # a call of one that ends at once would reach the judge or not, as it happens.
     # Where it has another client it waits for something else. One that has none may be slow to show it.
@@ -146,7 +146,7 @@ def meets_service(bench: Bench, run: Run, calls: int, patience: float, *, latene
         bench.let_wait(HELD, call=run.held)
         server.release()
     done = bench.wait_until(lambda seen: has_spoken(seen, calls), CALL_LIMIT, quiet=HANGS_AFTER)
-    if done and bench.wait_until(lambda seen: is_done(seen, calls), SAYS_MORE[bench.look]):
+    if done and bench.wait_until(lambda seen: is_done(seen, calls), SAYS_MORE[bench.pace]):
         bench.await_end(AFTERMATH)
     else:
         bench.note_where_it_hangs()
@@ -171,9 +171,9 @@ def unserved(bench: Bench, numbers: Sequence[int]) -> None:
     """One run without the service."""
     if bench.keep(ABSENT):
         return
-    patience = _patience(bench, PATIENCE_ELSEWHERE[bench.look])
+    patience = _patience(bench, PATIENCE_ELSEWHERE[bench.pace])
     bench.part(ABSENT, numbers=list(numbers), patience_sec=patience)
-    bench.start(*numbers, patience_sec=patience, spare=GIVE_UP_LIMIT if bench.look is Look.FAST else 0.0)
+    bench.start(*numbers, patience_sec=patience, spare=GIVE_UP_LIMIT if bench.pace is Pace.FAST else 0.0)
     service, _ = bench.reference.only("client")
     bench.await_endpoint("client", service)
     giving_up.await_it(bench)

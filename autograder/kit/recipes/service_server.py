@@ -11,7 +11,7 @@ from autograder.kit import common_mistakes as common
 from autograder.kit.crashes import traceback_of
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.hangs import HANGS, stacks
-from autograder.kit.model import Advice, Bench, Finding, Look, Mistake
+from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
 
 if TYPE_CHECKING:
     from random import Random
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 CALLS = "calls"
 AT_ONCE = 6
 """Calls that are in flight together. A service's queue keeps 10, and 12 lose some even at a right server (measured)."""
-SERVER_LIMIT = {Look.FAST: 3.0, Look.REAL_TIME: 6.0}
+SERVER_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
 """Seconds in which a server that is on the graph must be matched with the judge's client."""
-QUIET = {Look.FAST: 2.0, Look.REAL_TIME: 6.0}
+QUIET = {Pace.FAST: 2.0, Pace.REAL_TIME: 6.0}
 """Seconds without any event after which an answer is taken not to come."""
 SURE = 2
 """Answers after which a server that has ended by itself had surely served."""
@@ -121,7 +121,7 @@ class Asks:
         bench.start()
         there = bench.await_endpoint("service", service)
         bench.release()
-        if there and caller.await_server(SERVER_LIMIT[bench.look]) and not self._all_answered(bench, caller):
+        if there and caller.await_server(SERVER_LIMIT[bench.pace]) and not self._all_answered(bench, caller):
             bench.note_whether_it_spins()
             bench.note_where_it_hangs()
         bench.stop()
@@ -130,11 +130,11 @@ class Asks:
         """Make all calls; False at the first that is not answered."""
         for request in self._singly(bench.random):
             caller.ask(request)
-            if not caller.await_answers(QUIET[bench.look]):
+            if not caller.await_answers(QUIET[bench.pace]):
                 return False
         for number in (AT_ONCE, 1):
             caller.ask(*(self._ordinary(bench.random) for _ in range(number)))
-            if not caller.await_answers(QUIET[bench.look]):
+            if not caller.await_answers(QUIET[bench.pace]):
                 return False
         return True
 

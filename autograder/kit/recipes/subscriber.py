@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from autograder.kit import common_mistakes as common
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.hangs import HANGS
-from autograder.kit.model import Advice, Bench, Finding, Look, Mistake
+from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.texts_said import has_much_of, invented, is_said, repeated
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ TRIES = 3
 """Times that this is tried: a busy machine may be slower than the pace for a moment."""
 SIMULATED = 20
 """Texts in all that are sent where the listener follows simulated time, all at the pace."""
-PATIENCE = {Look.FAST: 1.0, Look.REAL_TIME: 3.0}
+PATIENCE = {Pace.FAST: 1.0, Pace.REAL_TIME: 3.0}
 """Seconds of wall time in which a text that was sent must have been said."""
 BEFORE = 1.0
 """Seconds (simulated where it follows the clock) before the first text, in which nothing can have been heard."""
@@ -149,8 +149,8 @@ def _is_answered(bench: Bench, speaker: Speaker, text: str) -> bool:
 def _are_said(bench: Bench, texts: Sequence[str]) -> bool:
     said = partial(_says, texts)
     if bench.wait_until(_is_simulated, 0.0):
-        bench.run_time(PATIENCE[bench.look], until=lambda: bench.wait_until(said, 0.0))
-    return bench.wait_until(said, PATIENCE[bench.look])
+        bench.run_time(PATIENCE[bench.pace], until=lambda: bench.wait_until(said, 0.0))
+    return bench.wait_until(said, PATIENCE[bench.pace])
 
 
 def _is_simulated(evidence: Evidence) -> bool:

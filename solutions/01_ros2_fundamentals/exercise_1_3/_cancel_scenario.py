@@ -21,7 +21,7 @@ from exercise_1_3._cancel_evidence import (
 )
 
 from autograder.kit.lateness import hold_back, meets_late_action
-from autograder.kit.model import Bench, Look
+from autograder.kit.model import Bench, Pace
 
 if TYPE_CHECKING:
     from autograder.kit.counterparts import ActionCounterpart
@@ -37,11 +37,11 @@ AT_A_TIME = 3
 LAB_TIME = 1.5
 """Seconds of its own time in which a client must not ask once more; the lab's server takes less to end the goal."""
 
-PACE = {Look.FAST: 0.03, Look.REAL_TIME: 0.5}
+FEEDBACK_GAP = {Pace.FAST: 0.03, Pace.REAL_TIME: 0.5}
 """Seconds between two feedback messages outside the window in which a cancel is expected."""
-LATE_PACE = 0.2
+LATE_GAP = 0.2
 """The same in real time after the request."""
-WINDOW_PACE = {Look.FAST: 0.2, Look.REAL_TIME: 0.5}
+WINDOW_WAIT = {Pace.FAST: 0.2, Pace.REAL_TIME: 0.5}
 """Seconds that the server waits for a cancel after each feedback message inside that window."""
 PROMPT = 0.05
 """Seconds of wall time in which a client that counts feedback has asked to cancel, once its executor has turned."""
@@ -51,7 +51,7 @@ PAUSE = 0.15
 """Seconds after the first feedback message that the second run of a fast look is longer than the first."""
 GOAL_LIMIT = 15.0
 """Seconds in which a goal must arrive once the client is on the graph."""
-END_LIMIT = {Look.FAST: 2.0, Look.REAL_TIME: 5.0}
+END_LIMIT = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 """Seconds in which the client must ask for the result."""
 HANGS_AFTER = 5.0
 """Seconds after the result in which the client must have said how the goal ended; where it has not, it hangs."""
@@ -65,7 +65,7 @@ def scenario(bench: Bench) -> None:
     if honoured is None:
         return
     refused = run(bench, REFUSED, accept=not honoured.asked_for_result, pause=PAUSE)
-    if bench.look is Look.FAST and refused is not None and not caused_by_feedback(honoured, refused):
+    if bench.pace is Pace.FAST and refused is not None and not caused_by_feedback(honoured, refused):
         bench.doubt()
 
 
@@ -129,7 +129,7 @@ def serve_goal(bench: Bench, name: str, *, accept: bool, pause: float, late: flo
     cancelled = send_feedback_until_cancelled(bench, server, sequence, pause)
     if cancelled:
         send_late_feedback(bench, server, sequence, watch=name == HONOURED)
-    server.await_result_request(END_LIMIT[bench.look] if cancelled else PACE[Look.REAL_TIME])
+    server.await_result_request(END_LIMIT[bench.pace] if cancelled else FEEDBACK_GAP[Pace.REAL_TIME])
     if cancelled:
         hold_back(bench, "result_request")
     else:
@@ -148,7 +148,7 @@ def send_feedback_until_cancelled(
     for count in range(WITHOUT_CANCEL + 1):
         if count:
             send_next(server, sequence)
-        if bench.look is Look.FAST:
+        if bench.pace is Pace.FAST:
             bench.settle()
             if count == 1:
                 bench.run_time(pause)
@@ -160,8 +160,8 @@ def send_feedback_until_cancelled(
                 continue
         inside = FIRST_FEEDBACK <= count <= LAST_FEEDBACK
         # The first feedback follows the acceptance at once, at any pace.
-        pace = WINDOW_PACE[bench.look] if inside else PACE[bench.look if count else Look.FAST]
-        if server.await_cancel(pace):
+        wait = WINDOW_WAIT[bench.pace] if inside else FEEDBACK_GAP[bench.pace if count else Pace.FAST]
+        if server.await_cancel(wait):
             # Nothing that was sent just now has caused it: perhaps a clock did, and it needs the real pace.
             bench.doubt()
             return True
@@ -178,15 +178,15 @@ def send_late_feedback(bench: Bench, server: ActionCounterpart, sequence: list[i
         bench.wait_until(lambda seen: seen.main.first("cancel_answered") is not None, GOAL_LIMIT)
         bench.pass_time(LAB_TIME, "action_client", action)
     else:
-        bench.run_time(PACE[bench.look])
+        bench.run_time(FEEDBACK_GAP[bench.pace])
     for left in reversed(range(enough - len(sequence))):
         send_next(server, sequence)
-        if bench.look is Look.REAL_TIME:
-            bench.run_time(LATE_PACE)
+        if bench.pace is Pace.REAL_TIME:
+            bench.run_time(LATE_GAP)
         # Also in real time: a client on a busy machine may not have come to what is due.
         if left % AT_A_TIME == 0:
             bench.settle()
-    bench.run_time(PACE[Look.FAST])
+    bench.run_time(FEEDBACK_GAP[Pace.FAST])
 
 
 def send_next(server: ActionCounterpart, sequence: list[int]) -> None:

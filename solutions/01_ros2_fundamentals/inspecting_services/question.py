@@ -16,7 +16,7 @@ from autograder.kit.draft import OWN, OWN_LATE, Draft
 from autograder.kit.giving_up import LATENESS
 from autograder.kit.lateness import SOON, was_patient
 from autograder.kit.meant_errors import OTHER_SLIPS, meant
-from autograder.kit.model import Advice, Bench, Finding, Look
+from autograder.kit.model import Advice, Bench, Finding, Pace
 from autograder.kit.recipes.own_scenario import OwnLadder
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ FIND_LIMIT = 12.0
 """Seconds of wall time in which a subject must have found a service that is there."""
 PATIENCE_IN_LATE = (4.0, 5.0)
 """Between which the patience is drawn that a function is told to have where the service comes late."""
-PATIENCE_ELSEWHERE = {Look.FAST: (0.3, 0.6), Look.REAL_TIME: (1.5, 2.5)}
+PATIENCE_ELSEWHERE = {Pace.FAST: (0.3, 0.6), Pace.REAL_TIME: (1.5, 2.5)}
 """The same where it is there from the start, and where there is none: nobody can tell the two apart by it."""
 
 _WORDS = ("kitchen", "garage", "tower", "harbour", "meadow", "attic", "bridge", "cellar", "garden", "forge")
@@ -73,7 +73,7 @@ def unserved(bench: Bench, type_name: str, others: Mapping[str, str]) -> None:
     """The run in which there is no service of the type."""
     if bench.keep(ABSENT):
         return
-    patience = round(bench.random.uniform(*PATIENCE_ELSEWHERE[bench.look]), 2)
+    patience = round(bench.random.uniform(*PATIENCE_ELSEWHERE[bench.pace]), 2)
     bench.part(ABSENT, type=type_name, right="", others=dict(others), patience_sec=patience)
     _serve(bench, others)
     bench.start(type_name, patience_sec=patience)
@@ -85,7 +85,7 @@ def served(bench: Bench, name: str, service: Mapping[str, str], others: Mapping[
     """One run in which there is one service of the type."""
     late = name == LATE
     right, type_name = next(iter(service.items()))
-    patience = round(bench.random.uniform(*(PATIENCE_IN_LATE if late else PATIENCE_ELSEWHERE[bench.look])), 2)
+    patience = round(bench.random.uniform(*(PATIENCE_IN_LATE if late else PATIENCE_ELSEWHERE[bench.pace])), 2)
     bench.part(name, type=type_name, right=right, others=dict(others), patience_sec=patience)
     looks_for(bench, patience, lateness=LATENESS if late else 0.0)
     if late and not names_it(bench.seen()) and was_patient(bench.seen()):

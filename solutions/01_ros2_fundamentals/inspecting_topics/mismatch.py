@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from autograder.kit import common_mistakes as common
 from autograder.kit.draft import OWN, Draft
 from autograder.kit.evidence import Evidence
-from autograder.kit.model import Advice, Bench, Finding, Look
+from autograder.kit.model import Advice, Bench, Finding, Pace
 from autograder.kit.recipes.own_scenario import OwnLadder
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 KEYS = ("topic_published", "topic_subscribed", "type_published", "type_subscribed")
 """What is asked for."""
 CASES = ("the name differs", "the type differs", "both differ")
-ANSWERING = {Look.FAST: 8.0, Look.REAL_TIME: 15.0}
+ANSWERING = {Pace.FAST: 8.0, Pace.REAL_TIME: 15.0}
 """Seconds of wall time for an answer; discovery takes up to three in a process that has just started."""
 
 _THINGS = ("camera", "lidar", "gripper", "battery", "wheel", "sonar", "compass", "beacon", "valve", "lamp")
@@ -56,7 +56,7 @@ def scenario(bench: Bench) -> None:
             subscribes={planted["topic_subscribed"]: planted["type_subscribed"]},
         )
         bench.start(f"/{planted['talker']}", f"/{planted['listener']}")
-        answered = bench.wait_until(_is_answered, ANSWERING[bench.look])
+        answered = bench.wait_until(_is_answered, ANSWERING[bench.pace])
         bench.stop()
         if not answered:
             return

@@ -18,7 +18,7 @@ from lab_1_4._goals import (
 )
 
 from autograder.kit.goals_seen import Goal, goal
-from autograder.kit.model import Bench, Look
+from autograder.kit.model import Bench, Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -31,16 +31,16 @@ CANCEL_AFTER = 2
 THREADS = 4
 """Threads that spin a notebook's class: with one, no cancel is read while a goal is executed."""
 
-SLEEP_FACTOR = {Look.FAST: 0.04, Look.REAL_TIME: 1.0}
+SLEEP_FACTOR = {Pace.FAST: 0.04, Pace.REAL_TIME: 1.0}
 """What a sleep of a notebook's server is multiplied with: it may pace its work as it likes, and nobody need wait."""
 
-SERVER_LIMIT = {Look.FAST: 3.0, Look.REAL_TIME: 6.0}
+SERVER_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
 """Seconds in which a server that is on the graph must be matched with the judge's client."""
-QUIET = {Look.FAST: 3.0, Look.REAL_TIME: 8.0}
+QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 8.0}
 """Seconds without any event after which something is taken not to come."""
 GOAL_LIMIT = 60.0
 """Seconds in which a goal must have ended, however much happens."""
-CANCEL_LIMIT = {Look.FAST: 4.0, Look.REAL_TIME: 8.0}
+CANCEL_LIMIT = {Pace.FAST: 4.0, Pace.REAL_TIME: 8.0}
 """Seconds in which a cancel must have been honoured; a server looks once for each number."""
 
 AFTERMATH = 0.5
@@ -58,10 +58,10 @@ def run(bench: Bench, name: str, goals: Callable[[Bench, ActionCaller], bool]) -
     action, type_name = bench.reference.only("action_server")
     bench.part(name)
     caller = bench.call_action(action, type_name)
-    bench.start(threads=THREADS, sleep_factor=SLEEP_FACTOR[bench.look])
+    bench.start(threads=THREADS, sleep_factor=SLEEP_FACTOR[bench.pace])
     there = bench.await_endpoint("action_server", action)
     bench.release()
-    there = there and caller.await_server(SERVER_LIMIT[bench.look])
+    there = there and caller.await_server(SERVER_LIMIT[bench.pace])
     if there and not goals(bench, caller):
         bench.note_whether_it_spins()
         bench.note_where_it_hangs()
@@ -78,9 +78,9 @@ def send_good_goals(bench: Bench, caller: ActionCaller) -> bool:
     ):
         return False
     caller.send_goal(order=LONG_ORDER)
-    bench.wait_until(lambda e: _may_cancel(e.main), QUIET[bench.look])
+    bench.wait_until(lambda e: _may_cancel(e.main), QUIET[bench.pace])
     caller.cancel(LONG)
-    if not bench.wait_until(lambda e: _cancel_is_over(goal(e.main, LONG)), CANCEL_LIMIT[bench.look]):
+    if not bench.wait_until(lambda e: _cancel_is_over(goal(e.main, LONG)), CANCEL_LIMIT[bench.pace]):
         # A MultiThreadedExecutor raises what a callback of its raised only when it has something else to do.
         bench.settle()
         bench.await_end(AFTERMATH)
@@ -103,7 +103,7 @@ def send_bad_goals(bench: Bench, caller: ActionCaller) -> bool:
     orders = (-1, -bench.random.randint(2, 99), FIRST_TOO_LARGE, bench.random.randint(60, 999))
     for number, order in enumerate(orders):
         caller.send_goal(order=order)
-        if not bench.wait_until(lambda e, n=number: goal(e.main, n).accepted is not None, QUIET[bench.look]):  # type: ignore[misc]
+        if not bench.wait_until(lambda e, n=number: goal(e.main, n).accepted is not None, QUIET[bench.pace]):  # type: ignore[misc]
             return False
         if bench.wait_until(lambda e, n=number: bool(goal(e.main, n).accepted), 0.0):  # type: ignore[misc]
             return True
@@ -113,5 +113,5 @@ def send_bad_goals(bench: Bench, caller: ActionCaller) -> bool:
 def ended(bench: Bench, *numbers: int) -> bool:
     """Wait until goals have ended."""
     return bench.wait_until(
-        lambda e: all(goal(e.main, number).over for number in numbers), GOAL_LIMIT, quiet=QUIET[bench.look]
+        lambda e: all(goal(e.main, number).over for number in numbers), GOAL_LIMIT, quiet=QUIET[bench.pace]
     )

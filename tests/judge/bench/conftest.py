@@ -12,7 +12,7 @@ import pytest
 from autograder.judge.bench.bench import TestBench
 from autograder.judge.serving import domain
 from autograder.judge.subjects.command_subject import CommandSubject
-from autograder.kit.model import Look
+from autograder.kit.model import Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -36,7 +36,7 @@ def bench_of(tmp_path: Path) -> BenchOf:
             subject = CommandSubject([sys.executable, str(program)])
             subject.begin(domain_id)
             with contextlib.closing(
-                TestBench(subject, domain_id, reference, Look.REAL_TIME, Random("a seed"))
+                TestBench(subject, domain_id, reference, Pace.REAL_TIME, Random("a seed"))
             ) as bench:
                 yield bench
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from autograder.judge.bench.bench import TestBench
 from autograder.kit.evidence import Evidence, Reference
-from autograder.kit.model import Look
+from autograder.kit.model import Pace
 
 if TYPE_CHECKING:
     import pytest
@@ -24,7 +24,7 @@ class _Subject:
 
 def _bench(*, ends: bool = False) -> TestBench:
     subject = _Subject(ends=ends)
-    return TestBench(subject, 0, Reference("a test", {}), Look.FAST, Random("a seed"))  # type: ignore[arg-type]
+    return TestBench(subject, 0, Reference("a test", {}), Pace.FAST, Random("a seed"))  # type: ignore[arg-type]
 
 
 def _once(_: Evidence, asked: list[int]) -> bool:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.draft import Draft
-from autograder.kit.model import Bench, Finding, Look
+from autograder.kit.model import Bench, Finding, Pace
 from autograder.kit.recipes.own_scenario import OwnScenario
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 LIMIT = 20
 """Percent; the first charge that nobody is to be warned of."""
-PATIENCE = {Look.FAST: 1.5, Look.REAL_TIME: 5.0}
+PATIENCE = {Pace.FAST: 1.5, Pace.REAL_TIME: 5.0}
 """Seconds of wall time in which the last warning must have come."""
 
 
@@ -32,7 +32,7 @@ def scenario(bench: Bench) -> None:
         bench.await_attention()
         for charge in bench.seen().inputs["charges"]:
             speaker.send(data=charge)
-        if not bench.wait_until(lambda evidence: not missing(evidence.main), PATIENCE[bench.look]):
+        if not bench.wait_until(lambda evidence: not missing(evidence.main), PATIENCE[bench.pace]):
             bench.note_whether_it_spins()
     bench.stop()
 
