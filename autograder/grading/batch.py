@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
+from autograder.grading.asked_for import AskedFor, check_known
 from autograder.grading.classes.class_directory import ClassDirectory, Refused, Submission
 from autograder.grading.classes.configuration import check_configuration
 from autograder.grading.classes.timestamps import handed_in_at, is_not_believed
@@ -33,6 +34,7 @@ from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import check_release, read_released
 from autograder.grading.reporting.report import GradeReport, rows_of, write_csv
+from autograder.grading.returning.up_to_date import UpToDate
 from autograder.grading.running import places
 from autograder.grading.running.progress import BatchProgress
 from autograder.grading.running.timings import Timings
@@ -40,7 +42,7 @@ from autograder.grading.table.differences import Difference, Runs
 from autograder.grading.table.entries import SubmissionEntry, read_entries, read_students
 from autograder.grading.table.roster import enter_roster
 from autograder.grading.table.true_rows import true_rows
-from autograder.grading.work import Work, check_known, without_grade, would_change
+from autograder.grading.work import Work, without_grade, would_change
 
 # What only a class with something to grade needs is imported where it is used: nbgrader alone takes a second.
 
@@ -107,8 +109,9 @@ def grade(
         place = places.on_cluster(directory, scheduler, judge, tell)
     with directory.lock(), clear_disk_errors(directory.path), contextlib.ExitStack() as stack:
         places.remove_leftovers(directory)
-        batch = _Batch(directory, console, feedback=feedback, dry_run=dry_run)
-        batch.collect(assignments, students)
+        asked = AskedFor(assignments, students)
+        batch = _Batch(directory, console, asked, feedback=feedback, dry_run=dry_run)
+        batch.collect()
         batch.plan(again)
         # Before anything is taken back: where nobody can execute anything, all stays as it is.
         execute = stack.enter_context(place) if batch.unsettled else None
@@ -119,11 +122,13 @@ def grade(
 
 
 class _Batch:
-    def __init__(self, directory: ClassDirectory, console: Console, *, feedback: bool, dry_run: bool) -> None:
+    def __init__(
+        self, directory: ClassDirectory, console: Console, asked: AskedFor, *, feedback: bool, dry_run: bool
+    ) -> None:
+        self._asked = asked
         self._dry_run = dry_run
         self._directory = directory
         self._console = console
-        self._feedback = feedback
         self._fingerprints = Fingerprints(directory)
         released = read_released(directory, self._fingerprints)
         self._cells: dict[str, tuple[GradedCell, ...]] = released.cells
@@ -139,8 +144,10 @@ class _Batch:
         self._problems: list[str] = []
         self._notices: list[str] = []
         self._entries: Entries = {}
-        self._chosen: tuple[Sequence[str], Sequence[str]] = (), ()
         self._timings = Timings()
+        self._returned = UpToDate(
+            directory, self._records, lambda: self._writer, self._timings, self._problem, feedback=feedback
+        )
         self._began = time.monotonic()
         self._executed = 0
         self._reused = 0
@@ -152,12 +159,13 @@ class _Batch:
 
         return Writer(self._directory, self._records)
 
-    def collect(self, assignments: Sequence[str], students: Sequence[str]) -> None:
+    def collect(self) -> None:
         """Find the submissions.
 
         Raises:
             ClassIncomplete: The gradebook does not know an assignment that was asked for.
         """
+        assignments, students = self._asked.assignments, self._asked.students
         asked = {name: found for name, found in self._cells.items() if not assignments or name in assignments}
         if asked or not assignments:
             check_release(self._directory, asked)
@@ -177,7 +185,6 @@ class _Batch:
         # Who asks for a folder that was refused is told why, further down.
         there |= {one.path.name for one in refused if one.path.parent == self._directory.path / "submitted"}
         check_known(students, sorted(there | read_students(self._directory.gradebook_url).keys()), "student")
-        self._chosen = assignments, students
         self._refused = refused
         names = {assignment: self._directory.notebooks(assignment) for assignment in self._cells}
         for submission in found:
@@ -187,8 +194,7 @@ class _Batch:
                     f"{submission.student}/{submission.assignment}: its timestamp.txt was not written by "
                     "`./course collect`, as the others of this class were, and is not believed"
                 )
-            chosen = not assignments or submission.assignment in assignments
-            chosen = chosen and (not students or submission.student in students)
+            chosen = self._asked.has(submission.student, submission.assignment)
             (self._works if chosen else self._others).append(work)
 
     def _unusable(self, assignments: Sequence[str]) -> Iterator[Refused]:
@@ -249,13 +255,13 @@ class _Batch:
             if work.written:
                 self._reused += len(work.notebooks)
                 if not self._dry_run:
-                    self._make_pages(work, self._keep_time(work.submission))
+                    self._returned.bring(work, self._entries.get(work.key, SubmissionEntry()))
             else:
                 self._take_known(work)
         waiting = [work for work in self._works if work.rows is None]
         if not waiting or execute is None:
             return
-        works = {(work.submission.student, work.submission.assignment): work for work in waiting}
+        works = {work.key: work for work in waiting}
         missing = sum(len(work.notebooks) - len(work.results) for work in waiting)
         from autograder.grading.rebuilding.task_making import limits_of
 
@@ -275,10 +281,7 @@ class _Batch:
     def report(self, seconds: float) -> GradeReport:
         """The report on what was asked for; ``grades.csv``, written here, has the whole class."""
         url = self._directory.gradebook_url
-        works = {
-            (work.submission.student, work.submission.assignment): work
-            for work in (*self._works, *self._others)
-        }
+        works = {work.key: work for work in (*self._works, *self._others)}
         entries = read_entries(url)
         judged = {key: work.rows for key, work in works.items() if work.rows is not None}
         for student, assignment in sorted(entries.keys() - works.keys()):
@@ -296,17 +299,10 @@ class _Batch:
         else:
             write_csv(self._directory.path / "grades.csv", rows)
             Runs(self._directory.state).keep(course_version(), rows)
-        assignments, students = self._chosen
-        chosen = [
-            row
-            for row in rows
-            if (not assignments or row.assignment in assignments)
-            and (not students or row.student in students)
-        ]
         return GradeReport(
             path=self._directory.path,
-            rows=tuple(chosen),
-            refused=tuple(refused for refused in self._refused if self._is_asked_for(refused)),
+            rows=tuple(row for row in rows if self._asked.has(row.student, row.assignment)),
+            refused=tuple(one for one in self._refused if self._asked.tells_of(one, self._directory.path)),
             problems=tuple(self._problems),
             notices=tuple(self._notices),
             would_change=tuple(changes) if self._dry_run else None,
@@ -315,17 +311,6 @@ class _Batch:
             written=self._written,
             seconds=seconds,
             timings=self._timings,
-        )
-
-    def _is_asked_for(self, refused: Refused) -> bool:
-        """Whether it belongs to the students and assignments that were named."""
-        submitted = self._directory.path / "submitted"
-        if not refused.path.is_relative_to(submitted):
-            return True
-        parts = refused.path.relative_to(submitted).parts
-        assignments, students = self._chosen
-        return (not students or parts[0] in students) and (
-            not assignments or len(parts) < 3 or parts[1] in assignments
         )
 
     def _settle(self, work: Work, in_gradebook: dict[str, dict[str, dict[str, gradebook.Scores]]]) -> None:
@@ -414,39 +399,8 @@ class _Batch:
                 now(), work.submission.assignment, work.fingerprint, course_version(), tuple(rows)
             )
             note(self._directory, work.submission.student, attempt)
-            self._make_pages(work, self._read(work.submission))
+            self._returned.bring_graded(work)
         work.results.clear()
-
-    def _keep_time(self, submission: Submission) -> SubmissionEntry:
-        """Enter a changed time of handing in, or a changed due date, and what being late costs now."""
-        entry = self._entries.get((submission.student, submission.assignment), SubmissionEntry())
-        at = handed_in_at(submission.folder)
-        moved = at is not None and at != entry.handed_in
-        if not (moved or entry.is_late or entry.penalty):
-            return entry
-        with self._timings.measure("gradebook"):
-            self._writer.enter_time(submission, at if moved else None)
-        return self._read(submission)
-
-    def _read(self, submission: Submission) -> SubmissionEntry:
-        key = (submission.student, submission.assignment)
-        entries = read_entries(self._directory.gradebook_url, student=key[0], assignment=key[1])
-        return entries.get(key, SubmissionEntry())
-
-    def _make_pages(self, work: Work, entry: SubmissionEntry) -> None:
-        """Make the pages of a submission that has none, or whose pages say what the gradebook said before."""
-        submission = work.submission
-        if not self._feedback:
-            return
-        record = self._records.get(submission)
-        if self._records.has_pages(submission, work.notebooks) and record and record.shown == entry.shown():
-            return
-        with self._timings.measure("feedback"):
-            self._writer.write_feedback(submission)
-        if not self._records.has_pages(submission, work.notebooks):
-            self._problem(f"feedback for {submission.student}/{submission.assignment} could not be made")
-        elif record:
-            self._records.put(submission, replace(record, shown=entry.shown()))
 
     def _problem(self, text: str) -> None:
         self._problems.append(f"{text} (see {self._directory.state / 'nbgrader.log'})")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from autograder.grading.errors import GradingError
 from autograder.grading.reporting.report import Row
 from autograder.grading.table.differences import Difference
 from autograder.grading.table.entries import SubmissionEntry
@@ -41,6 +40,11 @@ class Work:
     written: bool = False
 
     @property
+    def key(self) -> tuple[str, str]:
+        """Student and assignment, by which the gradebook knows it."""
+        return self.submission.student, self.submission.assignment
+
+    @property
     def complete(self) -> bool:
         """Whether all of its notebooks have a result."""
         return len(self.results) == len(self.notebooks)
@@ -63,16 +67,15 @@ def would_change(
     """
     found = []
     for work in works:
-        key = (work.submission.student, work.submission.assignment)
-        entry = entries.get(key, SubmissionEntry())
-        by_exercise = {cell.exercise: cell for cell in cells[key[1]]}
+        entry = entries.get(work.key, SubmissionEntry())
+        by_exercise = {cell.exercise: cell for cell in cells[work.submission.assignment]}
         for row in () if work.written else work.rows or ():
             cell = by_exercise[row.exercise]
             kept = entry.cells.get(cell.notebook, {}).get(cell.name)
             before = kept.judged if kept else None
             if before != row.score:
                 note = "a person's points stay" if kept and kept.by_hand is not None else ""
-                found.append(Difference(*key, row.exercise, before, row.score, "", row.diagnosis, note))
+                found.append(Difference(*work.key, row.exercise, before, row.score, "", row.diagnosis, note))
     return found
 
 
@@ -89,16 +92,3 @@ def without_grade(row: Row) -> Row:
         "not_written_down",
         reason,
     )
-
-
-def check_known(wanted: Sequence[str], known: Sequence[str], what: str) -> None:
-    """See that there is what was asked for by name.
-
-    Raises:
-        GradingError: There is not; the message says what there is.
-    """
-    for name in wanted:
-        if name not in known:
-            raise GradingError(
-                f"There is no {what} named {name} here. There is: {', '.join(known) or 'none'}."
-            )

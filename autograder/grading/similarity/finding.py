@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from autograder.grading.asked_for import check_known
 from autograder.grading.collecting.tidying import tidy
 from autograder.grading.errors import GradingError
 from autograder.grading.similarity.answers import given_texts, read_answers
 from autograder.grading.similarity.own_code import LONGEST, Given, compared
 from autograder.grading.similarity.pairs import Pair, close_pairs, closest_first
 from autograder.grading.table.roster import read_roster
-from autograder.grading.work import check_known
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

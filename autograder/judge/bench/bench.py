@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 import contextlib
-import time
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from autograder.judge.bench import clock, graph, own_endpoints, type_hashes
 from autograder.judge.bench.action_client import RecordedActionClient
 from autograder.judge.bench.action_server import ScriptedActionServer
-from autograder.judge.bench.borrowed_time import BorrowedTime
-from autograder.judge.bench.clock import SimulatedClock
 from autograder.judge.bench.decoy_nodes import DecoyNodes
 from autograder.judge.bench.interfaces import service_fields
 from autograder.judge.bench.presence import GRAPH_POLL, MATCH, Presence
 from autograder.judge.bench.recorder import Recorder, usable
 from autograder.judge.bench.service_client import RecordedCaller
 from autograder.judge.bench.service_server import Answer, RecordedServer
+from autograder.judge.bench.subject_time import SubjectTime
 from autograder.judge.bench.topics import LogReader, RecordedPublisher, RecordedSubscription
 from autograder.judge.bench.wire import JudgeFailed, Wire
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part, Reference
-from autograder.kit.giving_up import patience, spared, willing
+from autograder.kit.giving_up import patience
 from autograder.kit.model import Pace
 
 if TYPE_CHECKING:
@@ -71,9 +69,7 @@ class TestBench:
         self._decoys: DecoyNodes | None = None
         self._open = contextlib.ExitStack()
         self._on_graph: Presence | None = None
-        self._clock: SimulatedClock | None = None
-        self._clock_refused = False
-        self._deaf: set[str] = set()
+        self._time_of_part: SubjectTime | None = None
         self._there: set[own_endpoints.Endpoint] = set()
         self._gone: set[own_endpoints.Endpoint] = set()
         self._clean = True
@@ -94,6 +90,9 @@ class TestBench:
             self._subject.renew()
             self._recorder.take_in = partial(self._wire.take_in, lambda: self._recorder.count)
         self._on_graph = Presence(self._wire.node, self._recorder, self._subject, SETTLED[self.pace])
+        self._time_of_part = SubjectTime(
+            self._wire, self._recorder, self._subject, self._on_graph, self._open, self.pace, self.doubt
+        )
 
     def again(self) -> None:
         """Begin the last part anew: what was seen of it does not count."""
@@ -126,8 +125,6 @@ class TestBench:
         self._gone, self._there = self._gone | self._there, set()
         if self._decoys is not None:
             self._decoys.clear()
-        self._deaf = set()
-        self._clock, self._clock_refused = None, False
         if self.wire.failure is not None:
             raise JudgeFailed(f"the judge's own node failed: {self.wire.failure!r}")
 
@@ -159,6 +156,13 @@ class TestBench:
             raise RuntimeError(_NO_PART)
         return self._on_graph
 
+    @property
+    def _time(self) -> SubjectTime:
+        """How time passes for the subject in this part."""
+        if self._time_of_part is None:
+            raise RuntimeError(_NO_PART)
+        return self._time_of_part
+
     # --- the subject ---------------------------------------------------------------------------------------
 
     def start(self, *arguments: Any, **options: Any) -> None:
@@ -187,17 +191,6 @@ class TestBench:
     def await_end(self, within: float) -> bool:
         """Wait until the subject has ended by itself."""
         return self._recorder.wait(lambda: self._subject.ended, within)
-
-    def let_wait(self, seconds: float, *, call: int = 0) -> None:
-        """Let the subject wait for what the judge keeps from it."""
-        began = time.monotonic()
-
-        def over() -> bool:
-            seen = self._recorder.part()
-            passed = time.monotonic() - began + (0.0 if call else spared(seen))
-            return passed >= seconds or (call > 0 and willing(seen, call) >= seconds) or self._subject.ended
-
-        self._recorder.wait(over, seconds, wall=True)
 
     def await_endpoint(self, role: str, name: str) -> bool:
         """Wait until the subject's endpoint is on the graph and matched with the judge's, if it has one."""
@@ -324,77 +317,27 @@ class TestBench:
         self, seconds: float, *, until: Callable[[], bool] | None = None, quiet: float | None = None
     ) -> bool:
         """Let ``seconds`` of the subject's time pass, or fewer where ``until`` holds or nothing happens."""
-        over = until or (lambda: False)
-        if self.pace is Pace.FAST and self._follow_clock():
-            assert self._clock is not None
-            turns = self._clock.run(seconds, lambda: over() or self._subject.ended)
-            self.doubtful = self.doubtful or self._clock.doubtful
-            return turns
-        self._recorder.wait(lambda: over() or self._subject.ended, seconds, quiet=quiet, wall=True)
-        return True
+        return self._time.run(seconds, until=until, quiet=quiet)
 
     def pass_time(self, seconds: float, role: str, name: str) -> None:
         """Let simulated seconds pass for a subject that lives in real time, real ones where it does not follow."""
-        for node in graph.owners(self.wire.node, role, name):
-            if node.full not in self._deaf:
-                with contextlib.closing(BorrowedTime(self.wire, self._recorder, node)) as borrowed:
-                    if borrowed.let_pass(seconds, lambda: self._subject.ended):
-                        return
-        self._recorder.wait(lambda: self._subject.ended, seconds, wall=True)
+        self._time.lend(seconds, role, name)
 
-    def _follow_clock(self) -> bool:
-        if (
-            self._clock is None
-            and not self._clock_refused
-            and (self._presence.subscriptions or self._presence.publishers)
-        ):
-            self._clock_refused = True
-            if any(self.wire.node.count_publishers(topic) > 1 for topic in self._presence.subscriptions):
-                # Two nodes of one name share their parameter services: one of them would keep to real time.
-                self.doubtful = True
-                return False
-            node = next(iter(self._presence.counterparts()), None)
-            if node is not None:
-                stepped = SimulatedClock(self.wire, self._recorder, node)
-                self._open.callback(stepped.close)
-                if stepped.take_over() and stepped.stands_still(self._silence()):
-                    self._clock = stepped
-                else:
-                    # It may yet obey later and then stop: only a fresh run in real time can tell.
-                    self._recorder.simulated_now = None
-                    self.doubtful = self.doubtful or bool(self._presence.subscriptions)
-        return self._clock is not None
+    def let_wait(self, seconds: float, *, call: int = 0) -> None:
+        """Let the subject wait for what the judge keeps from it."""
+        self._time.let_wait(seconds, call=call)
 
-    def _silence(self) -> Callable[[], bool]:
-        def heard() -> int:
-            return sum(map(self.heard, self._presence.subscriptions))
+    def settle(self) -> None:
+        """Ask each node of the subject's twice; a node that did not answer once is not asked again in this part."""
+        self._time.settle()
 
-        before = heard()
-        # One message may still have been on its way when the clock stopped.
-        return lambda: heard() <= before + 1
+    def await_attention(self) -> None:
+        """Ask each node that the judge is matched with, by a client that is announced after the judge's publishers."""
+        self._time.await_attention()
 
     def doubt(self) -> None:
         """What is seen in this look must be confirmed in real time."""
         self.doubtful = True
-
-    def settle(self) -> None:
-        """Ask each node of the subject's twice; a node that did not answer once is not asked again in this part."""
-        limit = clock.ANSWER_LIMIT if self.pace is Pace.FAST else clock.PATIENT_ANSWER
-        for node in self._presence.counterparts():
-            if node.full in self._deaf or self._subject.ended:
-                continue
-            if not all(clock.answers(self.wire, self._recorder, node, limit) for _ in range(2)):
-                self._deaf.add(node.full)
-
-    def await_attention(self) -> None:
-        """Ask each node that the judge is matched with, by a client that is announced after the judge's publishers.
-
-        The announcements of one participant arrive in order (DDSI-RTPS, 8.5.4), so a node that answers the client knows
-        the publishers, too.
-        """
-        for node in self._presence.counterparts():
-            if not self._subject.ended:
-                clock.answers(self.wire, self._recorder, node, MATCH)
 
     def note_whether_it_spins(self) -> None:
         """Ask each node of the subject's for a parameter; write down which one does not answer."""

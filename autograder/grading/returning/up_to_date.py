@@ -1,0 +1,86 @@
+"""What goes back to the students in a run: the time of handing in, what being late costs, and the pages that say it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from autograder.grading.classes.timestamps import handed_in_at
+from autograder.grading.table.entries import SubmissionEntry, read_entries
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.grading.classes.class_directory import ClassDirectory, Submission
+    from autograder.grading.entering.records import Records
+    from autograder.grading.entering.writer import Writer
+    from autograder.grading.running.timings import Timings
+    from autograder.grading.work import Work
+
+
+class UpToDate:
+    """Keeps times and pages of graded submissions up to date.
+
+    Args:
+        directory: The class.
+        records: What was entered of each submission, and what its pages say.
+        writer: Gives the one who writes into the gradebook; called only where there is something to write.
+        timings: Where it is counted how long that takes.
+        problem: Told where a page could not be made.
+        feedback: Whether pages are made at all.
+    """
+
+    def __init__(
+        self,
+        directory: ClassDirectory,
+        records: Records,
+        writer: Callable[[], Writer],
+        timings: Timings,
+        problem: Callable[[str], None],
+        *,
+        feedback: bool,
+    ) -> None:
+        self._directory = directory
+        self._records = records
+        self._writer = writer
+        self._timings = timings
+        self._problem = problem
+        self._feedback = feedback
+
+    def bring(self, work: Work, entry: SubmissionEntry) -> None:
+        """Bring a submission up to date whose grades were in the gradebook already, as ``entry``."""
+        self._make_pages(work, self._keep_time(work.submission, entry))
+
+    def bring_graded(self, work: Work) -> None:
+        """Bring a submission up to date that was entered just now, with its time."""
+        self._make_pages(work, self._read(work.submission))
+
+    def _keep_time(self, submission: Submission, entry: SubmissionEntry) -> SubmissionEntry:
+        """Enter a changed time of handing in, or a changed due date, and what being late costs now."""
+        at = handed_in_at(submission.folder)
+        moved = at is not None and at != entry.handed_in
+        if not (moved or entry.is_late or entry.penalty):
+            return entry
+        with self._timings.measure("gradebook"):
+            self._writer().enter_time(submission, at if moved else None)
+        return self._read(submission)
+
+    def _read(self, submission: Submission) -> SubmissionEntry:
+        key = (submission.student, submission.assignment)
+        entries = read_entries(self._directory.gradebook_url, student=key[0], assignment=key[1])
+        return entries.get(key, SubmissionEntry())
+
+    def _make_pages(self, work: Work, entry: SubmissionEntry) -> None:
+        """Make the pages of a submission that has none, or whose pages say what the gradebook said before."""
+        submission = work.submission
+        if not self._feedback:
+            return
+        record = self._records.get(submission)
+        if self._records.has_pages(submission, work.notebooks) and record and record.shown == entry.shown():
+            return
+        with self._timings.measure("feedback"):
+            self._writer().write_feedback(submission)
+        if not self._records.has_pages(submission, work.notebooks):
+            self._problem(f"feedback for {submission.student}/{submission.assignment} could not be made")
+        elif record:
+            self._records.put(submission, replace(record, shown=entry.shown()))
