@@ -22,7 +22,7 @@ from autograder.masters.work import holds_work
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-WHOLE = ("course", "pyproject.toml", "LICENSE", "environment", "autograder")
+WHOLE = ("course", "pyproject.toml", "LICENSE", "environment", "autograder", ".devcontainer", ".dockerignore")
 """What is handed out as it is, but for what follows."""
 KEPT_BACK = (
     "autograder/authoring",
@@ -50,6 +50,9 @@ $ ./course lab
 ```
 
 The first time this sets everything up, in one to three minutes. It opens a map of all notebooks; press *Begin*.
+
+On a Mac, on Windows without WSL or on an ARM computer, use Docker: `environment/jazzy.Dockerfile` begins with the two
+commands to type. Or open this folder in VS Code, choose *Reopen in Container*, and type `./course lab --no-browser`.
 
 | you want to | |
 | --- | --- |
@@ -148,7 +151,8 @@ def _judges_part(chapter: course.Chapter, *, with_solutions: bool) -> Iterator[P
 def _below(place: Path, root: Path) -> Iterator[Path]:
     kept_back = any(place == root / name for name in KEPT_BACK)
     made = place.name in _MADE or (place.name in _MADE_BY_COLCON and (place.parent / "src").is_dir())
-    if kept_back or made or (place.name.startswith(".") and place != root):
+    hidden = place.name.startswith(".") and place != root and place.name not in WHOLE
+    if kept_back or made or hidden:
         return
     if place.is_dir():
         for inside in sorted(place.iterdir()):

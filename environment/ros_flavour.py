@@ -144,7 +144,7 @@ def decide(environ: Mapping[str, str], machine: Machine, imports_rclpy: Callable
     if reason:
         raise NoRosError(
             f"{notice}\n" * bool(notice) + f"The ROS 2 Jazzy wheels do not run here: {reason}. "
-            "Source a ROS 2 Jazzy first, or get one with environment/robostack.yml or environment/Dockerfile."
+            "Source a ROS 2 Jazzy first, or get one with environment/jazzy.Dockerfile or environment/robostack.yml."
         )
     return Ros("wheels", notice=notice)
 

@@ -113,6 +113,11 @@ def run(place: Path, *words: str) -> subprocess.CompletedProcess[str]:
     )
 
 
+def test_it_has_the_ways_in_for_other_computers(handed_out: Path) -> None:
+    for name in (".devcontainer/devcontainer.json", ".dockerignore", "environment/jazzy.Dockerfile"):
+        assert (handed_out / name).is_file()
+
+
 def test_it_lists_its_exercises_and_says_what_it_cannot_do(handed_out: Path) -> None:
     listed = run(handed_out, "check")
     assert [line.split()[0] for line in listed.stdout.splitlines()] == list(exercises.all_ids())
