@@ -39,6 +39,17 @@ MAY_IMPORT = {
     "__main__": frozenset({"cli"}),
 }
 
+# The same for the parts of `notebook`: what is below knows nothing of what is above.
+NOTEBOOK_MAY_IMPORT = {
+    "cells": frozenset[str](),
+    "nodes": frozenset({"cells"}),
+    "checking": frozenset({"cells", "nodes"}),
+    "observing": frozenset({"cells", "checking"}),
+    "robot": frozenset({"nodes", "observing"}),
+}
+MOST_FILES = 32
+"""In one folder of the package: a stranger must be able to read their names."""
+
 
 @functools.cache
 def imports(folder: Path) -> list[tuple[Path, int, str]]:
@@ -74,6 +85,23 @@ def test_a_part_imports_only_what_it_may(part: str) -> None:
         if name.split(".")[1] in PARTS and name.split(".")[1] not in allowed
     ]
     assert not wrong, "docs/architecture.md, Who may import whom:\n" + "\n".join(wrong)
+
+
+@pytest.mark.parametrize("part", sorted(NOTEBOOK_MAY_IMPORT))
+def test_a_part_of_the_notebook_imports_only_what_is_below(part: str) -> None:
+    allowed = NOTEBOOK_MAY_IMPORT[part] | {part}
+    wrong = [
+        f"{path.relative_to(ROOT)}:{line} imports {name}"
+        for path, line, name in imports(PACKAGE / "notebook" / part)
+        if name.startswith("autograder.notebook.") and name.split(".")[2] not in allowed
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_no_folder_of_the_package_is_a_long_list() -> None:
+    counts = {path.parent: len(list(path.parent.glob("*.py"))) for path in PACKAGE.rglob("*.py")}
+    wrong = [f"{folder.relative_to(ROOT)}: {count}" for folder, count in counts.items() if count > MOST_FILES]
+    assert not wrong, "group these by what they are for:\n" + "\n".join(wrong)
 
 
 def test_the_package_names_in_full_what_it_imports() -> None:

@@ -44,7 +44,7 @@ _PRELOADED = (
     "rclpy.qos",
     "rclpy.task",
     "autograder.notebook",
-    "autograder.notebook.check",
+    "autograder.notebook.checking.check",
     "autograder.notebook.robot.starting",
     "autograder.boxes.processes",
     "autograder.cards.bundle",

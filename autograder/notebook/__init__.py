@@ -5,16 +5,17 @@ Nothing here is a secret and nothing here decides a grade: the judge runs in a p
 
 from __future__ import annotations
 
-from autograder.notebook import executors, judge_link
-from autograder.notebook.check import check
-from autograder.notebook.executors import spin_in_background, spinning
-from autograder.notebook.graph_picture import draw_graph
-from autograder.notebook.graph_watch import watch_graph
-from autograder.notebook.plots import plot
-from autograder.notebook.recordings import read_recording, recording
+from autograder.notebook.checking import judge_link
+from autograder.notebook.checking.check import check
+from autograder.notebook.checking.watched_cells import unwatch, watch
+from autograder.notebook.nodes import executors
+from autograder.notebook.nodes.executors import spin_in_background, spinning
+from autograder.notebook.nodes.ros_session import RosSession
+from autograder.notebook.observing.graph_picture import draw_graph
+from autograder.notebook.observing.graph_watch import watch_graph
+from autograder.notebook.observing.plots import plot
+from autograder.notebook.observing.recordings import read_recording, recording
 from autograder.notebook.robot import start_robot
-from autograder.notebook.ros_session import RosSession
-from autograder.notebook.watched_cells import unwatch, watch
 
 __all__ = [
     "RosSession",

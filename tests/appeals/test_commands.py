@@ -12,7 +12,7 @@ from mcap.reader import make_reader
 
 from autograder.authoring.answers import folder_of
 from autograder.cli import cli
-from autograder.notebook.recordings import read_recording
+from autograder.notebook.observing.recordings import read_recording
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -18,8 +18,8 @@ from nbformat.v4 import new_code_cell, new_notebook
 from rclpy.node import Node
 from std_msgs.msg import String
 
-from autograder.notebook.executors import stop_all
-from autograder.notebook.ros_session import start_ros
+from autograder.notebook.nodes.executors import stop_all
+from autograder.notebook.nodes.ros_session import start_ros
 from autograder.ros_domain import claim_free_domain
 
 if TYPE_CHECKING:
@@ -253,7 +253,7 @@ import queue, threading, time
 import rclpy
 from rclpy.node import Node
 from std_msgs.msg import String
-from autograder.notebook.executors import *
+from autograder.notebook.nodes.executors import *
 
 class TalkerNode(Node):
     def __init__(self, name="talker_node", text="hello"):

@@ -18,7 +18,7 @@ from autograder.judge.serving.process import JudgeProcess
 from autograder.judge.settings import subject_environment
 from autograder.messages.checks import Check, Collect, Judged
 from autograder.messages.lines import Lines
-from autograder.notebook.path_run import send_sources
+from autograder.notebook.checking.path_run import send_sources
 from autograder.workspaces.grading.plain_jobs import PlainJobs
 from autograder.workspaces.grading.service import ServiceSockets, WorkspaceService
 

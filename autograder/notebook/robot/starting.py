@@ -6,9 +6,9 @@ import math
 from collections import deque
 from typing import TYPE_CHECKING
 
-from autograder.notebook.background import replace_named
-from autograder.notebook.executors import spin_in_background, start_ros
-from autograder.notebook.live_picture import LivePicture
+from autograder.notebook.nodes.background import replace_named
+from autograder.notebook.nodes.executors import spin_in_background, start_ros
+from autograder.notebook.observing.live_picture import LivePicture
 from autograder.notebook.robot.node import RobotNode
 from autograder.notebook.robot.picture import RobotPicture
 

@@ -8,7 +8,7 @@ import sys
 
 import msgspec
 
-import autograder.notebook.judge_link
+import autograder.notebook.checking.judge_link
 from autograder.messages.checks import Judged
 from autograder.verdict import Verdict
 
@@ -26,5 +26,5 @@ class Flatterer:
         return Judged(msgspec.convert(verdict, type=Verdict))
 
 
-autograder.notebook.judge_link.JudgeLink = Flatterer
-sys.modules["autograder.notebook.check"].JudgeLink = Flatterer
+autograder.notebook.checking.judge_link.JudgeLink = Flatterer
+sys.modules["autograder.notebook.checking.check"].JudgeLink = Flatterer

@@ -8,7 +8,7 @@ import dataclasses
 
 import msgspec
 
-import autograder.notebook.judge_link as judge_link
+import autograder.notebook.checking.judge_link as judge_link
 from autograder.verdict import State
 
 usual = judge_link.JudgeLink.hear

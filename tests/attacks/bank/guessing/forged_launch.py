@@ -17,7 +17,7 @@ from std_msgs.msg import String
 
 from autograder.messages.checks import Output
 
-check_module = sys.modules["autograder.notebook.check"]
+check_module = sys.modules["autograder.notebook.checking.check"]
 
 
 class NoPath:

@@ -14,7 +14,7 @@ from autograder.messages.checks import Output
 
 package = {"name": "my_robot_pkg", "build_type": "ament_python", "programs": ["simple_node = my_robot_pkg.simple_node:main"], "interfaces": [], "dependencies": []}
 report = {"phase": "built", "built": True, "trouble": "", "package": "", "line": "", "log": "", "packages": [package], "missing": ""}
-check_module = sys.modules["autograder.notebook.check"]
+check_module = sys.modules["autograder.notebook.checking.check"]
 
 
 class NoPath:

@@ -7,7 +7,7 @@
 # %% extra
 from random import Random
 
-import autograder.notebook.judge_link as judge_link
+import autograder.notebook.checking.judge_link as judge_link
 
 seen = []
 usual = judge_link.JudgeLink.hear

@@ -11,7 +11,7 @@ import sys
 from autograder.messages.checks import Sources
 from autograder.messages.workspaces import Source
 
-check_module = sys.modules["autograder.notebook.check"]
+check_module = sys.modules["autograder.notebook.checking.check"]
 DATA = base64.b64encode(b"attack").decode()
 
 

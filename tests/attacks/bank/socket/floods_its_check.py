@@ -7,7 +7,7 @@
 import threading
 import time
 
-import autograder.notebook.judge_link as judge_link
+import autograder.notebook.checking.judge_link as judge_link
 from autograder.messages.checks import Output, Start
 
 

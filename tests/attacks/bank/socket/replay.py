@@ -22,7 +22,7 @@ def connect():
 def say(link, word, **rest):
     link.sendall(json.dumps({"say": word, **rest}).encode() + b"\n")
 
-import autograder.notebook.judge_link as judge_link
+import autograder.notebook.checking.judge_link as judge_link
 from autograder.messages.lines import encode
 
 said = []

@@ -1,0 +1,69 @@
+"""Which cell of the notebook is running, and whether it has run before.
+
+JupyterLab names the cell in each request to run it (``cellId`` in the request's metadata, handed on by
+IPython to ``pre_run_cell``). Front ends that do not, such as nbclient and the console, leave the cell's text
+to know it by.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from autograder.notebook.cells.student_tracebacks import notebook_shell
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+@dataclass(frozen=True)
+class CellRun:
+    """One run of one cell.
+
+    Attributes:
+        cell: The same for every run of the cell.
+        number: Grows with each run of any cell.
+    """
+
+    cell: str
+    number: int
+
+    def is_later_run_of(self, other: CellRun | None) -> bool:
+        """Whether this is the same cell, run again."""
+        return other is not None and self.cell == other.cell and self.number > other.number
+
+
+class CellWatch:
+    """Follows which cell is running; outside a notebook none ever is."""
+
+    def __init__(self) -> None:
+        self.current: CellRun | None = None
+        self._before_run: list[Callable[[CellRun], None]] = []
+        self._shell: Any = notebook_shell()
+        if self._shell is None:
+            return
+        self._shell.events.register("pre_run_cell", self._cell_begins)
+        # The cell that imports us is running already.
+        parent = self._parent_request()
+        cell_id = parent.get("metadata", {}).get("cellId")
+        self._set_current(cell_id, parent.get("content", {}).get("code", ""))
+
+    def before_each_run(self, action: Callable[[CellRun], None]) -> None:
+        """Have something done before a cell runs."""
+        self._before_run.append(action)
+
+    def _cell_begins(self, info: Any) -> None:
+        run = self._set_current(getattr(info, "cell_id", None), info.raw_cell or "")
+        for action in self._before_run:
+            action(run)
+
+    def _set_current(self, cell_id: str | None, source: str) -> CellRun:
+        cell = cell_id or "text:" + hashlib.sha256(source.encode()).hexdigest()
+        number = 1 if self.current is None else self.current.number + 1
+        self.current = CellRun(cell, number)
+        return self.current
+
+    def _parent_request(self) -> dict[str, Any]:
+        kernel = getattr(self._shell, "kernel", None)
+        return (kernel.get_parent("shell") or {}) if kernel is not None else {}

@@ -1,0 +1,81 @@
+"""Tracebacks with the student's own lines only: ten frames of rclpy help nobody find a typo."""
+
+from __future__ import annotations
+
+import os
+import sys
+import sysconfig
+import traceback
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import rclpy
+
+
+def _library_folders() -> tuple[str, ...]:
+    """Folders whose code is not the student's."""
+    schemes = sysconfig.get_paths()
+    folders = {schemes[name] for name in ("stdlib", "platstdlib", "purelib", "platlib")}
+    folders.add(str(Path(rclpy.__file__).parent.parent))
+    folders.add(str(Path(__file__).parents[1]))
+    # On a system ROS, message packages of other prefixes than rclpy's are libraries too.
+    folders.update(
+        prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(":") if "/opt/ros" in prefix
+    )
+    return tuple(folder.rstrip("/") + "/" for folder in folders)
+
+
+_LIBRARIES = _library_folders()
+
+
+def is_students(filename: str) -> bool:
+    """Whether a file, or a notebook's cell, is the student's own code."""
+    return not filename.startswith("<frozen") and not filename.startswith(_LIBRARIES)
+
+
+def student_frames(trace: TracebackType | None) -> TracebackType | None:
+    """A traceback without frames of Python, ROS and this package; None where nothing is left."""
+    frames = []
+    while trace is not None:
+        if is_students(trace.tb_frame.f_code.co_filename):
+            frames.append(trace)
+        trace = trace.tb_next
+    kept: TracebackType | None = None
+    for frame in reversed(frames):
+        kept = TracebackType(kept, frame.tb_frame, frame.tb_lasti, frame.tb_lineno)
+    return kept
+
+
+def last_student_line(error: BaseException) -> tuple[str, int] | None:
+    """File and line number of the student's code in which the error came up; None where there is none."""
+    trace = student_frames(error.__traceback__)
+    if trace is None:
+        return None
+    while trace.tb_next is not None:
+        trace = trace.tb_next
+    return trace.tb_frame.f_code.co_filename, trace.tb_lineno
+
+
+def render(error: BaseException) -> list[str]:
+    """The error's traceback, as the notebook shows tracebacks, cut down to the student's lines."""
+    trace = student_frames(error.__traceback__)
+    shell = notebook_shell()
+    if shell is not None:
+        lines: list[str] = shell.InteractiveTB.structured_traceback(type(error), error, trace, tb_offset=0)
+        return lines
+    return [line.rstrip("\n") for line in traceback.format_exception(type(error), error, trace)]
+
+
+def notebook_shell() -> Any:
+    """IPython's shell where this runs in a kernel or in IPython, else None."""
+    ipython = sys.modules.get("IPython")
+    return ipython.get_ipython() if ipython is not None else None
+
+
+class PlainlyShownError(Exception):
+    """An error whose traceback in a notebook is cut down to the student's lines."""
+
+    def _render_traceback_(self) -> list[str]:
+        """Called by IPython in place of its own formatting."""
+        return render(self)

@@ -1,0 +1,1 @@
+"""The check cell: the conversation with the judge, the runs of the subject, and the card."""

@@ -1,0 +1,121 @@
+"""What a subject says while it is checked: its log lines and what it prints, told to the judge and kept off the cell.
+
+Only threads that began with the check are captured, so that a demonstration node that still runs in the background is
+not taken for the subject.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import traceback
+from typing import TYPE_CHECKING, Any, Self
+
+from rclpy.impl.rcutils_logger import RcutilsLogger
+
+from autograder.notebook.checking.judge_link import MAX_TEXT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+class CapturedOutput:
+    """Forwards within a ``with`` block; puts everything back at its end."""
+
+    def __init__(self, tell: Callable[[str, bool], None]) -> None:
+        """Prepare.
+
+        Args:
+            tell: Called with each line, and whether it was logged rather than printed.
+        """
+        self._tell = tell
+        self._others = {thread.ident for thread in threading.enumerate()}
+        self._descriptors: list[tuple[int, int]] = []
+
+    def __enter__(self) -> Self:
+        self._usual_log = RcutilsLogger.log
+        self._usual_streams = (sys.stdout, sys.stderr)
+        usual_log: Any = self._usual_log
+        captured = self.is_captured
+
+        def log(logger: RcutilsLogger, message: Any, severity: Any, **options: Any) -> bool:
+            if captured():
+                self._tell(str(message)[:MAX_TEXT], True)
+            return bool(usual_log(logger, message, severity, **options))
+
+        setattr(RcutilsLogger, "log", log)  # noqa: B010  (mypy forbids to assign to a method)
+        sys.stdout = _CapturedStream(sys.stdout, self._tell, captured)
+        sys.stderr = _CapturedStream(sys.stderr, self._tell, captured)
+        self._silence_compiled_code()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        setattr(RcutilsLogger, "log", self._usual_log)  # noqa: B010
+        for stream in (sys.stdout, sys.stderr):
+            if isinstance(stream, _CapturedStream):
+                stream.finish()
+        sys.stdout, sys.stderr = self._usual_streams
+        while self._descriptors:
+            descriptor, saved = self._descriptors.pop()
+            os.dup2(saved, descriptor)
+            os.close(saved)
+
+    def stacks(self) -> str:
+        """Where each captured thread is, innermost call first, in the form of Python's faulthandler."""
+        frames = sys._current_frames()
+        lines = []
+        for thread in threading.enumerate():
+            if thread.ident in self._others or thread.ident not in frames:
+                continue
+            lines.append(f"Thread {thread.name} (most recent call first):")
+            calls = traceback.extract_stack(frames[thread.ident])
+            lines += [
+                f'  File "{call.filename}", line {call.lineno} in {call.name}' for call in reversed(calls)
+            ]
+        return "\n".join(lines)
+
+    def is_captured(self) -> bool:
+        """Whether the thread that asks is one of the subject's: it began with the check."""
+        return threading.get_ident() not in self._others
+
+    def _silence_compiled_code(self) -> None:
+        # rcutils writes log lines to the descriptors themselves; the card shows what matters of them.
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for descriptor in (1, 2):
+            self._descriptors.append((descriptor, os.dup(descriptor)))
+            os.dup2(nowhere, descriptor)
+        os.close(nowhere)
+
+
+class _CapturedStream:
+    """Stands in for sys.stdout: forwards the lines of captured threads, passes on everybody else's."""
+
+    def __init__(self, stream: Any, tell: Callable[[str, bool], None], captured: Callable[[], bool]) -> None:
+        self._stream = stream
+        self._tell = tell
+        self._captured = captured
+        self._rest = ""
+        self._lock = threading.Lock()
+
+    def write(self, text: str) -> int:
+        """Take some text; whole lines are told at once."""
+        if not self._captured():
+            written: int = self._stream.write(text)
+            return written
+        with self._lock:
+            *lines, rest = (self._rest + text).split("\n")
+            self._rest = rest[:MAX_TEXT]
+        for line in lines:
+            self._tell(line[:MAX_TEXT], False)
+        return len(text)
+
+    def finish(self) -> None:
+        """Tell the last line, which had no end."""
+        with self._lock:
+            rest, self._rest = self._rest, ""
+        if rest:
+            self._tell(rest, False)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)

@@ -1,0 +1,175 @@
+"""Where a check's card is shown: one place under the cell, from its first moment to its last.
+
+While a check goes on, the card of the check before stays in that place and says so, and where there is none a line
+tells what goes on: the page does not jump. A card whose class or function was defined anew is dimmed and says why.
+"""
+
+from __future__ import annotations
+
+import contextvars
+import inspect
+import os
+import sys
+import threading
+import time
+import weakref
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Self
+
+from autograder.cards import bundle
+from autograder.cards.wording import duration
+from autograder.notebook.cells.student_tracebacks import notebook_shell
+from autograder.notebook.checking.judge_link import SOCKET_VARIABLE
+from autograder.notebook.checking.reference_solution import solution_of
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from autograder.verdict import Verdict
+
+VALIDATING = "NBGRADER_VALIDATING"
+"""Set by nbgrader while its Validate button runs the notebook."""
+SOON = 0.7
+"""Seconds of wall time after which a check that still goes on says so, and between two words of it."""
+
+
+@dataclass
+class _Shown:
+    """The card of an exercise that is on the page."""
+
+    verdict: Verdict
+    before: float | None
+    handle: Any
+    name: str
+    subject: Any
+    """Gives the class or function that was checked, while it is there; always None for a path."""
+    dated: bool = False
+
+
+_shown: dict[str, _Shown] = {}
+_watching: list[Any] = []
+
+
+@dataclass
+class CardDisplay:
+    """The place of one check's card. To be entered before the check begins, in its thread.
+
+    Attributes:
+        exercise: The exercise's id.
+        subject: What is checked.
+    """
+
+    exercise: str
+    subject: Any
+    _handle: Any = None
+    _doing: str = "the judge gets ready"
+    _over: threading.Event = field(default_factory=threading.Event)
+    _teller: threading.Thread | None = None
+
+    def __enter__(self) -> Self:
+        if is_live():
+            earlier = _shown.get(self.exercise)
+            if earlier is not None:
+                self._handle = display_card(bundle.mimebundle(earlier.verdict, before=earlier.before))
+            here = contextvars.copy_context()  # what belongs to which cell is in there
+            self._teller = threading.Thread(target=here.run, args=(self._tell,), name="check", daemon=True)
+            self._teller.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._stop_telling()
+        if error is not None and self._handle is not None and (earlier := _shown.get(self.exercise)):
+            # Interrupted: what stands there is an earlier result, and no check goes on.
+            notice = "This is the result of an earlier check: the last one was interrupted."
+            update_card(
+                self._handle, bundle.mimebundle(earlier.verdict, before=earlier.before, notice=notice)
+            )
+
+    def doing(self, what: str) -> None:
+        """Say what goes on, in a few words such as ``"run 2"``."""
+        self._doing = what
+
+    def show(self, verdict: Verdict) -> None:
+        """Show the result in the card's place; print it where there is no notebook."""
+        self._stop_telling()
+        shell = notebook_shell()
+        earlier = _shown.get(self.exercise)
+        before = earlier.verdict.score if earlier else None
+        # Never in a grader's kernel: what a student hands in would carry it.
+        solution = solution_of(self.exercise) if verdict.passed and is_live() else None
+        card = bundle.mimebundle(verdict, before=before, solution=solution)
+        if shell is None:
+            print(card["text/plain"])
+        elif self._handle is not None:
+            update_card(self._handle, card)
+        else:
+            self._handle = display_card(card)
+        if shell is not None:
+            _remember(shell, self.exercise, self.subject, _Shown(verdict, before, self._handle, "", None))
+
+    def _stop_telling(self) -> None:
+        self._over.set()
+        if self._teller is not None:
+            self._teller.join()
+            self._teller = None
+
+    def _tell(self) -> None:
+        began = time.monotonic()
+        earlier = _shown.get(self.exercise)
+        while not self._over.wait(SOON):
+            words = f"Checking{' again' if earlier else ''}: {self._doing}, {duration(time.monotonic() - began)} …"
+            if earlier is not None:
+                card = bundle.mimebundle(earlier.verdict, before=earlier.before, notice=words)
+            else:
+                card = bundle.waiting_bundle(self.exercise, words)
+            if self._handle is None:
+                self._handle = display_card(card)
+            else:
+                update_card(self._handle, card)
+
+
+def is_live() -> bool:
+    """Whether somebody may be looking: a notebook's kernel, and neither a grader's nor Validate's."""
+    return notebook_shell() is not None and not os.environ.get(SOCKET_VARIABLE) and not is_validating()
+
+
+def is_validating() -> bool:
+    """Whether nbgrader's Validate runs this notebook."""
+    return os.environ.get(VALIDATING) == "1"
+
+
+def _remember(shell: Any, exercise: str, subject: Any, shown: _Shown) -> None:
+    if inspect.isclass(subject) or inspect.isfunction(subject):
+        shown.name, shown.subject = subject.__name__, weakref.ref(subject)
+    _shown[exercise] = shown
+    if not _watching and is_live():
+        _watching.append(shell)
+        shell.events.register("post_run_cell", _dim_what_is_out_of_date)
+
+
+def _dim_what_is_out_of_date(_: Any = None) -> None:
+    """After each cell: a card stays true for as long as its class or function is the one that was checked."""
+    names = getattr(_watching[0], "user_ns", {})
+    for shown in _shown.values():
+        if shown.dated or not shown.name or shown.name not in names:
+            continue
+        if names[shown.name] is not shown.subject():
+            shown.dated = True
+            notice = f"{shown.name} has changed since this check: run the check again."
+            update_card(shown.handle, bundle.mimebundle(shown.verdict, before=shown.before, notice=notice))
+
+
+def display_card(card: dict[str, str]) -> Any:
+    """Show a card below the cell that runs; what it is updated with."""
+    from IPython.display import display
+
+    return display(card, raw=True, display_id=True)  # type: ignore[no-untyped-call]
+
+
+def update_card(handle: Any, card: dict[str, str]) -> None:
+    """Show another card in a card's place."""
+    # A kernel that is ending has closed its streams.
+    if not sys.is_finalizing():
+        handle.update(card, raw=True)

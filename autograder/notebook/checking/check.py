@@ -1,0 +1,172 @@
+"""The check cell: run the subject at the judge's word, show its card, give the score."""
+
+from __future__ import annotations
+
+import inspect
+from typing import TYPE_CHECKING, Any, Protocol
+
+from autograder.cards import bundle
+from autograder.messages import checks as messages
+from autograder.notebook.checking.captured_output import CapturedOutput
+from autograder.notebook.checking.card_display import CardDisplay, is_validating
+from autograder.notebook.checking.check_context import CheckContext
+from autograder.notebook.checking.graph_questions import GraphQuestions
+from autograder.notebook.checking.judge_link import JudgeLink, JudgeUnreachable
+from autograder.notebook.checking.kept_checks import keep
+from autograder.notebook.checking.path_run import PathRun, is_path, send_sources
+from autograder.notebook.checking.score import Score
+from autograder.notebook.checking.shorter_waits import ShorterWaits
+from autograder.notebook.checking.subject_run import SubjectRun, Tell
+from autograder.notebook.checking.validating import raise_unless_full
+from autograder.notebook.nodes.ros_session import prepare_environment
+from autograder.verdict import Verdict, not_checked
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.messages.lines import Message
+
+
+class Place(Protocol):
+    """Where a check's card is shown."""
+
+    def doing(self, what: str) -> None:
+        """Say what goes on, in a few words."""
+
+
+LINE = 70
+"""Characters of a line of output that are shown while a check goes on."""
+
+
+def check(exercise: str, subject: Any) -> float:
+    """Let the judge check a subject, and show the verdict as a card.
+
+    Args:
+        exercise: The exercise's id, such as ``"lab_1_2.talker"``.
+        subject: A class derived from ``Node``, or a function; not an instance and not the result of a call. For
+            an exercise about files, the path of the workspace or of the launch file.
+
+    Returns:
+        The points earned. A grader takes its points from the judge itself, not from here.
+
+    Raises:
+        TypeError: The subject is neither a class nor a function nor a path; the message says what to write instead.
+    """
+    if not (inspect.isclass(subject) or callable(subject) or is_path(subject)):
+        raise TypeError(what_to_pass(exercise, subject))
+    prepare_environment()
+    with CardDisplay(exercise, subject) as place:
+        verdict = _ask(exercise, subject, place)
+        place.show(verdict)
+    keep(verdict)
+    if is_validating():
+        raise_unless_full(verdict)
+    return Score(verdict.score)
+
+
+def _ask(exercise: str, subject: Any, place: CardDisplay) -> Verdict:
+    try:
+        link = JudgeLink()
+    except JudgeUnreachable as error:
+        return not_checked(exercise, exercise, 0.0, str(error))
+    try:
+        return converse(link, exercise, subject, place)
+    except JudgeUnreachable as error:
+        return not_checked(exercise, exercise, 0.0, str(error), "Run the cell again.")
+    finally:
+        link.close()
+
+
+def converse(link: JudgeLink, exercise: str, subject: Any, card: Place) -> Verdict:
+    """Do what the judge says until it has a verdict.
+
+    Args:
+        link: To the judge.
+        exercise: The exercise's id.
+        subject: What is checked.
+        card: Is told what goes on.
+
+    Raises:
+        JudgeUnreachable: The judge is gone, or the link was closed.
+    """
+    link.say(messages.Check(exercise, kind="class" if inspect.isclass(subject) else "function"))
+    bundle.prepare()  # while the judge makes its node
+    first = link.hear()
+    if isinstance(first, messages.Collect):
+        # A grader builds and runs what a path leads to by itself.
+        send_sources(link.say, subject)
+        return _last_words(exercise, link.hear())
+    if not isinstance(first, messages.Begin):
+        return _last_words(exercise, first)
+    run: SubjectRun | PathRun | None = None
+    number = 0
+
+    def tell(kind: Callable[..., Message], **data: Any) -> None:
+        link.say(kind(number, **data))
+
+    with (
+        CheckContext(first.domain, first.keeper) as place,
+        CapturedOutput(lambda line, logged: tell(messages.Output, text=line, logged=logged)) as captured,
+        ShorterWaits(captured.is_captured, tell) as waits,
+        GraphQuestions(lambda: tell(messages.Looked), captured.is_captured) as questions,
+    ):
+        link.say(messages.Ready())
+        try:
+            while True:
+                match order := link.hear():
+                    case messages.Meet():
+                        place.ensure(fresh=order.fresh)
+                        link.say(messages.Met(place.sees(order.there, order.gone, order.within)))
+                    case messages.Start():
+                        place.ensure(fresh=order.fresh)
+                        number = order.run
+                        card.doing(f"run {number} of your code")
+                        run = (
+                            PathRun(number, exercise, subject, first.domain, _retold(link.say, card))
+                            if is_path(subject)
+                            else SubjectRun(number, subject, place.context, link.say)
+                        )
+                        waits.begin_run(factor=order.sleep_factor, spare=order.spare)
+                        questions.begin_run()
+                        run.start(order.arguments, order.options)
+                    case messages.Release() if run is not None:
+                        run.release()
+                    case messages.Interrupt() if isinstance(run, PathRun):
+                        run.interrupt()
+                    case messages.Stack() if run is not None:
+                        link.say(messages.Stacks(number, captured.stacks()))
+                    case messages.Stop() if run is not None:
+                        if not run.stop():
+                            place.renew()  # what will not end keeps the old context and is no longer heard
+                        link.say(messages.Stopped(number))
+                        card.doing(f"the judge looks at run {number}")
+                        run = None
+                    case messages.Judged() | messages.Refused():
+                        return _last_words(exercise, order)
+        finally:
+            if run is not None:
+                run.stop()
+
+
+def _last_words(exercise: str, words: messages.FromJudge) -> Verdict:
+    if isinstance(words, messages.Judged):
+        return words.verdict
+    why = words.why if isinstance(words, messages.Refused) else "the judge refused"
+    return not_checked(exercise, exercise, 0.0, why)
+
+
+def _retold(tell: Tell, card: Place) -> Tell:
+    """What a program says goes to the judge; its last line tells who waits what goes on, such as a build."""
+
+    def told(message: Message) -> None:
+        if isinstance(message, messages.Output) and message.text.strip() and not message.text.startswith("@"):
+            card.doing(message.text.strip()[:LINE])
+        tell(message)
+
+    return told
+
+
+def what_to_pass(exercise: str, subject: Any, call: str = "check") -> str:
+    """What to write instead of a subject that is none."""
+    kind = type(subject).__name__
+    return f"{call}({exercise!r}, …) takes your class or function itself, without parentheses after it, not a {kind}"

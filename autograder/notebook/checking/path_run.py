@@ -1,0 +1,117 @@
+"""One run of a path as a subject: the workspace is built, or the launch file launched, in a process of its own."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+from autograder.messages.checks import Exited, Output, Sources
+from autograder.messages.workspaces import Source
+from autograder.short_lines import short_lines
+from autograder.workspaces.running.own_session import OwnSession
+from autograder.workspaces.sources.collecting import BadSources, collect_launch, collect_workspace
+from autograder.workspaces.sources.finding import workspace_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from autograder.notebook.checking.subject_run import Tell
+
+POLITE = 1.5
+"""Seconds of wall time that the programs have to end after an interrupt, before they are killed."""
+MAX_LINE = 4_000
+"""Bytes of one line of output."""
+
+
+class PathRun:
+    """Runs ``python -m autograder.workspaces`` on a path once, on the domain of the check."""
+
+    def __init__(
+        self, number: int, exercise: str, path: str | os.PathLike[str], domain: int, tell: Tell
+    ) -> None:
+        self._number = number
+        self._command = [sys.executable, "-m", "autograder.workspaces", exercise, os.fspath(path)]
+        self._domain = domain
+        self._tell = tell
+        self._program: OwnSession | None = None
+        self._reader: threading.Thread | None = None
+
+    def start(self, arguments: Sequence[Any], options: Mapping[str, Any]) -> None:
+        """Start the process.
+
+        Args:
+            arguments: Where an exercise is about several programs: which one, and what it is called with.
+            options: None for a path.
+        """
+        del options
+        # Interrupting the kernel must not end it halfway: the judge says when it ends.
+        self._program = OwnSession([*self._command, *map(str, arguments)], _environment(self._domain))
+        self._reader = threading.Thread(target=self._follow, args=(self._program,), daemon=True)
+        self._reader.start()
+
+    def release(self) -> None:
+        """A process runs from its start."""
+
+    def interrupt(self) -> None:
+        """Ctrl-C, as in a terminal."""
+        if self._program is not None:
+            self._program.interrupt()
+
+    def stop(self) -> bool:
+        """End the process with all that it started."""
+        if self._program is not None:
+            self._program.end(POLITE)
+        if self._reader is not None:
+            self._reader.join(timeout=POLITE)
+        return True
+
+    def _follow(self, program: OwnSession) -> None:
+        with program.output as stream:
+            self._pass_on(stream)
+        self._tell(Exited(self._number, program.wait()))
+
+    def _pass_on(self, stream: IO[bytes]) -> None:
+        for line in short_lines(stream, MAX_LINE):
+            text = line.decode("utf-8", "replace").rstrip("\r\n")
+            self._tell(Output(self._number, text))
+
+
+def is_path(subject: object) -> bool:
+    """Whether a subject is a path: a text or a ``pathlib.Path``."""
+    return isinstance(subject, (str, Path))
+
+
+def send_sources(tell: Tell, subject: object) -> None:
+    """Tell a grader's judge what it asks for: everything that a check of this path may need.
+
+    Args:
+        tell: Tells the judge.
+        subject: What the check cell was given; of what is no path there are no sources.
+    """
+    path, sent, trouble = "nothing", list[Source](), ""
+    try:
+        if not isinstance(subject, (str, Path)):
+            raise BadSources(f"check(...) takes the path of files here, not a {type(subject).__name__}")
+        file = Path(subject)
+        if file.suffix and not file.is_dir():
+            path, sent = collect_launch(file, workspace_of(file, (file.resolve().parent, Path.cwd())))
+        else:
+            path, sent = file.resolve().name or "nothing", collect_workspace(file)
+    except (BadSources, OSError) as error:
+        trouble = str(error)
+    for source in sent:
+        tell(source)
+    tell(Sources(path, trouble))
+
+
+def _environment(domain: int) -> dict[str, str]:
+    """The kernel's own environment, on the domain of the check and on its transport."""
+    return {
+        **os.environ,
+        "ROS_DOMAIN_ID": str(domain),
+        "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
+        "PYTHONUNBUFFERED": "1",
+    }

@@ -1,0 +1,152 @@
+"""One run of a subject in the kernel: a node class is made and spun, a function is called, each in a thread."""
+
+from __future__ import annotations
+
+import ctypes
+import inspect
+import threading
+import traceback
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from std_msgs.msg import Empty
+
+from autograder.messages.checks import Constructed, Raised, Returned, Started
+from autograder.notebook.cells.student_tracebacks import student_frames
+from autograder.notebook.checking.judge_link import MAX_TEXT
+from autograder.notebook.nodes.spin_threads import Failure, SpinThreads
+
+if TYPE_CHECKING:
+    from rclpy.context import Context
+
+    from autograder.messages.lines import Message
+
+Tell = Callable[["Message"], None]
+"""Tells the judge something."""
+
+END_LIMIT = 1.5
+"""Seconds of wall time in which a stopped subject must have left its thread."""
+
+
+class SubjectRun:
+    """Runs one subject once."""
+
+    def __init__(self, number: int, subject: Any, context: Context, tell: Tell) -> None:
+        self._number = number
+        self._subject = subject
+        self._context = context
+        self._tell = tell
+        self._released = threading.Event()
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._live, name=f"subject {number}", daemon=True)
+        self._spinning = False
+        self._arguments: Sequence[Any] = ()
+        self._options: Mapping[str, Any] = {}
+
+    def start(self, arguments: Sequence[Any], options: Mapping[str, Any]) -> None:
+        """Begin.
+
+        Args:
+            arguments: What the class or function is called with.
+            options: Passed on where a function has parameters of these names; for a class, ``threads`` says how many
+                threads spin it.
+        """
+        self._arguments, self._options = arguments, options
+        self._thread.start()
+
+    def release(self) -> None:
+        """Let a made node spin."""
+        self._released.set()
+
+    def stop(self) -> bool:
+        """End the run; whether its thread is gone."""
+        self._stopping.set()
+        self._released.set()
+        self._thread.join(timeout=END_LIMIT if self._spinning else END_LIMIT / 5)
+        if self._thread.is_alive():
+            _ask_to_leave(self._thread)
+            self._thread.join(timeout=END_LIMIT)
+        return not self._thread.is_alive()
+
+    def _live(self) -> None:
+        try:
+            if inspect.isclass(self._subject):
+                self._make_and_spin()
+            else:
+                accepted = _accepted(self._subject, self._options)
+                self._tell(Started(self._number, sorted(accepted)))
+                value = self._subject(*self._arguments, **accepted)
+                self._tell(Returned(self._number, None if value is None else repr(value)[:MAX_TEXT]))
+        except ExternalShutdownException:
+            pass
+        except BaseException as error:
+            if not (self._stopping.is_set() and isinstance(error, SystemExit)):
+                self._tell(Raised(self._number, formatted(error)))
+
+    def _make_and_spin(self) -> None:
+        node = self._subject(*self._arguments)
+        if not isinstance(node, Node):
+            raise TypeError(
+                f"{self._subject.__name__} is no Node: write class {self._subject.__name__}(Node)"
+            )
+        self._tell(Constructed(self._number, _mark(node, self._number)))
+        self._released.wait()
+        threads = SpinThreads(
+            [node],
+            threads=int(self._options.get("threads", 1)),
+            on_failure=self._callback_raised,
+            on_end=lambda _: self._stopping.set(),
+        )
+        self._spinning = True
+        threads.start()
+        self._stopping.wait()
+        threads.stop(grace=END_LIMIT / 3)
+
+    def _callback_raised(self, failure: Failure) -> None:
+        # In a program, rclpy.spin ends with the first exception of a callback; so does the subject here.
+        if not self._stopping.is_set():
+            self._tell(Raised(self._number, formatted(failure.error)))
+
+
+def formatted(error: BaseException) -> str:
+    """The traceback with the student's own lines, as a terminal shows it.
+
+    An error that collects those of callbacks is replaced by the first of them.
+    """
+    collected = getattr(error, "errors", ())
+    if collected and isinstance(getattr(collected[0], "error", None), BaseException):
+        error = collected[0].error
+    shown = traceback.format_exception(type(error), error, student_frames(error.__traceback__))
+    text = "".join(shown).strip()
+    # The beginning says where it began, the end what was raised.
+    return text if len(text) <= MAX_TEXT else f"{text[: MAX_TEXT // 2]}\n{text[-MAX_TEXT // 2 + 1 :]}"
+
+
+def _mark(node: Node, number: int) -> str:
+    """Put a last endpoint of each kind on the graph: whoever sees it has seen all that the subject made before."""
+    name = f"/_ready_{number}"
+    try:
+        Node.create_publisher(node, Empty, name, 1)
+        Node.create_subscription(node, Empty, name, lambda _: None, 1)
+    except Exception:
+        return ""
+    return name
+
+
+def _accepted(function: Any, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Those of the options that the function has a parameter for."""
+    try:
+        parameters = inspect.signature(function).parameters
+    except (TypeError, ValueError):
+        return {}
+    if any(p.kind is inspect.Parameter.VAR_KEYWORD for p in parameters.values()):
+        return dict(options)
+    return {name: value for name, value in options.items() if name in parameters}
+
+
+def _ask_to_leave(thread: threading.Thread) -> None:
+    """Raise SystemExit in a thread that will not end, such as one in an endless loop."""
+    if thread.ident is not None:
+        ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident), ctypes.py_object(SystemExit))

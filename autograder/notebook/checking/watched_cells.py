@@ -1,0 +1,193 @@
+"""Watch mode: a class is checked again each time that its cell defines it anew, on the student's request.
+
+The cell ends as fast as ever, and the check goes on while the kernel has nothing else to do. A check swaps rclpy's
+default context and reads all that is printed, so it cannot go on beside a cell: it gives way to whatever is run next,
+and begins again after that. What is watched is in the memory of the kernel alone, so a restart ends it; where a class
+is graded nothing is watched.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextvars
+import inspect
+import threading
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from autograder.cards import bundle
+from autograder.notebook.cells.student_tracebacks import notebook_shell
+from autograder.notebook.checking.card_display import display_card, is_live, update_card
+from autograder.notebook.checking.check import converse, what_to_pass
+from autograder.notebook.checking.judge_link import JudgeLink, JudgeUnreachable
+from autograder.notebook.checking.kept_checks import keep
+from autograder.verdict import not_checked
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.verdict import Verdict
+
+
+@dataclass
+class Watch:
+    """One exercise that is watched. Made by ``watch``.
+
+    Attributes:
+        exercise: The exercise's id.
+        name: What the class or function is called in the notebook.
+        subject: The one that was seen last.
+        due: Whether it is still to be checked.
+    """
+
+    exercise: str
+    name: str
+    subject: Any
+    due: bool = False
+    _verdict: Verdict | None = None
+    _handle: Any = None
+    _here: contextvars.Context = field(default_factory=contextvars.copy_context)
+
+    def is_defined_anew(self, subject: Any) -> bool:
+        """Whether this is another class or function than the one seen last."""
+        return subject is not self.subject and (inspect.isclass(subject) or inspect.isfunction(subject))
+
+    def begin(self, subject: Any) -> None:
+        """Show a card below the cell that runs, which has just defined this subject; it is due from now on."""
+        if self._handle is not None:
+            # Where the same cell was run again, its earlier card is gone already.
+            self._say(f"{self.name} is defined anew by another cell.")
+        self.subject, self.due = subject, True
+        self._here = contextvars.copy_context()  # what belongs to which cell is in there
+        self._handle = display_card(self._card("Is checked as soon as this cell has ended."))
+
+    def doing(self, what: str) -> None:
+        """Say what goes on, in a few words."""
+        self._say(f"Checking: {what} …")
+
+    def give_way(self) -> None:
+        """Say that another cell runs first."""
+        self._say("Is checked as soon as the cell that runs now has ended.")
+
+    def show(self, verdict: Verdict) -> None:
+        """Show the result in the card's place."""
+        before = self._verdict.score if self._verdict else None
+        self._verdict, self.due = verdict, False
+        self._here.run(update_card, self._handle, bundle.mimebundle(verdict, before=before, short=True))
+        self._here.run(keep, verdict)
+
+    def _say(self, words: str) -> None:
+        self._here.run(update_card, self._handle, self._card(words))
+
+    def _card(self, words: str) -> dict[str, str]:
+        if self._verdict is None:
+            return bundle.waiting_bundle(f"{self.exercise}, {self.name}", words)
+        return bundle.mimebundle(self._verdict, notice=words, short=True)
+
+    def __repr__(self) -> str:
+        """One line for the end of a cell."""
+        if _watches is None or _watches.all.get(self.exercise) is not self:
+            return f"{self.name} is not watched."
+        return f"{self.name} is checked again whenever its cell is run. unwatch() ends it."
+
+
+class Watches:
+    """All that is watched in this kernel.
+
+    Args:
+        shell: IPython's.
+    """
+
+    def __init__(self, shell: Any) -> None:
+        self.all: dict[str, Watch] = {}
+        self._names: dict[str, Any] = shell.user_ns
+        self._thread: threading.Thread | None = None
+        self._link: JudgeLink | None = None
+        self._giving_way = False
+        self._lock = threading.Lock()
+        # Before all else that follows a cell, and around each execution, also of what front ends ask for silently.
+        shell.events.register("pre_execute", self._give_way)
+        shell.events.register("post_execute", self._go_on)
+        atexit.register(self._give_way)  # before ROS is shut down
+
+    def _go_on(self) -> None:
+        """A cell has ended: check what it has defined anew, and what had to give way to it."""
+        for watch in self.all.values():
+            subject = self._names.get(watch.name)
+            if watch.is_defined_anew(subject):
+                watch.begin(subject)
+        if any(watch.due for watch in self.all.values()):
+            self._giving_way = False
+            self._thread = threading.Thread(target=self._check_what_is_due, name="watched cells", daemon=True)
+            self._thread.start()
+
+    def _give_way(self) -> None:
+        """A cell is about to run: end the check that goes on; it begins again afterwards."""
+        if self._thread is None:
+            return
+        with self._lock:
+            self._giving_way = True
+            if self._link is not None:
+                self._link.close()
+        self._thread.join()
+        self._thread = None
+
+    def _check_what_is_due(self) -> None:
+        for watch in list(self.all.values()):
+            if watch.due:
+                watch.doing("the judge gets ready")
+                self._check(watch)
+
+    def _check(self, watch: Watch) -> None:
+        try:
+            link = JudgeLink()
+            with self._lock:
+                self._link = link
+                if self._giving_way:
+                    link.close()
+            try:
+                verdict = converse(link, watch.exercise, watch.subject, watch)
+            finally:
+                link.close()
+        except JudgeUnreachable as error:
+            if self._giving_way:
+                watch.give_way()
+                return
+            verdict = not_checked(watch.exercise, watch.exercise, 0.0, str(error), "Run the cell again.")
+        watch.show(verdict)
+
+
+_watches: Watches | None = None
+
+
+def watch(exercise: str, subject: Callable[..., Any]) -> Watch:
+    """Check a class again whenever its cell is run, until ``unwatch()`` or the kernel's restart.
+
+    A short card with the points, what happened and what to do next comes below that cell. It changes no grade. While a
+    class is graded, and while Validate runs the notebook, nothing is watched.
+
+    Args:
+        exercise: The exercise's id, such as ``"lab_1_2.talker"``.
+        subject: The class or function, as in the check cell.
+
+    Raises:
+        TypeError: The subject is neither a class nor a function; the message says what to write instead.
+    """
+    global _watches
+    if not (inspect.isclass(subject) or inspect.isfunction(subject)):
+        raise TypeError(what_to_pass(exercise, subject, "watch"))
+    begun = Watch(exercise, subject.__name__, subject)
+    if is_live():
+        _watches = _watches or Watches(notebook_shell())
+        # A call in the class's own cell comes with each run, and must not take the new class for one that it has seen.
+        earlier = _watches.all.get(exercise)
+        if earlier is not None and earlier.name == begun.name:
+            return earlier
+        _watches.all[exercise] = begun
+    return begun
+
+
+def unwatch() -> None:
+    """Watch nothing any more; what the cards say stays."""
+    if _watches is not None:
+        _watches.all.clear()

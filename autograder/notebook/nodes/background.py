@@ -1,0 +1,234 @@
+"""Nodes that spin in the background of a notebook, and what becomes of them when their cell is run again."""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING, Any
+
+from autograder.notebook.cells.cell_runs import CellRun, CellWatch
+from autograder.notebook.cells.notebook_output import let_log_lines_arrive, say
+from autograder.notebook.nodes.callback_errors import CallbackError, CallbackErrors
+from autograder.notebook.nodes.made_nodes import MadeNodes, NodeIdentity
+from autograder.notebook.nodes.node_ends import destroy_node, node_label
+from autograder.notebook.nodes.spin_threads import GRACE, Ending, SpinThreads
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    from rclpy.node import Node
+
+    from autograder.notebook.nodes.lending_executors import Taken
+
+
+class Background:
+    """Nodes that spin while the notebook goes on. Made by ``spin_in_background``.
+
+    Args:
+        nodes: At least one; they have been checked.
+        threads: How many callbacks may run at a time.
+        name: What the student calls it, if anything.
+        shown: Whether errors in callbacks and other news are printed.
+    """
+
+    def __init__(
+        self, nodes: Sequence[Node], *, threads: int = 1, name: str | None = None, shown: bool = True
+    ) -> None:
+        self.name = name
+        self.run: CellRun | None = _cells.current
+        self._shown = shown
+        self._size = threads
+        self._label = ", ".join(node_label(node) for node in nodes)
+        self._errors = CallbackErrors(shown=shown)
+        self._threads = SpinThreads(
+            nodes, threads=threads, on_failure=self._errors.record, on_end=self._when_ended
+        )
+        self._threads.executor.on_taken = self._when_taken
+
+    @property
+    def nodes(self) -> tuple[Node, ...]:
+        """The nodes, in the order in which they were given."""
+        return self._threads.nodes
+
+    @property
+    def running(self) -> bool:
+        """Whether the nodes spin."""
+        return self._threads.running
+
+    @property
+    def errors(self) -> tuple[CallbackError, ...]:
+        """What went wrong in callbacks so far, each error once with its count."""
+        return self._errors.all
+
+    def start(self) -> None:
+        """Begin to spin."""
+        with _lock:
+            _running.append(self)
+        self._threads.start()
+
+    def stop(self) -> None:
+        """Stop spinning and destroy the nodes. Calling it again does no harm."""
+        was_running = self.running
+        self.end()
+        if was_running:
+            self._errors.show_counts()
+
+    def end(self, *, keep: Collection[Node] = (), grace: float = GRACE) -> None:
+        """Stop, but leave some nodes alive so that they can be spun again.
+
+        Args:
+            keep: The nodes to leave alive.
+            grace: Seconds that a running callback has to return by itself.
+        """
+        for node in self.nodes:
+            if any(node is kept for kept in keep):
+                self._threads.let_go(node)
+        try:
+            self._threads.stop(grace)
+        except KeyboardInterrupt:
+            # An impatient second interrupt must not leave threads behind.
+            self._threads.stop(grace=0.0)
+            raise
+        if self._shown:
+            let_log_lines_arrive()
+
+    def drop(self, node: Node) -> None:
+        """Part with one node for good; with the last one the background ends."""
+        self._threads.let_go(node)
+        destroy_node(node)
+        if not self.nodes:
+            self.end()
+
+    def __enter__(self) -> Background:
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.stop()
+
+    def __repr__(self) -> str:
+        """One line for the end of a cell."""
+        name = f"{self.name}: " if self.name else ""
+        if not self.running:
+            return f"{name}{self._label} stopped."
+        threads = f" in {self._size} threads" if self._size > 1 else ""
+        trouble = f" Errors so far: {sum(error.count for error in self.errors)}." if self.errors else ""
+        return f"{name}{self._label} spinning in the background{threads}. .stop() ends it.{trouble}"
+
+    def _when_ended(self, ending: Ending) -> None:
+        with _lock:
+            if self in _running:
+                _running.remove(self)
+        if not self._shown:
+            return
+        if ending is Ending.ROS_SHUT_DOWN:
+            say(
+                f"ROS was shut down, so {self._label} spins no longer. "
+                "To go on, call start_ros() and run the cell again that made it."
+            )
+        elif ending is Ending.CALLBACK_ASKED:
+            say(f"A callback raised SystemExit, so {self._label} spins no longer.")
+        elif ending is Ending.EXECUTOR_FAILED:
+            say(f"The executor failed, so {self._label} spins no longer. Run the cell again.")
+
+    def _when_taken(self, taken: Taken) -> None:
+        if not self._shown:
+            return
+        name = node_label(taken.node)
+        if self._threads.is_own_thread() and taken.caller:
+            say(
+                f"A callback of {name} calls rclpy.{taken.caller}(). A callback must not spin its own node: "
+                "what it waits for may never come. Use `await`, or add_done_callback()."
+            )
+        elif not taken.comes_back:
+            say(f"{name} was added to another executor, so it spins in the background no longer.")
+        elif taken.caller == "spin":
+            say(
+                f"{name} spins in the background already. rclpy.spin() blocks this cell: "
+                "interrupt the kernel to go on."
+            )
+
+
+def replace_named(name: str, keep: Collection[Node]) -> None:
+    """Stop the background of that name, if there is one, but leave some nodes alive."""
+    for background in running_backgrounds():
+        if background.name == name:
+            background.end(keep=keep)
+
+
+def running_backgrounds() -> list[Background]:
+    """All backgrounds, oldest first."""
+    with _lock:
+        return list(_running)
+
+
+def end_everything(grace: float = GRACE) -> None:
+    """Stop all backgrounds and destroy all nodes.
+
+    Args:
+        grace: Seconds that each running callback has to return by itself.
+    """
+    for background in running_backgrounds():
+        background.end(grace=grace)
+    for made in _made.alive():
+        destroy_node(made.node)
+
+
+def _background_of(node: Node) -> Background | None:
+    return next((b for b in running_backgrounds() if any(node is other for other in b.nodes)), None)
+
+
+def _undo_earlier_run(run: CellRun) -> None:
+    """Before a cell is run again, end what its earlier run left: its nodes would echo into the new run.
+
+    A node that another cell made only stops spinning, as the variable that holds it may be used again. What
+    was given a name of its own stays.
+    """
+    left_behind = [
+        made.node for made in _made.alive() if run.is_later_run_of(made.run) and not _is_named(made.node)
+    ]
+    for background in running_backgrounds():
+        if background.name is None and run.is_later_run_of(background.run):
+            background.end(keep=[node for node in background.nodes if not _is_in(node, left_behind)])
+    for node in left_behind:
+        _end_node(node)
+
+
+def _make_room(newcomer: NodeIdentity) -> None:
+    """Before a node is made, end one of its name that another run of a cell left: all would come twice.
+
+    Before and not after, as rcl would warn, and would end the logs of both when either is destroyed. Two of
+    one name out of one run are meant to be: the course shows what two servers of a name do.
+    """
+    for made in _made.alive():
+        if made.identity == newcomer and made.run != _cells.current:
+            background = _background_of(made.node)
+            if background is not None and background.running:
+                say(
+                    f"A {node_label(made.node)} of an earlier cell was spinning still. "
+                    "It was stopped, so that nothing comes twice."
+                )
+            _end_node(made.node)
+
+
+def _end_node(node: Node) -> None:
+    background = _background_of(node)
+    if background is not None:
+        background.drop(node)
+    else:
+        destroy_node(node)
+
+
+def _is_named(node: Node) -> bool:
+    background = _background_of(node)
+    return background is not None and background.name is not None
+
+
+def _is_in(node: Node, nodes: Sequence[Any]) -> bool:
+    return any(node is other for other in nodes)
+
+
+_running: list[Background] = []
+_lock = threading.Lock()
+_cells = CellWatch()
+_made = MadeNodes(current_run=lambda: _cells.current, before_making=_make_room)
+_made.watch()
+_cells.before_each_run(_undo_earlier_run)

@@ -1,0 +1,158 @@
+"""What a student sees of an exception in a callback: the traceback once, then a count."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from rclpy.action.client import ActionClient
+from rclpy.action.server import ActionServer
+from rclpy.client import Client
+from rclpy.service import Service
+from rclpy.subscription import Subscription
+from rclpy.timer import Timer
+
+from autograder.notebook.cells.notebook_output import say
+from autograder.notebook.cells.student_tracebacks import PlainlyShownError, last_student_line, render
+from autograder.notebook.nodes.node_ends import NodeEndedError, node_label
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.notebook.nodes.spin_threads import Failure
+
+
+_HUNG_CALL = (
+    "While a callback waits in call(), only another thread can take the answer: "
+    "give the client a callback group of its own, and spin with threads=2."
+)
+
+
+@dataclass(frozen=True)
+class CallbackError:
+    """One error in a callback, however often it came.
+
+    Attributes:
+        node: The node's name.
+        where: Whose callback it was, such as ``"its timer (every 0.5 s)"``.
+        error: The exception when it came first, with its traceback.
+        count: How often it came.
+    """
+
+    node: str
+    where: str
+    error: BaseException
+    count: int = 1
+
+    def __str__(self) -> str:
+        """One line: where, what and how often."""
+        times = "" if self.count == 1 else f", {self.count} times"
+        return f"{self.node}, in the callback of {self.where}{times}: {_last_line(self.error)}"
+
+
+class CallbackFailedError(PlainlyShownError, RuntimeError):
+    """Raised at the end of ``with spinning(...)`` when a callback raised in it; its traceback is out already.
+
+    Attributes:
+        errors: What was raised in callbacks, in the order in which it came first.
+    """
+
+    def __init__(self, errors: Sequence[CallbackError]) -> None:
+        self.errors = tuple(errors)
+        super().__init__("\n".join(map(str, errors)))
+
+    def _render_traceback_(self) -> list[str]:
+        return [f"{type(self).__name__}: {self}", "(traceback above)"]
+
+
+class CallbackErrors:
+    """Collects the errors of one background's callbacks.
+
+    Args:
+        shown: Whether each new error is shown in the notebook. A check, which shows a card, wants them quiet.
+    """
+
+    def __init__(self, *, shown: bool = True) -> None:
+        self._shown = shown
+        self._lock = threading.Lock()
+        self._errors: dict[Any, CallbackError] = {}
+
+    def record(self, failure: Failure) -> None:
+        """Take note of an error; show it if it is a new one."""
+        key = (type(failure.error), id(failure.entity), last_student_line(failure.error))
+        with self._lock:
+            known = self._errors.get(key)
+            if known is None:
+                seen = CallbackError(node_label(failure.node), describe(failure.entity), failure.error)
+            else:
+                seen = replace(known, count=known.count + 1)
+            self._errors[key] = seen
+        if not self._shown:
+            return
+        if known is None:
+            say(_report(seen, failure))
+        elif _is_milestone(seen.count):
+            say(f"The same error has come {seen.count} times now: {_last_line(seen.error)}")
+
+    @property
+    def all(self) -> tuple[CallbackError, ...]:
+        """The errors so far, in the order in which they came first."""
+        with self._lock:
+            return tuple(self._errors.values())
+
+    def show_counts(self) -> None:
+        """Say how often each error came that came more than once."""
+        for seen in self.all:
+            if self._shown and seen.count > 1:
+                say(f"Error in {seen}")
+
+
+def _report(seen: CallbackError, failure: Failure) -> str:
+    lines = [f"Error in {seen.node}, in the callback of {seen.where}:"]
+    if last_student_line(seen.error) is None:
+        lines += [_last_line(seen.error), *_hints(failure)]
+    else:
+        lines += render(seen.error)
+    if isinstance(seen.error, NodeEndedError):
+        lines.append(_HUNG_CALL)
+    if failure.goes_on:
+        lines.append(f"{seen.node} goes on. The same error will only be counted.")
+    return "\n".join(lines)
+
+
+def _hints(failure: Failure) -> list[str]:
+    """What to do about an error that rclpy itself raised after, or instead of, the student's callback."""
+    if isinstance(failure.entity, Timer) and failure.entity.callback is None:
+        return [
+            "The timer has None for a callback: the method was called when the timer was made, and what it "
+            "returned was given. Give the method itself, without parentheses: create_timer(0.5, self.tick)."
+        ]
+    if isinstance(failure.entity, Service):
+        return ["The callback of a service must return its response: end it with `return response`."]
+    return []
+
+
+def describe(entity: Any) -> str:
+    """Whose callback it was, in words."""
+    if isinstance(entity, Timer):
+        return f"its timer (every {entity.timer_period_ns / 1e9:g} s)"
+    if isinstance(entity, Subscription):
+        return f"its subscription to {entity.topic_name}"
+    if isinstance(entity, Service):
+        return f"its service {entity.srv_name}"
+    if isinstance(entity, Client):
+        return f"its client of {entity.srv_name}"
+    if isinstance(entity, ActionServer | ActionClient):
+        return "its action server" if isinstance(entity, ActionServer) else "its action client"
+    return "a task" if entity is None else f"its {type(entity).__name__}"
+
+
+def _last_line(error: BaseException) -> str:
+    text = str(error)
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__
+
+
+def _is_milestone(count: int) -> bool:
+    """10, 100, 1000 and so on."""
+    return count >= 10 and str(count).strip("0") == "1"

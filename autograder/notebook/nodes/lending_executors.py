@@ -1,0 +1,151 @@
+"""The two executors of rclpy, made aware of somebody taking one of their nodes away, and of goals that fail.
+
+A node is in one executor at a time. ``rclpy.spin_once(node)`` and ``rclpy.spin_until_future_complete(node,
+…)`` move it into rclpy's global executor and afterwards leave it in none: a node that spun in the background
+is deaf from then on (``rclpy/__init__.py``, ``rclpy/node.py``). These executors lend the node instead, and
+take it back.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import rclpy
+from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
+
+from autograder.notebook.nodes.goal_errors import report_goal_errors
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import FrameType
+
+    from rclpy.context import Context
+    from rclpy.node import Node
+    from rclpy.task import Task
+
+    from autograder.notebook.nodes.goal_errors import GoalErrorReport
+
+_RCLPY_SPINS = frozenset({"spin", "spin_once", "spin_until_future_complete"})
+_LOANS = "_nodes_to_return"
+
+
+@dataclass(frozen=True)
+class Taken:
+    """A node was moved out of its executor.
+
+    Attributes:
+        node: The node.
+        caller: The rclpy function that took it, such as ``"spin_once"``; None where it was another executor's
+            ``add_node``.
+        comes_back: Whether the node returns when that function ends.
+    """
+
+    node: Node
+    caller: str | None
+    comes_back: bool
+
+
+class LendingExecutor(Executor):
+    """What both executors of this module add to rclpy's."""
+
+    on_taken: Callable[[Taken], None] | None = None
+    """Called in the thread that takes a node, before it is gone."""
+    on_goal_error: GoalErrorReport | None = None
+    """Called with an error of an action server's execute callback."""
+
+    def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task:
+        """Have something run; rclpy's action servers have their goals executed so."""
+        if self.on_goal_error is not None:
+            args = report_goal_errors(callback, args, self.on_goal_error)
+        return super().create_task(callback, *args, **kwargs)
+
+    def release(self, node: Node) -> None:
+        """Let a node go for good, without a word."""
+        on_taken, self.on_taken = self.on_taken, None
+        try:
+            super().remove_node(node)
+        finally:
+            self.on_taken = on_taken
+
+    def remove_node(self, node: Node) -> None:
+        """Called by rclpy when another executor takes the node."""
+        had_it = node in self.get_nodes()
+        super().remove_node(node)
+        if not had_it or self.on_taken is None:
+            return
+        borrower = _global_executor_holding(node)
+        if borrower is not None:
+            _return_afterwards(borrower, node, self)
+        self.on_taken(Taken(node, _spinning_function(sys._getframe(1)), comes_back=borrower is not None))
+
+    def take_back(self, node: Node) -> None:
+        """Spin a node again that was lent."""
+        if self.on_taken is not None:
+            self.add_node(node)
+
+
+class LendingSingleThreadedExecutor(LendingExecutor, SingleThreadedExecutor):
+    """rclpy's single-threaded executor, lending its nodes."""
+
+
+class LendingMultiThreadedExecutor(LendingExecutor, MultiThreadedExecutor):
+    """rclpy's multi-threaded executor, lending its nodes."""
+
+
+def make_executor(threads: int, context: Context) -> LendingExecutor:
+    """The executor for so many threads, on the nodes' own context."""
+    if threads == 1:
+        return LendingSingleThreadedExecutor(context=context)
+    return LendingMultiThreadedExecutor(num_threads=threads, context=context)
+
+
+def wake_global_executor() -> None:
+    """Bring a callback that waits within ``rclpy.spin_once()`` back to Python for a moment."""
+    executor = _global_executor()
+    if executor is not None:
+        executor.wake()
+
+
+def _global_executor() -> Executor | None:
+    """The executor of ``rclpy.spin`` and the like, if there is one; rclpy's own function would make one."""
+    executor: Executor | None = getattr(rclpy, "__executor", None)
+    return executor
+
+
+def _global_executor_holding(node: Node) -> Executor | None:
+    """The global executor, if that is the one which has just added the node."""
+    executor = _global_executor()
+    return executor if executor is not None and node in executor.get_nodes() else None
+
+
+def _return_afterwards(borrower: Executor, node: Node, owner: LendingExecutor) -> None:
+    """Have the borrower give the node back when it removes it."""
+    loans: dict[int, LendingExecutor] | None = borrower.__dict__.get(_LOANS)
+    if loans is None:
+        loans = {}
+        _hook_remove_node(borrower, loans)
+    loans[id(node)] = owner
+
+
+def _hook_remove_node(borrower: Any, loans: dict[int, LendingExecutor]) -> None:
+    plain_remove_node = borrower.remove_node
+
+    def remove_node(node: Node) -> None:
+        plain_remove_node(node)
+        owner = loans.pop(id(node), None)
+        if owner is not None:
+            owner.take_back(node)
+
+    setattr(borrower, _LOANS, loans)
+    borrower.remove_node = remove_node
+
+
+def _spinning_function(frame: FrameType | None) -> str | None:
+    """The function of rclpy, called by the student, that is taking the node."""
+    while frame is not None:
+        if frame.f_globals.get("__name__") == "rclpy" and frame.f_code.co_name in _RCLPY_SPINS:
+            return frame.f_code.co_name
+        frame = frame.f_back
+    return None

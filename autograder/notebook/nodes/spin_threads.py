@@ -1,0 +1,335 @@
+"""The threads that spin nodes in the background, and how they end.
+
+Three properties of rclpy shape this file (``rclpy/executors.py`` of Jazzy):
+
+* an exception in a callback leaves ``spin``, so the thread would end and every node with it fall silent;
+* ``Executor.shutdown`` tears the executor down while another thread still waits in it, so the thread leaves
+  first;
+* nodes hold their executor by a weak reference only, so it is kept here.
+
+And one of Python's: a thread that still runs rclpy when the interpreter ends aborts the whole process. So
+every thread is joined, and a callback that never returns is broken off.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import queue
+import sys
+import threading
+import time
+from contextlib import suppress
+from dataclasses import dataclass
+from enum import Enum
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from rclpy.exceptions import InvalidHandle
+from rclpy.executors import ConditionReachedException, ExternalShutdownException, ShutdownException
+
+from autograder.notebook.nodes.lending_executors import make_executor, wake_global_executor
+from autograder.notebook.nodes.node_ends import NodeEndedError, destroy_node, release_waiting_calls
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from types import FrameType
+
+    from rclpy.node import Node
+    from rclpy.task import Task
+
+GRACE = 2.0
+"""Seconds that a running callback has to return by itself once its nodes are to stop."""
+_LAST_GRACE = 1.0
+"""Seconds that a callback has to end once it is broken off."""
+_ATTEMPTS = 3
+_LONG_WAIT = 1.0
+"""A call that waited longer than this, in seconds, when its node was stopped, hung."""
+_MAX_FAILED_WAITS = 10
+
+
+class CallbackBrokenOff(BaseException):
+    """Raised inside a callback that has not returned although its node is to stop."""
+
+    def __str__(self) -> str:
+        return "the callback did not return when its node was told to stop; it was broken off here"
+
+
+class Ending(Enum):
+    """Why nodes no longer spin."""
+
+    STOPPED = "stopped"
+    ROS_SHUT_DOWN = "ROS was shut down"
+    CALLBACK_ASKED = "a callback raised SystemExit"
+    EXECUTOR_FAILED = "the executor failed"
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A callback raised an exception.
+
+    Attributes:
+        error: What it raised, with its traceback.
+        entity: The timer, subscription, service or the like whose callback it was; None for a task.
+        node: Its node; None for a task.
+        goes_on: Whether the nodes go on spinning.
+    """
+
+    error: BaseException
+    entity: Any = None
+    node: Node | None = None
+    goes_on: bool = True
+
+
+@dataclass(frozen=True)
+class _Work:
+    task: Task
+    entity: Any
+    node: Node | None
+
+
+@dataclass(frozen=True)
+class _Running:
+    work: _Work
+    since: float
+
+
+class SpinThreads:
+    """Spins nodes in threads of their own until told to stop, then destroys them.
+
+    Args:
+        nodes: At least one, all of one context.
+        threads: How many callbacks may run at a time; more than one makes it a multi-threaded executor.
+        on_failure: Called for each callback that raised, in the thread that ran it.
+        on_end: Called once when all has ended, in whichever thread saw to it.
+    """
+
+    def __init__(
+        self,
+        nodes: Sequence[Node],
+        *,
+        threads: int = 1,
+        on_failure: Callable[[Failure], None],
+        on_end: Callable[[Ending], None],
+    ) -> None:
+        self._context = nodes[0].context
+        self.executor = make_executor(threads, self._context)
+        self.executor.on_goal_error = lambda error, server: self._report(error, server, server._node)
+        self._on_failure = on_failure
+        self._on_end = on_end
+        self._nodes = tuple(nodes)
+        self._stop = threading.Event()
+        self._ending = Ending.STOPPED
+        self._lock = threading.Lock()
+        self._finish_lock = threading.RLock()
+        self._finished = False
+        self._to_workers: queue.SimpleQueue[_Work | None] = queue.SimpleQueue()
+        self._queued: set[Task] = set()
+        self._running: dict[int, _Running] = {}
+        self._workers = threads if threads > 1 else 0
+        self._threads = [self._make_thread(self._take_work)]
+        self._threads += [self._make_thread(self._run_queued_work) for _ in range(self._workers)]
+        self._alive = len(self._threads)
+
+    def _make_thread(self, job: Callable[[], None]) -> threading.Thread:
+        # A daemon: Python joins all other threads before it runs exit handlers, so that one stuck callback
+        # would keep the kernel from ever ending.
+        return threading.Thread(target=self._thread, args=(job,), name="ros-spin", daemon=True)
+
+    @property
+    def nodes(self) -> tuple[Node, ...]:
+        """The nodes that it spins and will destroy."""
+        return self._nodes
+
+    @property
+    def running(self) -> bool:
+        """Whether the nodes are spun and nobody has asked to stop."""
+        return self._threads[0].is_alive() and not self._stop.is_set()
+
+    @property
+    def ending(self) -> Ending:
+        """Why it ended; only of use when it is not running."""
+        return self._ending
+
+    def is_own_thread(self) -> bool:
+        """Whether the caller is one of the callbacks."""
+        return threading.current_thread() in self._threads
+
+    def start(self) -> None:
+        """Begin to spin."""
+        for node in self._nodes:
+            self.executor.add_node(node)
+        for thread in self._threads:
+            thread.start()
+
+    def let_go(self, node: Node) -> None:
+        """Stop spinning one node, which is not destroyed."""
+        self.executor.release(node)
+        self._nodes = tuple(other for other in self._nodes if other is not node)
+
+    def stop(self, grace: float = GRACE) -> None:
+        """Stop spinning, wait for the callbacks that are running, and destroy the nodes.
+
+        A callback that does not return is broken off and reported as a failure. Called from within a
+        callback, this only asks: the end comes after that callback.
+
+        Args:
+            grace: Seconds that a running callback has to return by itself.
+        """
+        self._ask_to_stop(Ending.STOPPED)
+        if self.is_own_thread():
+            return
+        # From now on nobody takes an answer from the wire: a callback that waits for one would wait for ever.
+        for node in self._nodes:
+            release_waiting_calls(node)
+        if not self._join(grace):
+            self._break_off()
+        self._finish()
+
+    def _ask_to_stop(self, ending: Ending) -> None:
+        with self._lock:
+            if not self._stop.is_set():
+                self._ending = ending
+                self._stop.set()
+        with suppress(InvalidHandle):
+            self.executor.wake()
+
+    def _join(self, limit: float) -> bool:
+        """Wait for all threads to end, ``limit`` seconds at most; whether they did."""
+        deadline = time.monotonic() + limit
+        for thread in self._threads:
+            if thread.ident is not None:
+                thread.join(max(0.0, deadline - time.monotonic()))
+        return not any(thread.is_alive() for thread in self._threads)
+
+    def _break_off(self) -> None:
+        for _ in range(_ATTEMPTS):  # A bare `except:` in a loop survives the first.
+            for ident in list(self._running):
+                _raise_in_thread(ident, CallbackBrokenOff)
+            wake_global_executor()
+            if self._join(_LAST_GRACE / _ATTEMPTS):
+                return
+        # Stuck outside Python, or catching everything. The thread is left behind: it runs no rclpy, so that
+        # it does no harm when the interpreter ends.
+        frames = sys._current_frames()
+        for ident, running in list(self._running.items()):
+            error = CallbackBrokenOff().with_traceback(_traceback_of(frames.get(ident)))
+            self._on_failure(Failure(error, running.work.entity, running.work.node, goes_on=False))
+
+    def _finish(self) -> None:
+        """Take everything down; whoever comes first does it."""
+        with self._finish_lock:
+            if self._finished:
+                return
+            self.executor.on_taken = None
+            for node in self._nodes:
+                destroy_node(node)
+            self._close_unfinished_tasks()
+            with suppress(InvalidHandle):
+                self.executor.shutdown()
+            self._finished = True
+        self._on_end(self._ending)
+
+    def _close_unfinished_tasks(self) -> None:
+        """Close coroutines that will not run any more: Python complains on stderr of any never awaited."""
+        for task, *_ in list(getattr(self.executor, "_tasks", ())):
+            if not task.executing():
+                with suppress(Exception):
+                    task.cancel()
+
+    # What follows runs in the threads.
+
+    def _thread(self, job: Callable[[], None]) -> None:
+        try:
+            job()
+        except CallbackBrokenOff:
+            pass  # It came a moment after the callback had returned.
+        finally:
+            with self._lock:
+                self._alive -= 1
+                last_one_out = self._alive == 0
+            if last_one_out:
+                self._finish()
+
+    def _take_work(self) -> None:
+        """Wait on the wire and hand out what there is to do, until told to stop."""
+        failed_waits = 0
+        try:
+            while not self._stop.is_set():
+                try:
+                    work = self._next_work()
+                except Exception as error:  # Such as InvalidHandle, of a node destroyed at this moment.
+                    failed_waits += 1
+                    if failed_waits == _MAX_FAILED_WAITS:
+                        self._on_failure(Failure(error, goes_on=False))
+                        self._ask_to_stop(Ending.EXECUTOR_FAILED)
+                else:
+                    failed_waits = 0
+                    if work is not None:
+                        self._hand_out(work)
+        finally:
+            for _ in range(self._workers):
+                self._to_workers.put(None)
+
+    def _next_work(self) -> _Work | None:
+        """The next callback that is ready; None where there is reason to look again."""
+        try:
+            if not self._context.ok():
+                raise ExternalShutdownException
+            return _Work(*self.executor.wait_for_ready_callbacks(None, None, self._stop.is_set))
+        except (ExternalShutdownException, ShutdownException):
+            self._ask_to_stop(Ending.ROS_SHUT_DOWN)
+        except ConditionReachedException:
+            pass  # Told to stop.
+        return None
+
+    def _hand_out(self, work: _Work) -> None:
+        if not self._workers:
+            self._run(work)
+        elif work.task not in self._queued:
+            self._queued.add(work.task)
+            self._to_workers.put(work)
+
+    def _run_queued_work(self) -> None:
+        while (work := self._to_workers.get()) is not None:
+            # Before it runs: while a callback awaits something, its task is offered again and again.
+            self._queued.discard(work.task)
+            if not self._stop.is_set():
+                self._run(work)
+
+    def _run(self, work: _Work) -> None:
+        ident = threading.get_ident()
+        self._running[ident] = _Running(work, time.monotonic())
+        try:
+            work.task()
+            error = work.task.exception() if work.task.done() else None
+        except SystemExit:
+            error = None
+            self._ask_to_stop(Ending.CALLBACK_ASKED)
+        except BaseException as raised:
+            error = raised
+        finally:
+            running = self._running.pop(ident)
+        if error is not None and not self._is_of_the_end(error, running):
+            self._report(error, work.entity, work.node)
+
+    def _report(self, error: BaseException, entity: Any, node: Node | None) -> None:
+        self._on_failure(Failure(error, entity, node, goes_on=not self._stop.is_set()))
+
+    def _is_of_the_end(self, error: BaseException, running: _Running) -> bool:
+        """Whether a callback failed only because its node was stopped in the midst of a healthy call."""
+        waited = time.monotonic() - running.since
+        return self._stop.is_set() and isinstance(error, NodeEndedError) and waited < _LONG_WAIT
+
+
+def _raise_in_thread(ident: int, error: type[BaseException]) -> None:
+    """Raise in another thread, at the next line of Python that it runs."""
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(ident), ctypes.py_object(error))
+
+
+def _traceback_of(frame: FrameType | None) -> TracebackType | None:
+    """Where a running thread is, in the form in which exceptions carry it."""
+    traceback = None
+    while frame is not None:
+        traceback = TracebackType(traceback, frame, frame.f_lasti, frame.f_lineno)
+        frame = frame.f_back
+    return traceback

@@ -1,0 +1,122 @@
+"""Whether what a student wants to spin can be spun; if not, an error that names the mistake."""
+
+from __future__ import annotations
+
+import inspect
+from typing import Any
+
+from rclpy.node import Node
+
+from autograder.notebook.cells.student_tracebacks import PlainlyShownError
+from autograder.notebook.nodes.lending_executors import LendingExecutor
+from autograder.notebook.nodes.node_ends import NodeEndedError, is_destroyed, node_label
+
+
+class NotANodeError(PlainlyShownError, TypeError):
+    """Something else than a node was given."""
+
+
+class UnusableNodeError(PlainlyShownError, NodeEndedError):
+    """The node has ended, or never quite began."""
+
+
+class NodeBusyError(PlainlyShownError, RuntimeError):
+    """The node spins already."""
+
+
+class SettingError(PlainlyShownError, ValueError):
+    """A setting, such as the number of threads, that cannot be."""
+
+
+def check_nodes(caller: str, nodes: tuple[Any, ...]) -> None:
+    """See that all nodes can be spun together.
+
+    Args:
+        caller: The function that was called, for the messages.
+        nodes: What it was given.
+
+    Raises:
+        NotANodeError: Something is not a node, or there is none.
+        UnusableNodeError: A node was destroyed, its ROS shut down, or its ``__init__`` skipped.
+        NodeBusyError: A node spins already, or is given twice.
+    """
+    if not nodes:
+        raise NotANodeError(f"{caller}() needs at least one node, such as {caller}(TalkerNode())")
+    for node in nodes:
+        _check_is_node(caller, node)
+        _check_is_usable(node)
+        _check_is_idle(node)
+    if len({id(node) for node in nodes}) < len(nodes):
+        raise NodeBusyError(f"{caller}() was given the same node twice: give each node once")
+    if len({id(node.context) for node in nodes}) > 1:
+        raise UnusableNodeError(
+            "these nodes belong to different ROS contexts, and one executor serves only one of them: "
+            f"call {caller}() for each"
+        )
+
+
+def check_threads(threads: Any) -> None:
+    """See that a number of threads is one.
+
+    Raises:
+        SettingError: It is not a whole number from 1 on.
+    """
+    if not isinstance(threads, int) or isinstance(threads, bool) or threads < 1:
+        raise SettingError(f"threads must be a whole number from 1 on, not {threads!r}")
+
+
+def _check_is_node(caller: str, thing: Any) -> None:
+    if isinstance(thing, Node):
+        return
+    if isinstance(thing, type):
+        kind = "a class" if issubclass(thing, Node) else "a class, and not one of nodes"
+        raise NotANodeError(
+            f"{thing.__name__} is {kind}. Add parentheses to make a node of it: {caller}({thing.__name__}())"
+        )
+    if isinstance(thing, list | tuple | set):
+        raise NotANodeError(
+            f"{caller}() takes nodes one by one, not in a {type(thing).__name__}: "
+            f"{caller}(TalkerNode(), ListenerNode()), or {caller}(*nodes)"
+        )
+    if inspect.isroutine(thing):
+        raise NotANodeError(
+            f"{thing.__name__} is a function. Call it, if it returns a node: {caller}({thing.__name__}())"
+        )
+    if thing is None:
+        raise NotANodeError(
+            f"{caller}() was given None. A function that makes a node must end with `return node`"
+        )
+    raise NotANodeError(f"{caller}() takes nodes, and this is of type {type(thing).__name__}: {thing!r}")
+
+
+def _check_is_usable(node: Node) -> None:
+    kind = type(node).__name__
+    try:
+        destroyed = is_destroyed(node)
+    except AttributeError:
+        raise UnusableNodeError(
+            f'{kind} has no inside of a node yet: begin its __init__ with super().__init__("a_name")'
+        ) from None
+    if destroyed:
+        raise UnusableNodeError(
+            f"this {kind} has been destroyed (`with spinning(...)` and .stop() do that at their end). "
+            f"Make a new one: {kind}()"
+        )
+    if not node.context.ok():
+        raise UnusableNodeError(
+            f"ROS was shut down after this {kind} had been made. "
+            f"Call start_ros(), then make a new one: {kind}()"
+        )
+
+
+def _check_is_idle(node: Node) -> None:
+    executor = node.executor
+    if executor is None or node not in executor.get_nodes():
+        return
+    name = node_label(node)
+    if isinstance(executor, LendingExecutor):
+        raise NodeBusyError(f"{name} spins in the background already: leave it, or call .stop() there first")
+    raise NodeBusyError(
+        f"{name} is in another executor already ({type(executor).__name__}): "
+        "end rclpy.spin() there, or call its remove_node() first"
+    )

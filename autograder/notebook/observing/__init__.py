@@ -1,0 +1,1 @@
+"""What a student sees of the running graph: live pictures, plots and recordings."""

@@ -1,0 +1,216 @@
+"""A picture of the running graph: nodes, and the topics, services and actions between them.
+
+It is SVG, with the same in words beside it for those who cannot see it. It has a ground of its own, so that it
+is readable on a dark page as well, and is an ``img`` with data in it: JupyterLab takes SVG elements out of what
+it does not trust yet, and leaves their letters.
+"""
+
+from __future__ import annotations
+
+import base64
+import itertools
+from dataclasses import dataclass, field
+from html import escape
+from typing import TYPE_CHECKING
+
+from autograder.notebook.observing.graph_layout import Arrow, Point, lay_out
+from autograder.notebook.observing.ros_graph import Channel, ChannelKind, RosGraph, read_graph
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+# Pixels.
+_LETTER = 7.3
+_PADDING = 14
+_HEIGHT = 42
+_GAP_ALONG = 52
+_GAP_ALONG_DOWN = 34
+_MARGIN = 12
+_PAGE = 860
+"""What a notebook's column takes; a wider picture is drawn from top to bottom."""
+
+_STYLE = """
+.ground { fill: #fff; }
+text { font: 13px/1 monospace; fill: #212121; text-anchor: middle; dominant-baseline: central; }
+text.type { font-size: 10.5px; fill: #555; }
+.box rect { fill: #fff; stroke: #212121; }
+.node rect { fill: #e8eef7; stroke-width: 2; }
+.service rect { stroke-dasharray: 5 3; }
+.action rect { stroke-dasharray: 1.5 2.5; }
+path.line { fill: none; stroke: #555; stroke-width: 1.5; }
+path.head { fill: #555; }
+text.rate { font-size: 10.5px; fill: #0b5cad; paint-order: stroke; stroke: #fff; stroke-width: 4px; text-anchor: end; }
+path.flows { stroke: #0b5cad; stroke-dasharray: 7 5; animation: flow 0.8s linear 16; }
+@keyframes flow { to { stroke-dashoffset: -12; } }
+@media (prefers-reduced-motion: reduce) { path.flows { animation: none; } }
+"""
+
+
+def draw_graph() -> GraphPicture:
+    """A picture of what runs now, to be shown at the end of a cell.
+
+    It shows every node that this kernel's ROS domain has, also those of other programs. What every node has
+    (its log, its parameters) is left out.
+    """
+    return GraphPicture(read_graph())
+
+
+@dataclass(frozen=True, repr=False)
+class GraphPicture:
+    """A graph that JupyterLab shows as a picture and that reads as text anywhere else.
+
+    Attributes:
+        graph: What runs.
+        rates: Messages in a second on topics, where that is known.
+    """
+
+    graph: RosGraph
+    rates: Mapping[Channel, float] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        """The graph in words."""
+        return "\n".join(self.sentences())
+
+    def _repr_html_(self) -> str:
+        sentences = self.sentences()
+        data = base64.b64encode(self.svg().encode()).decode()
+        words = "".join(f"<li>{escape(sentence)}</li>" for sentence in sentences)
+        return (
+            f'<img alt="The running graph. {escape(" ".join(sentences))}" src="data:image/svg+xml;base64,{data}">'
+            f"<details><summary>The graph in words</summary><ul>{words}</ul></details>"
+        )
+
+    def svg(self) -> str:
+        """The picture alone."""
+        labels = {_node_key(node): _Label("node", node) for node in self.graph.nodes}
+        labels |= {_channel_key(c): _Label(c.kind, c.name, c.type) for c in self.graph.channels}
+        rates = {_channel_key(channel): f"{rate:g}/s" for channel, rate in self.rates.items() if rate}
+        return _Drawing(labels, _arrows(self.graph), rates, " ".join(self.sentences())).svg()
+
+    @property
+    def is_moving(self) -> bool:
+        """Whether anything flows in it."""
+        return any(self.rates.values())
+
+    def sentences(self) -> list[str]:
+        """The graph in words, a sentence for each node and for each topic with traffic."""
+        moving = [
+            f"{channel.name} carries {rate:g} messages per second."
+            for channel, rate in self.rates.items()
+            if rate
+        ]
+        return [*self.graph.sentences(), *moving]
+
+
+@dataclass(frozen=True)
+class _Label:
+    shape: str
+    name: str
+    type: str = ""
+
+    @property
+    def small_print(self) -> str:
+        """The line below the name."""
+        return self.type if self.shape in (ChannelKind.TOPIC, "node") else f"{self.shape}: {self.type}"
+
+    @property
+    def width(self) -> float:
+        """Of the box, in pixels."""
+        return max(len(self.name) * 1.1, len(self.small_print) * 0.9) * _LETTER + 2 * _PADDING
+
+
+def _node_key(node: str) -> str:
+    return f"node {node}"
+
+
+def _channel_key(channel: Channel) -> str:
+    return f"{channel.kind} {channel.name} {channel.type}"
+
+
+def _arrows(graph: RosGraph) -> list[tuple[str, str]]:
+    """From who publishes or asks to the channel, and from there to who subscribes or serves."""
+    return [
+        (_node_key(end.node), _channel_key(end.channel))
+        if end.gives
+        else (_channel_key(end.channel), _node_key(end.node))
+        for end in graph.ends
+    ]
+
+
+class _Drawing:
+    """Turns a layout into SVG.
+
+    *Along* is the way that the arrows take, *beside* is across it. Along runs to the right, or down where the
+    picture would be too wide.
+    """
+
+    def __init__(
+        self,
+        labels: Mapping[str, _Label],
+        arrows: Sequence[tuple[str, str]],
+        rates: Mapping[str, str],
+        words: str,
+    ) -> None:
+        self._labels = labels
+        self._rates = rates
+        self._words = words
+        self._down = False
+        self._layout = lay_out(
+            {key: (label.width, _HEIGHT) for key, label in labels.items()}, arrows, _GAP_ALONG
+        )
+        if self._layout.extent[0] + 2 * _MARGIN > _PAGE:
+            self._down = True
+            sizes = {key: (float(_HEIGHT), label.width) for key, label in labels.items()}
+            self._layout = lay_out(sizes, arrows, _GAP_ALONG_DOWN)
+
+    def svg(self) -> str:
+        """The whole picture."""
+        width, height = (extent + 2 * _MARGIN for extent in self._turned(self._layout.extent))
+        boxes = "".join(self._box(name) for name in self._layout.centres)
+        lines = "".join(self._line(arrow) for arrow in self._layout.arrows)
+        return (
+            f'<svg xmlns="http://www.w3.org/2000/svg" role="img" width="{width:.0f}" height="{height:.0f}" '
+            f'viewBox="0 0 {width:.0f} {height:.0f}">'
+            f"<title>The running graph</title><desc>{escape(self._words)}</desc><style>{_STYLE}</style>"
+            f'<rect class="ground" width="100%" height="100%" rx="6"/>{lines}{boxes}</svg>'
+        )
+
+    def _turned(self, point: Point) -> Point:
+        return (point[1], point[0]) if self._down else point
+
+    def _xy(self, point: Point) -> Point:
+        x, y = self._turned(point)
+        return x + _MARGIN, y + _MARGIN
+
+    def _box(self, name: str) -> str:
+        label = self._labels[name]
+        x, y = self._xy(self._layout.centres[name])
+        round_corners = _HEIGHT / 2 if label.shape == "node" else 3
+        rect = (
+            f'<rect x="{x - label.width / 2:.1f}" y="{y - _HEIGHT / 2:.1f}" width="{label.width:.1f}" '
+            f'height="{_HEIGHT}" rx="{round_corners}"/>'
+        )
+        above = 8 if label.type else 0
+        texts = f'<text x="{x:.1f}" y="{y - above:.1f}">{escape(label.name)}</text>'
+        if label.type:
+            texts += f'<text class="type" x="{x:.1f}" y="{y + 10:.1f}">{escape(label.small_print)}</text>'
+        if rate := self._rates.get(name):
+            edge = (x + label.width / 2 - 8, y - _HEIGHT / 2)
+            texts += f'<text class="rate" x="{edge[0]:.1f}" y="{edge[1]:.1f}">{escape(rate)}</text>'
+        return f'<g class="box {label.shape}">{rect}{texts}</g>'
+
+    def _line(self, arrow: Arrow) -> str:
+        """A curve from box to box, by the way that was kept free, with a head where it points to."""
+        path = "M{:.1f},{:.1f}".format(*self._xy(arrow.points[0]))
+        for (a1, b1), (a2, b2) in itertools.pairwise(arrow.points):
+            middle = (a1 + a2) / 2
+            corners = ((middle, b1), (middle, b2), (a2, b2))
+            path += " C" + " ".join("{:.1f},{:.1f}".format(*self._xy(corner)) for corner in corners)
+        flows = " flows" if {arrow.start, arrow.end} & self._rates.keys() else ""
+        return f'<path class="line{flows}" d="{path}"/><path class="head" d="{self._head(arrow)}"/>'
+
+    def _head(self, arrow: Arrow) -> str:
+        (before, _), (along, beside) = arrow.points[-2:]
+        back = -8 if along > before else 8
+        corners = ((along, beside), (along + back, beside - 4.5), (along + back, beside + 4.5))
+        return "M" + " L".join("{:.1f},{:.1f}".format(*self._xy(corner)) for corner in corners) + " z"

@@ -1,0 +1,224 @@
+"""A field of the messages of a topic, drawn over time."""
+
+from __future__ import annotations
+
+import base64
+import math
+import time
+import zlib
+from collections import deque
+from dataclasses import dataclass
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+import re2
+
+from autograder.cards.axis import round_step
+from autograder.notebook.observing.live_picture import LivePicture
+from autograder.notebook.observing.topic_traffic import ANY, message_class
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from rclpy.node import Node
+    from rclpy.subscription import Subscription
+
+PERIOD = 0.5
+"""Seconds between two pictures, where something has arrived."""
+WINDOW = 30.0
+"""Seconds that a plot shows."""
+_MOST = 3_000
+"""Points that a plot keeps."""
+_WIDTH, _HEIGHT, _LEFT, _FOOT, _HEAD = 720, 220, 70, 24, 26
+
+_STYLE = """
+.ground { fill: #fff; }
+text { font: 11px/1 monospace; fill: #444; }
+text.name { font-size: 12px; fill: #212121; }
+line { stroke: #ddd; }
+polyline { fill: none; stroke: #0b5cad; stroke-width: 1.5; }
+circle { fill: #0b5cad; }
+"""
+
+
+def plot(topic: str, field: str, minutes: float = 10.0) -> LivePicture:
+    """Draw a number of each message of a topic over time, below this cell, as messages arrive.
+
+    Like ``watch_graph``, it ends by itself; what was seen last stays.
+
+    Args:
+        topic: Its name, such as ``"/odom"``.
+        field: Where the number stands in a message, such as ``"data"``, ``"pose.pose.position.x"`` or ``"ranges[0]"``.
+        minutes: How long it goes on at most.
+
+    Raises:
+        ValueError: ``minutes`` is not a positive number, or ``field`` is not written like a field.
+    """
+    if not _FIELD.fullmatch(field):
+        raise ValueError(
+            f'field is where the number stands in a message, such as "pose.pose.position.x", not {field!r}'
+        )
+    shown = LivePicture(_Plots(topic if topic.startswith("/") else f"/{topic}", field), minutes)
+    shown.start()
+    return shown
+
+
+_FIELD = re2.compile(r"\w+(\[\d+\])?(\.\w+(\[\d+\])?)*")
+_STEP = re2.compile(r"(\w+)(?:\[(\d+)\])?")
+
+
+def number_in(message: Any, field: str) -> float:
+    """The number that stands in a field of a message.
+
+    Raises:
+        LookupError: There is no such field, or what stands there is no number; the error says what there is.
+    """
+    value, way = message, list[str]()
+    for name, index in _STEP.findall(field):
+        fields = _fields(value)
+        if name not in fields:
+            there = ", ".join(fields) or "no fields"
+            raise LookupError(f"{'.'.join(way) or 'the message'} has no field {name}: it has {there}")
+        value, way = getattr(value, name), [*way, name]
+        if index:
+            if not 0 <= int(index) < len(value):
+                raise LookupError(f"{'.'.join(way)} has {len(value)} items: there is no [{index}]")
+            value = value[int(index)]
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        try:
+            if isinstance(value, (str, bytes)):
+                raise TypeError
+            return float(value)
+        except TypeError:
+            fields = _fields(value)
+            there = f": name one of its fields ({', '.join(fields)})" if fields else ""
+            raise LookupError(f"{field} is a {type(value).__name__}, no number{there}") from None
+    return float(value)
+
+
+def _fields(value: Any) -> Mapping[str, str]:
+    """The fields of a message and their types; none of anything else."""
+    found: Mapping[str, str] = getattr(value, "get_fields_and_field_types", dict)()
+    return found
+
+
+@dataclass(frozen=True, repr=False)
+class PlotPicture:
+    """One picture of a plot.
+
+    Attributes:
+        title: What is drawn.
+        points: Seconds before now, as negative numbers, and values, in order.
+        note: What is in the way, or an empty text.
+    """
+
+    title: str
+    points: Sequence[tuple[float, float]]
+    note: str = ""
+
+    def __repr__(self) -> str:
+        """The plot in words."""
+        if self.note or not self.points:
+            return f"{self.title}: {self.note or 'nothing has arrived yet'}"
+        values = [value for _, value in self.points]
+        return (
+            f"{self.title}: {len(values)} values in {-self.points[0][0]:.0f} s, from {min(values):.6g} to "
+            f"{max(values):.6g}, the last {values[-1]:.6g}"
+        )
+
+    def _repr_html_(self) -> str:
+        data = base64.b64encode(self.svg().encode()).decode()
+        return f'<img alt="{escape(repr(self))}" src="data:image/svg+xml;base64,{data}">'
+
+    def svg(self) -> str:
+        """The picture alone."""
+        words = self.note or ("" if self.points else "nothing has arrived yet")
+        drawn = f'<text x="{_LEFT}" y="{_HEIGHT / 2}">{escape(words)}</text>' if words else self._curve()
+        return (
+            f'<svg xmlns="http://www.w3.org/2000/svg" role="img" width="{_WIDTH}" height="{_HEIGHT}" '
+            f'viewBox="0 0 {_WIDTH} {_HEIGHT}"><title>{escape(repr(self))}</title><style>{_STYLE}</style>'
+            f'<rect class="ground" width="100%" height="100%" rx="6"/>'
+            f'<text class="name" x="{_LEFT}" y="16">{escape(self.title)}</text>{drawn}</svg>'
+        )
+
+    def _curve(self) -> str:
+        low, high = min(value for _, value in self.points), max(value for _, value in self.points)
+        step = round_step(max(high - low, abs(high) * 1e-6, 1e-9) / 4)
+        low, high = math.floor(low / step) * step, math.ceil(high / step + 1e-9) * step
+        start = -WINDOW
+
+        def x(t: float) -> float:
+            return _LEFT + (t - start) / WINDOW * (_WIDTH - _LEFT - 14)
+
+        def y(value: float) -> float:
+            return _HEIGHT - _FOOT - (value - low) / (high - low) * (_HEIGHT - _FOOT - _HEAD)
+
+        drawn = []
+        for number in range(round((high - low) / step) + 1):
+            value = low + number * step
+            drawn.append(
+                f'<line x1="{_LEFT}" x2="{_WIDTH}" y1="{y(value):.1f}" y2="{y(value):.1f}"/>'
+                f'<text x="{_LEFT - 6}" y="{y(value) + 4:.1f}" text-anchor="end">{value:.6g}</text>'
+            )
+        for seconds in range(-int(WINDOW), 1, 10):
+            words = "now" if seconds == 0 else f"{seconds} s"
+            anchor = "end" if seconds == 0 else "middle"
+            drawn.append(
+                f'<text x="{x(seconds):.1f}" y="{_HEIGHT - 6}" text-anchor="{anchor}">{words}</text>'
+            )
+        path = " ".join(f"{x(t):.1f},{y(value):.1f}" for t, value in self.points)
+        last = self.points[-1]
+        drawn.append(
+            f'<polyline points="{path}"/><circle cx="{x(last[0]):.1f}" cy="{y(last[1]):.1f}" r="3"/>'
+        )
+        return "".join(drawn)
+
+
+class _Plots:
+    def __init__(self, topic: str, field: str) -> None:
+        # A name of its own for each curve: of two with one name, the later ends the earlier.
+        self.name = f"_plot_{zlib.crc32(f'{topic} {field}'.encode()):x}"
+        self.period = PERIOD
+        self._topic = topic
+        self._field = field
+        self._points: deque[tuple[float, float]] = deque(maxlen=_MOST)
+        self._subscription: Subscription | None = None
+
+    def first(self) -> PlotPicture:
+        return self._picture()
+
+    def next(self, node: Node) -> PlotPicture | None:
+        note = ""
+        try:
+            came = self._take(node)
+        except LookupError as error:
+            came, note = True, str(error)
+        return self._picture(note) if came else None
+
+    def last(self) -> None:
+        return None
+
+    def _picture(self, note: str = "") -> PlotPicture:
+        now = time.time()
+        while self._points and self._points[0][0] < now - WINDOW:
+            self._points.popleft()
+        points = tuple((t - now, value) for t, value in self._points)
+        return PlotPicture(f"{self._topic} {self._field}", points, note)
+
+    def _take(self, node: Node) -> bool:
+        """Take what has arrived; whether that was anything."""
+        if self._subscription is None:
+            types = dict(node.get_topic_names_and_types()).get(self._topic)
+            if not types:
+                return False
+            self._subscription = node.create_subscription(
+                message_class(types[0]), self._topic, lambda _: None, ANY
+            )
+        came = False
+        handle = self._subscription.handle
+        with handle:
+            while (taken := handle.take_message(self._subscription.msg_type, False)) is not None:
+                message, info = taken
+                self._points.append((info["source_timestamp"] / 1e9, number_in(message, self._field)))
+                came = True
+        return came

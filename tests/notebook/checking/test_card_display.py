@@ -1,0 +1,124 @@
+"""One place for a check's card, as a notebook keeps it: nbclient applies updates as JupyterLab does."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import nbformat
+import pytest
+from nbformat.v4 import new_code_cell, new_notebook
+from nbgrader.validator import Validator
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+# A judge whose verdicts are known: the next of `scores`, after what `meanwhile` does.
+JUDGE = """
+import autograder.notebook.checking.card_display as card_display
+import importlib
+from autograder.notebook import check
+checking = importlib.import_module("autograder.notebook.checking.check")
+from autograder.verdict import Criterion, Diagnosis, State, Verdict
+
+scores, meanwhile = [], lambda place: None
+
+def verdict(exercise, subject, place):
+    meanwhile(place)
+    score = scores.pop(0)
+    text = Criterion("text", "Says the right text", 10.0, score == 10, "a", "b")
+    state = State.PASSED if score == 10 else State.FAILED
+    return Verdict(exercise, "The talker", state, score, 10.0, (text,), Diagnosis("text", "It says b.", "Say a."))
+
+checking._ask = verdict
+card_display.SOON = 0.01
+
+class Talker:
+    pass
+"""
+
+
+@pytest.fixture
+def run(run_cells: Callable[..., list[Any]]) -> Callable[..., list[Any]]:
+    """Run cells below JUDGE; what each shows in the end."""
+    return lambda *sources: run_cells(JUDGE, *sources)[1:]
+
+
+def test_the_value_of_a_check_is_for_nbgrader_and_shows_nothing(run: Callable[..., list[Any]]) -> None:
+    (outputs,) = run("scores[:] = [7.5]; check('lab', Talker)")
+    card, value = outputs
+    assert value.data["text/plain"] == "7.5"
+    assert "7.5" not in value.data["text/html"]
+    assert "7.5 of 10 points" in card.data["text/plain"]
+
+
+def test_another_try_tells_the_points_of_the_one_before(run: Callable[..., list[Any]]) -> None:
+    _, (card, _) = run("scores[:] = [5.0, 8.0]; check('lab', Talker)", "check('lab', Talker)")
+    assert "8 of 10 points, 5 before" in card.data["text/plain"]
+    assert "5 → <strong>8</strong>" in card.data["text/html"]
+
+
+def test_while_a_check_goes_on_the_card_of_the_one_before_keeps_its_place_and_says_so(
+    run: Callable[..., list[Any]],
+) -> None:
+    """What stood there meanwhile is taken from the display itself, at the moment at which the check was going on."""
+    watched = """
+shown = []
+usual = card_display.update_card
+def update(handle, card):
+    shown.append(card["text/plain"])
+    usual(handle, card)
+card_display.update_card = update
+
+def meanwhile(place):
+    place.doing("building my_package")
+    import time
+    while not any("building" in text for text in shown):
+        time.sleep(0.01)
+
+scores[:] = [5.0]
+check("lab", Talker)
+"""
+    first, second, said = run(
+        watched, "scores[:] = [8.0]; shown.clear(); check('lab', Talker)", "print(shown[-2])"
+    )
+    assert [output.output_type for output in first] == ["display_data", "execute_result"]
+    assert [output.output_type for output in second] == ["display_data", "execute_result"]
+    assert "Checking" not in second[0].data["text/plain"]
+    assert "8 of 10" in second[0].data["text/plain"]
+    meanwhile = " ".join(said[0].text.split())
+    assert "Checking again: building my_package" in meanwhile
+    assert "5 of 10 points" in meanwhile, "the earlier card is still there"
+
+
+def test_a_card_is_dimmed_when_its_class_is_defined_anew(run: Callable[..., list[Any]]) -> None:
+    (card, _), _, _ = run("scores[:] = [5.0]; check('lab', Talker)", "x = 1", "class Talker:\n    pass")
+    assert "agc-dated" in card.data["text/html"].partition("<style>")[0]
+    assert "Talker has changed since this check" in card.data["text/plain"]
+
+
+def test_a_card_stays_as_it_is_while_its_class_is_the_same(run: Callable[..., list[Any]]) -> None:
+    (card, _), _ = run("scores[:] = [5.0]; check('lab', Talker)", "x = Talker()")
+    assert "agc-dated" not in card.data["text/html"].partition("<style>")[0]
+    assert "has changed" not in card.data["text/plain"]
+
+
+@pytest.mark.usefixtures("as_in_a_notebook")
+def test_validate_says_what_the_card_says(tmp_path: Path) -> None:
+    checks = ("scores[:] = [0.0, 10.0]\ncheck('lab_1_2.talker', Talker)", "check('lab_1_2.listener', Talker)")
+    notebook = new_notebook(cells=[new_code_cell(source) for source in (JUDGE, *checks)])
+    for cell, name in zip(notebook.cells[1:], ("talker", "listener"), strict=True):
+        cell.metadata["nbgrader"] = {
+            "grade": True, "grade_id": name, "locked": False, "points": 10, "schema_version": 3,
+            "solution": False, "task": False, "cell_type": "code",
+        }  # fmt: skip
+    notebook.metadata["kernelspec"] = {"name": "python3", "display_name": "Python 3", "language": "python"}
+    path = tmp_path / "lab.ipynb"
+    nbformat.write(notebook, path)
+    failed = Validator().validate(str(path))["failed"]
+    assert len(failed) == 1, "the cell with full marks passes"
+    error = " ".join(failed[0]["error"].split())
+    assert "Partial credit" not in error
+    assert "The talker: Not yet, 0 of 10 points" in error
+    assert "[ ] Says the right text (0 of 10 points)" in error
+    assert "Say a." in error

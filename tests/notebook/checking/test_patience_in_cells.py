@@ -1,0 +1,87 @@
+"""Functions of a notebook that are told how long to wait: who keeps that time, and who only looks as if."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+import rclpy
+from my_robot_interfaces.srv import AddTwoInts
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from checked import a_judge
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
+
+
+def adder(wait: Callable[[Any, float], bool], *, answer_within: float | None = None) -> Any:
+    """A client of Lab 1.3 that waits for its service in a given way, and for its answer as long as it is told."""
+
+    def add_two_ints(a: int, b: int, patience_sec: float = 5.0) -> int:
+        node = rclpy.create_node("adder")
+        try:
+            client = node.create_client(AddTwoInts, "add_two_ints")
+            if not wait(client, patience_sec):
+                raise TimeoutError("nobody offers add_two_ints")
+            future = client.call_async(AddTwoInts.Request(a=a, b=b))
+            rclpy.spin_until_future_complete(node, future, timeout_sec=answer_within or patience_sec)
+            if not future.done():
+                raise TimeoutError("no answer")
+            node.get_logger().info(f"the sum is {future.result().sum}")
+            return future.result().sum
+        finally:
+            node.destroy_node()
+
+    return add_two_ints
+
+
+def waits(client: Any, patience: float) -> bool:
+    return bool(client.wait_for_service(timeout_sec=patience))
+
+
+def in_whole_seconds(client: Any, patience: float) -> bool:
+    return any(client.wait_for_service(timeout_sec=1.0) for _ in range(int(patience)))
+
+
+def until_a_deadline(client: Any, patience: float) -> bool:
+    deadline = time.monotonic() + patience
+    while not client.service_is_ready() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    return bool(client.service_is_ready())
+
+
+def never_where_it_is_short(client: Any, patience: float) -> bool:
+    return patience >= 1.0 and bool(client.wait_for_service())
+
+
+@pytest.mark.parametrize("wait", [waits, in_whole_seconds, until_a_deadline])
+def test_who_keeps_the_patience_is_right(wait: Any) -> None:
+    with a_judge() as checked:
+        verdict = checked("lab_1_3.client", adder(wait))
+    assert verdict.passed, [f"{c.name}: {c.seen}" for c in verdict.criteria if not c.passed]
+
+
+@pytest.mark.parametrize(
+    ("function", "diagnosis"),
+    [
+        pytest.param(adder(lambda c, _: waits(c, 5.0)), "patience_not_kept", id="a limit of its own"),
+        pytest.param(
+            adder(never_where_it_is_short), "waits_forever", id="gives up at once where patience is short"
+        ),
+        pytest.param(adder(lambda c, _: waits(c, 0.01)), "gave_up_too_early", id="a hundredth of a second"),
+        pytest.param(
+            adder(waits, answer_within=0.01), "result_read_too_early", id="a hundredth for the answer"
+        ),
+    ],
+)
+def test_who_waits_by_another_limit_is_wrong(function: Any, diagnosis: str) -> None:
+    with a_judge() as checked:
+        verdict = checked("lab_1_3.client", function)
+    assert verdict.diagnosis is not None
+    assert verdict.diagnosis.key == diagnosis

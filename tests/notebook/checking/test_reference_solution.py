@@ -1,0 +1,104 @@
+"""Who is offered a reference solution: a student with full marks, where the course has it to read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autograder import exercises
+from autograder.cards.solution import HEADING
+from autograder.handing_out import hand_out
+from autograder.notebook.checking import card_display
+from autograder.notebook.checking.judge_link import SOCKET_VARIABLE
+from autograder.notebook.checking.reference_solution import solution_of
+from autograder.verdict import State, Verdict
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+@pytest.fixture
+def shown(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, str]]:
+    """The cards that a notebook of a student's own has displayed."""
+    cards: list[dict[str, str]] = []
+
+    class Shell:
+        class events:  # noqa: N801
+            @staticmethod
+            def register(name: str, callback: Any) -> None: ...
+
+    monkeypatch.delenv(SOCKET_VARIABLE, raising=False)
+    monkeypatch.delenv(card_display.VALIDATING, raising=False)
+    monkeypatch.setattr(card_display, "notebook_shell", lambda: Shell)
+    monkeypatch.setattr(card_display, "display_card", cards.append)
+    monkeypatch.setattr(card_display, "_shown", {})
+    monkeypatch.setattr(card_display, "_watching", [])
+    return cards
+
+
+def check(score: float) -> None:
+    state = State.PASSED if score == 10 else State.FAILED
+    with card_display.CardDisplay("lab_1_2.talker", None) as place:
+        place.show(Verdict("lab_1_2.talker", "The talker", state, score, 10))
+
+
+@pytest.mark.parametrize("exercise", exercises.all_ids())
+def test_every_exercise_has_one_and_its_other_way_is_python(exercise: str) -> None:
+    solution = solution_of(exercise)
+    assert solution is not None
+    assert solution.code
+    assert solution.why
+    assert bool(solution.other_way) == bool(solution.other_code)
+    function = "\n".join(f"    {line}" for line in solution.other_code.splitlines())
+    compile(f"def other_way():\n{function or '    pass'}", exercise, "exec")
+    assert "SOLUTION" not in str(solution.code)
+
+
+def test_full_marks_in_ones_own_notebook_offer_it(shown: list[dict[str, str]]) -> None:
+    check(10)
+    assert HEADING in shown[-1]["text/html"]
+
+
+@pytest.mark.parametrize("score", [0, 9.5])
+def test_less_does_not(shown: list[dict[str, str]], score: float) -> None:
+    check(score)
+    assert HEADING not in str(shown)
+
+
+@pytest.mark.parametrize(
+    ("variable", "value"), [(SOCKET_VARIABLE, "/somewhere/judge.socket"), (card_display.VALIDATING, "1")]
+)
+def test_while_a_class_is_graded_nothing_does(
+    shown: list[dict[str, str]], monkeypatch: pytest.MonkeyPatch, variable: str, value: str
+) -> None:
+    monkeypatch.setenv(variable, value)
+    check(10)
+    assert shown
+    assert HEADING not in str(shown)
+
+
+@pytest.mark.parametrize("with_solutions", [False, True])
+def test_a_hand_out_has_them_only_where_asked_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, with_solutions: bool
+) -> None:
+    place = tmp_path / "course"
+    hand_out(place, ROOT, with_solutions=with_solutions)
+    monkeypatch.setenv("AUTOGRADER_COURSE", str(place))
+    assert (solution_of("lab_1_2.talker") is not None) == with_solutions
+    assert not list(place.rglob("*.why.md"))
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}"])
+def test_a_file_that_cannot_be_read_breaks_no_check(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str
+) -> None:
+    lab = tmp_path / "solutions/chapter/lab_9_1"
+    lab.mkdir(parents=True)
+    (lab / "lab.md").touch()
+    (lab / "battery.py").touch()
+    (lab / "battery.solution.json").write_text(text)
+    monkeypatch.setenv("AUTOGRADER_COURSE", str(tmp_path))
+    assert solution_of("lab_9_1.battery") is None
+    monkeypatch.setenv("AUTOGRADER_COURSE", str(tmp_path / "nothing"))
+    assert solution_of("lab_9_1.battery") is None

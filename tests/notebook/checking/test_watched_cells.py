@@ -1,0 +1,148 @@
+"""Watch mode in a kernel, by a judge that does what the test says: what is shown below which cell, and when."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from autograder.notebook.checking import watched_cells
+from autograder.notebook.checking.judge_link import SOCKET_VARIABLE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+LIMIT = 180.0
+"""Seconds after which a test gives up waiting for a card."""
+
+# The judge answers at once, unless `patient` is set: then its check goes on until somebody hangs up.
+JUDGE = """
+import threading
+from autograder.notebook import unwatch, watch
+from autograder.notebook.checking import watched_cells
+from autograder.notebook.checking.judge_link import JudgeUnreachable
+from autograder.verdict import Criterion, Diagnosis, State, Verdict
+
+patient, scores = threading.Event(), []
+
+class Link:
+    def __init__(self):
+        self.closed = threading.Event()
+    def close(self):
+        self.closed.set()
+
+def converse(link, exercise, subject, place):
+    place.doing(f"run 1 of {subject.text}")
+    if patient.is_set():
+        link.closed.wait()
+        raise JudgeUnreachable("hung up")
+    score = scores.pop(0)
+    state = State.PASSED if score == 10 else State.FAILED
+    text = Criterion("text", "Says the right text", 10.0, score == 10, "a", "b")
+    return Verdict(exercise, "The talker", state, score, 10.0, (text,), Diagnosis("text", "It says b.", "Say a."))
+
+watched_cells.JudgeLink, watched_cells.converse = Link, converse
+"""
+TALKER = "class Talker:\n    text = {!r}"
+
+
+@dataclass
+class Watched:
+    """A kernel, and the cards that came of its cells: by display, the texts that stood there one after the other."""
+
+    kernel: Any
+    cards: dict[str, list[str]] = field(default_factory=dict)
+
+    def run(self, source: str, cell: str) -> None:
+        """Run a cell to its end."""
+        request = self.kernel.begin(source, cell)
+        while not self._hear(request):
+            pass
+
+    def wait_for(self, text: str) -> str:
+        """Wait for a card with this text; all of the card."""
+        while not any(text in shown[-1] for shown in self.cards.values()):
+            self._hear("")
+        return next(shown[-1] for shown in self.cards.values() if text in shown[-1])
+
+    def _hear(self, request: str) -> bool:
+        message = self.kernel.client.get_iopub_msg(timeout=LIMIT)
+        kind, content = message["msg_type"], message["content"]
+        assert kind != "error", content
+        if kind == "display_data":
+            self.cards[content["transient"]["display_id"]] = [content["data"]["text/plain"]]
+        elif kind == "update_display_data":
+            self.cards[content["transient"]["display_id"]].append(content["data"]["text/plain"])
+        idle = kind == "status" and content["execution_state"] == "idle"
+        return bool(idle and message["parent_header"].get("msg_id") == request)
+
+
+@pytest.fixture
+def watched(notebook: Any) -> Iterator[Watched]:
+    found = Watched(notebook)
+    found.run(JUDGE, "judge")
+    found.run(TALKER.format("one"), "talker")
+    found.run("scores[:] = [5.0, 10.0]; watch('lab', Talker)", "watch")
+    yield found
+    found.run("patient.clear(); unwatch()", "end")
+
+
+def test_a_class_that_is_defined_anew_is_checked_and_its_card_is_short(watched: Watched) -> None:
+    assert watched.cards == {}, "nothing is checked before its cell is run again"
+    watched.run(TALKER.format("two"), "talker")
+    card = watched.wait_for("5 of 10 points")
+    assert "It says b." in card
+    assert "Say a." in card
+    assert "Criteria" not in card
+    (shown,) = watched.cards.values()
+    assert "as soon as this cell has ended" in shown[0]
+    assert "run 1 of two" in shown[-2]
+
+    watched.run(TALKER.format("three"), "talker")
+    assert "10 of 10 points, 5 before" in watched.wait_for("10 of 10 points")
+    assert len(watched.cards) == 2, "one for each run of the cell, whose earlier outputs are gone"
+
+
+def test_another_cell_does_not_wait_for_a_check_which_begins_again_afterwards(watched: Watched) -> None:
+    watched.run("patient.set()", "other")
+    watched.run(TALKER.format("two"), "talker")
+    watched.wait_for("run 1 of two")
+    watched.run("patient.clear()", "other")
+    watched.wait_for("5 of 10 points")
+    (shown,) = watched.cards.values()
+    assert any("as soon as the cell that runs now has ended" in text for text in shown)
+
+
+def test_nothing_is_checked_after_unwatch(watched: Watched) -> None:
+    watched.run("unwatch()", "other")
+    watched.run(TALKER.format("two"), "talker")
+    watched.run("assert scores == [5.0, 10.0]", "other")
+    assert watched.cards == {}
+
+
+def test_a_call_in_the_cell_of_the_class_itself_watches_it_too(watched: Watched) -> None:
+    watched.run(TALKER.format("two") + "\nwatch('lab', Talker)", "talker")
+    watched.wait_for("5 of 10 points")
+
+
+def test_other_cells_bring_no_card(watched: Watched) -> None:
+    watched.run("Talker().text, 1 + 1", "other")
+    assert watched.cards == {}
+
+
+@pytest.mark.parametrize("variable", [SOCKET_VARIABLE, "NBGRADER_VALIDATING"])
+def test_nothing_is_watched_while_a_class_is_graded_or_validated(notebook: Any, variable: str) -> None:
+    graded = Watched(notebook)
+    graded.run(JUDGE, "judge")
+    graded.run(TALKER.format("one"), "talker")
+    graded.run(f"import os; os.environ[{variable!r}] = '1'; begun = watch('graded', Talker)", "watch")
+    graded.run(f"del os.environ[{variable!r}]", "other")
+    graded.run(TALKER.format("two"), "talker")
+    graded.run("assert repr(begun) == 'Talker is not watched.', begun", "other")
+    assert graded.cards == {}
+
+
+def test_only_what_has_a_cell_can_be_watched() -> None:
+    with pytest.raises(TypeError, match=r"watch\('lab', …\) takes your class or function"):
+        watched_cells.watch("lab", "ros2_ws")  # type: ignore[arg-type]

@@ -1,0 +1,144 @@
+"""The picture of the graph, of real nodes."""
+
+from __future__ import annotations
+
+import re
+import time
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree
+
+import pytest
+from my_robot_interfaces.action import Fibonacci
+from my_robot_interfaces.srv import AddTwoInts
+from rclpy.action import ActionClient, ActionServer
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.utilities import get_default_context
+from std_msgs.msg import String
+
+from autograder.notebook import start_ros
+from autograder.notebook.observing.graph_picture import GraphPicture, draw_graph
+from autograder.notebook.observing.ros_graph import Channel, ChannelKind, End, RosGraph, read_graph
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+CHATTER = Channel(ChannelKind.TOPIC, "/chatter", "std_msgs/msg/String")
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+@pytest.fixture
+def make() -> Iterator[Callable[[str], Node]]:
+    """Make nodes; they are gone after the test."""
+    start_ros()
+    nodes: list[Node] = []
+
+    def one(name: str, namespace: str = "") -> Node:
+        nodes.append(Node(name, namespace=namespace))
+        return nodes[-1]
+
+    yield one
+    for node in nodes:
+        node.destroy_node()
+
+
+@pytest.mark.ros
+def test_topics_services_and_actions_are_seen(make: Callable[..., Node]) -> None:
+    one, other = make("one"), make("other", "desk")
+    one.create_publisher(String, "chatter", 10)
+    other.create_subscription(String, "/chatter", print, 10)
+    other.create_client(AddTwoInts, "/add")
+    one.create_service(AddTwoInts, "add", print)
+    ends = (ActionServer(one, Fibonacci, "count", print), ActionClient(other, Fibonacci, "/count"))
+    graph = read_graph()
+    for end in ends:
+        end.destroy()  # type: ignore[no-untyped-call]  # they would outlive their nodes
+    add = Channel(ChannelKind.SERVICE, "/add", "my_robot_interfaces/srv/AddTwoInts")
+    count = Channel(ChannelKind.ACTION, "/count", "my_robot_interfaces/action/Fibonacci")
+    assert graph.nodes == ("/desk/other", "/one")
+    assert set(graph.ends) == {
+        End("/one", CHATTER, True),
+        End("/desk/other", CHATTER, False),
+        End("/desk/other", add, True),
+        End("/one", add, False),
+        End("/desk/other", count, True),
+        End("/one", count, False),
+    }
+
+
+@pytest.mark.ros
+def test_two_nodes_of_one_name_in_two_programs_both_count(make: Callable[..., Node]) -> None:
+    """A question by a node's name is answered for one of them only."""
+    make("twin").create_publisher(String, "chatter", 10)
+    other_program = Context()
+    other_program.init(domain_id=get_default_context().get_domain_id())
+    try:
+        other = Node("twin", context=other_program)
+        other.create_subscription(String, "chatter", print, 10)
+        both = {End("/twin", CHATTER, True), End("/twin", CHATTER, False)}
+        deadline = time.monotonic() + 10.0
+        while set(read_graph().ends) != both and time.monotonic() < deadline:
+            pass
+        assert set(read_graph().ends) == both
+    finally:
+        other_program.shutdown()
+
+
+@pytest.mark.ros
+def test_a_node_that_has_gone_is_not_drawn(make: Callable[..., Node]) -> None:
+    make("stays")
+    make("goes").destroy_node()
+    assert repr(draw_graph()) == "/stays is connected to nothing."
+
+
+@pytest.mark.ros
+def test_nothing_is_running(make: Callable[..., Node]) -> None:
+    picture = draw_graph()
+    assert repr(picture) == "No node is running."
+    ElementTree.fromstring(picture.svg())
+
+
+GRAPH = RosGraph(
+    ("/<talker>", "/listener"), (End("/<talker>", CHATTER, True), End("/listener", CHATTER, False))
+)
+
+
+def test_the_picture_has_a_text_alternative() -> None:
+    svg = ElementTree.fromstring(GraphPicture(GRAPH).svg())
+    assert svg.get("role") == "img"
+    assert svg.findtext(f"{SVG}title") == "The running graph"
+    assert "/<talker> publishes on /chatter (std_msgs/msg/String)." in str(svg.findtext(f"{SVG}desc"))
+    (alternative,) = re.findall(r'<img alt="([^"]*)"', GraphPicture(GRAPH)._repr_html_())
+    assert "/&lt;talker&gt; publishes on /chatter" in alternative
+
+
+def test_every_box_is_named_and_inside_the_picture() -> None:
+    svg = ElementTree.fromstring(GraphPicture(GRAPH).svg())
+    names = [text.text for text in svg.iter(f"{SVG}text")]
+    assert sorted(filter(None, names)) == ["/<talker>", "/chatter", "/listener", "std_msgs/msg/String"]
+    _, _, width, height = map(float, str(svg.get("viewBox")).split())
+    for rect in svg.iterfind(f"{SVG}g/{SVG}rect"):
+        x, y, w, h = (float(str(rect.get(name))) for name in ("x", "y", "width", "height"))
+        assert x >= 0
+        assert y >= 0
+        assert x + w <= width
+        assert y + h <= height
+
+
+def test_the_arrow_leads_from_the_publisher_to_the_subscriber() -> None:
+    svg = ElementTree.fromstring(GraphPicture(GRAPH).svg())
+    heads = [path for path in svg.iter(f"{SVG}path") if path.get("class") == "head"]
+    boxes = {text.text: float(str(text.get("x"))) for text in svg.iter(f"{SVG}text")}
+    tips = sorted(float(re.findall(r"[\d.]+", str(head.get("d")))[0]) for head in heads)
+    assert boxes["/<talker>"] < tips[0] < boxes["/chatter"] < tips[1] < boxes["/listener"]
+
+
+def test_a_long_chain_runs_down_the_page() -> None:
+    topics = [Channel(ChannelKind.TOPIC, f"/topic_number_{n}", "std_msgs/msg/String") for n in range(6)]
+    nodes = tuple(f"/node_number_{n}" for n in range(7))
+    ends = [End(nodes[n], topic, True) for n, topic in enumerate(topics)]
+    ends += [End(nodes[n + 1], topic, False) for n, topic in enumerate(topics)]
+    _, _, width, height = (
+        GraphPicture(RosGraph(nodes, tuple(ends))).svg().split('viewBox="')[1].split('"')[0].split()
+    )
+    assert float(width) < 400 < float(height)
