@@ -6,11 +6,12 @@ wins.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.kit.meant_errors import meant
 from autograder.kit.model import Advice, Mistake
 
 if TYPE_CHECKING:
@@ -241,10 +242,12 @@ def traceback_of(evidence: Evidence) -> str:
     """The last traceback of any part that shows a crash.
 
     A TimeoutError is how a client is asked to say that nobody serves it, so it is none; nor is what a thread says when
-    the main program ends and shuts ROS down under it.
+    the main program ends and shuts ROS down under it. What a program raises on purpose in one part, as where its goal
+    is refused, does not hide a slip in another one.
     """
-    shown = (part.traceback for part in reversed(list(evidence)))
-    return next((text for text in shown if text and not _NO_CRASH.search(text)), "")
+    shown = [part.traceback for part in reversed(list(evidence))]
+    crashes = [text for text in shown if text and not _NO_CRASH.search(text)]
+    return next((text for text in crashes if not meant(text)), crashes[0] if crashes else "")
 
 
 def _recogniser(crash: Crash) -> Mistake:
@@ -260,7 +263,7 @@ def _recogniser(crash: Crash) -> Mistake:
     return Mistake(crash.key, recognise, certain=True)
 
 
-def _what_and_where(traceback: str) -> str:
+def what_and_where(traceback: str) -> str:
     """What was raised, and the line of the student's that led to it."""
     last = [line for line in traceback.splitlines() if line[:1].strip()][-1:]
     frames = [found for found in _FRAME.finditer(traceback) if not _is_a_library(found["file"])]
@@ -282,7 +285,7 @@ def _crashed(evidence: Evidence) -> Advice | None:
     if not traceback:
         return None
     return Advice(
-        f"The program stopped with an exception: {_what_and_where(traceback)}",
+        f"The program stopped with an exception: {what_and_where(traceback)}",
         "Read the traceback from the bottom: the last line says what, the lines above say where.",
     )
 
@@ -294,7 +297,7 @@ def _exception_in_callback(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         f"A callback raised an exception, which ends the spinning and with it everything else: "
-        f"{_what_and_where(traceback)}",
+        f"{what_and_where(traceback)}",
         "Read the traceback from the bottom: the last line says what, the lines above it where. Mend the line that is "
         "yours.",
     )
@@ -311,6 +314,13 @@ def _cut_off(evidence: Evidence) -> Advice | None:
     )
 
 
+def _only_slips(mistake: Mistake) -> Mistake:
+    def recognise(evidence: Evidence) -> Advice | None:
+        return None if meant(traceback_of(evidence)) else mistake.recognise(evidence)
+
+    return replace(mistake, recognise=recognise)
+
+
 CRASHES: tuple[Mistake, ...] = (
     *map(_recogniser, KNOWN),
     Mistake("cut_off", _cut_off, certain=True),
@@ -321,3 +331,5 @@ OTHER_CRASHES = (
     Mistake("crashed", _crashed, certain=True),
 )
 """Any other traceback; to be asked after what the graph shows."""
+OTHER_SLIPS = tuple(map(_only_slips, OTHER_CRASHES))
+"""Tracebacks that nobody meant; what a program raises on purpose is asked after what else is wrong with it."""

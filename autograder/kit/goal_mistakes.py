@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from autograder.kit.crashes import what_and_where
 from autograder.kit.giving_up import gave_up, patience_not_kept
 from autograder.kit.goal_reports import (
     ABORTED,
@@ -20,6 +21,7 @@ from autograder.kit.goal_reports import (
     given_up,
     goals_as_seen,
     miscalled,
+    raised_on_purpose,
     refused_as_seen,
     reports_result,
     said_of_result,
@@ -115,6 +117,19 @@ def result_of_rejected_goal(evidence: Evidence) -> Advice | None:
     )
 
 
+def crashed_by_refusal(evidence: Evidence) -> Advice | None:
+    """It goes on with a refused goal until an exception stops it, and comes through all other parts without one."""
+    crashed = [part for part in evidence if part.traceback and not raised_on_purpose(part)]
+    if [part.name for part in crashed] != [REFUSED]:
+        return None
+    return Advice(
+        "The goal was refused, and your client went on as if it had been accepted, until an exception stopped it: "
+        f"{what_and_where(crashed[0].traceback)}",
+        "Look at goal_handle.accepted as soon as the answer to the goal is there. Where it is False, say so (in a "
+        "function: raise a RuntimeError) and stop: there is no result to wait for.",
+    )
+
+
 def never_ended(evidence: Evidence) -> Advice | None:
     """It says that the goal was refused and stays."""
     if refused_as_seen(evidence) != "said so, and did not end":
@@ -130,8 +145,10 @@ def refusal_not_reported(evidence: Evidence) -> Advice | None:
     """It does not say that the goal was refused."""
     if refused_as_seen(evidence) != "nothing was said of it":
         return None
+    waits = evidence.part(REFUSED).ending is None
     return Advice(
-        "The goal was refused, and your client did not say so.",
+        "The goal was refused, and your client did not say so"
+        + (": it still waits for what a refused goal never sends." if waits else "."),
         "Look at goal_handle.accepted when the answer to the goal is there, and log an error where it is False.",
     )
 

@@ -23,6 +23,7 @@ LATE = "the server comes late"
 REFUSED = "the goal is refused"
 ABORTED = "the goal is aborted"
 ABSENT = "there is no server"
+"""In this part nobody serves; in the first one of any exercise a goal is accepted."""
 SERVED = (LATE, REFUSED, ABORTED)
 """The parts in which a goal is expected."""
 
@@ -154,19 +155,20 @@ def refused_as_seen(evidence: Evidence) -> str:
     """
     part = evidence.part(REFUSED)
     goal = part.first("goal")
-    if goal is None or not _waits(evidence.part(LATE)):
-        return NO_GOAL
+    if goal is None or not _waits(evidence.main):
+        return NO_GOAL if part.events else "not reached"
     # An empty list, as a function may return one, is no word.
     words = [line for line in part.said(after=goal) if re2.search(r"\pL", line)]
-    said = _new_words(words, evidence.part(LATE))
+    said = _new_words(words, evidence.main)
     if part.first("result_request") is not None:
-        told = [line for line in _new_words(said, evidence.part(ABORTED)) if not _names_unknown(line)]
+        accepted = [other for other in evidence if other.name not in (REFUSED, ABSENT)]
+        told = [line for line in _new_words(said, *accepted) if not _names_unknown(line)]
         if not (told or raised_on_purpose(part)):
             return "asked for the result of a goal that was refused"
     if not (said or raised_on_purpose(part)):
         return "nothing was said of it"
     # A client that goes on after a success, too, may go on here.
-    if part.ending is None and evidence.part(LATE).ending is not None:
+    if part.ending is None and evidence.main.ending is not None:
         return "said so, and did not end"
     return ""
 

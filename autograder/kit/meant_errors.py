@@ -2,16 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING
-
 import re2
-
-from autograder.kit.crashes import OTHER_CRASHES, traceback_of
-
-if TYPE_CHECKING:
-    from autograder.kit.evidence import Evidence
-    from autograder.kit.model import Advice, Mistake
 
 _FRAME = re2.compile(r'(?m)^ {2}File "(?P<file>[^"]*)", line \d+.*\n {4,}(?P<code>\S.*)$')
 _LIBRARY = re2.compile(r"/(site|dist)-packages/|/lib/python3\.\d+/|/opt/ros/")
@@ -23,14 +14,3 @@ def meant(traceback: str) -> bool:
     if not frames or _LIBRARY.search(frames[-1]["file"]):
         return False
     return re2.search(r"(?:^|[:;] *)(?:raise|assert)\b", frames[-1]["code"]) is not None
-
-
-def _only_slips(mistake: Mistake) -> Mistake:
-    def recognise(evidence: Evidence) -> Advice | None:
-        return None if meant(traceback_of(evidence)) else mistake.recognise(evidence)
-
-    return replace(mistake, recognise=recognise)
-
-
-OTHER_SLIPS = tuple(map(_only_slips, OTHER_CRASHES))
-"""Tracebacks that nobody meant; what a program raises on purpose is asked after what else is wrong with it."""

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.kit import common_mistakes as common
 from autograder.kit import goal_mistakes as goals
+from autograder.kit.crashes import OTHER_SLIPS
 from autograder.kit.giving_up import GIVE_UP_LIMIT, PATIENCE, await_it
 from autograder.kit.goal_reports import ABORTED, ABSENT, FEEDBACKS, LATE, REFUSED, unshown_feedback
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import hold_back, meets_late_action
-from autograder.kit.meant_errors import OTHER_SLIPS
 from autograder.kit.model import Bench, Mistake, Pace
 
 if TYPE_CHECKING:
@@ -88,19 +88,17 @@ def meets_late_server(bench: Bench, inputs: Mapping[str, Any], lateness: float, 
     return works_on_a_goal(bench, server, "succeeded", FEEDBACKS)
 
 
-def meets_server(bench: Bench, inputs: Mapping[str, Any], *, accept: bool = True) -> ActionCounterpart:
-    """Start the subject and serve as soon as the judge has met it.
+def meets_server(bench: Bench, *, accept: bool = True) -> ActionCounterpart:
+    """Serve as soon as the judge has met the subject, which was started just now.
 
     Where the server was there before, a client may know it first, and the goal of one that ends at once would reach the
     judge or not, as it happens.
 
     Args:
         bench: Where it happens.
-        inputs: What the subject is started with.
         accept: Whether goals are accepted.
     """
     action, type_name = bench.reference.only("action_client")
-    start(bench, inputs)
     bench.await_endpoint("action_client", action)
     return bench.serve_action(action, type_name, accept_goal=accept)
 
@@ -108,7 +106,8 @@ def meets_server(bench: Bench, inputs: Mapping[str, Any], *, accept: bool = True
 def aborted(bench: Bench) -> None:
     """One run with a goal that is aborted."""
     inputs = begin(bench, ABORTED)
-    works_on_a_goal(bench, meets_server(bench, inputs), "aborted", 1)
+    start(bench, inputs)
+    works_on_a_goal(bench, meets_server(bench), "aborted", 1)
     bench.stop()
 
 
@@ -145,8 +144,13 @@ def is_done(evidence: Evidence) -> bool:
 
 def refused(bench: Bench) -> None:
     """One run with a server that refuses every goal."""
-    inputs = begin(bench, REFUSED)
-    if meets_server(bench, inputs, accept=False).await_goal(GOAL_LIMIT):
+    start(bench, begin(bench, REFUSED))
+    refuse(bench)
+
+
+def refuse(bench: Bench) -> None:
+    """Refuse the goal of the subject, which was started just now; the part ends with that."""
+    if meets_server(bench, accept=False).await_goal(GOAL_LIMIT):
         bench.await_end(END_LIMIT[bench.pace])
     bench.stop()
 
@@ -188,6 +192,7 @@ class ActionClient:
     def __init__(self, scenario: Callable[[Bench], None], *ladder: Mistake) -> None:
         self.scenario = scenario
         self.ladder = (
+            Mistake("refused_goal_used", goals.crashed_by_refusal),
             *common.CRASHES,
             common.endpoint_name("action_client"),
             common.message_type("action_client"),

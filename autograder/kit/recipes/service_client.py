@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Any
 from autograder.kit import common_mistakes as common
 from autograder.kit import giving_up
 from autograder.kit import service_calls as calls_seen
+from autograder.kit.crashes import OTHER_SLIPS
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.giving_up import GIVE_UP_LIMIT, LATENESS
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import SOON, TRIES, was_patient, was_patient_with_an_answer
-from autograder.kit.meant_errors import OTHER_SLIPS
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.service_calls import (
     ABSENT,

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part
 
 HONOURED = "the server cancels"
-REFUSED = "the server refuses to cancel"
+CANCEL_REFUSED = "the server refuses to cancel"
 
 FIRST_FEEDBACK, LAST_FEEDBACK = 3, 5
 """The cancel request must come after this many feedback messages, at the earliest and at the latest."""
@@ -68,7 +68,8 @@ def left_before_its_answer(part: Part) -> bool:
 
 def telling_count(evidence: Evidence) -> int | None:
     """How many feedback messages were sent before the cancel request, in the run where that is least right."""
-    counts = [feedbacks_before_cancel(part) for part in evidence if goals(part)] or [None]
+    runs = (evidence.part(HONOURED), evidence.part(CANCEL_REFUSED))
+    counts = [feedbacks_before_cancel(part) for part in runs if goals(part)] or [None]
     return next((n for n in counts if n is None or not FIRST_FEEDBACK <= n <= LAST_FEEDBACK), counts[0])
 
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from exercise_1_3._cancel_evidence import (
+    CANCEL_REFUSED,
     FIRST_FEEDBACK,
     HONOURED,
     LAST_FEEDBACK,
-    REFUSED,
     after_result,
     expected_order,
     goals,
@@ -153,7 +153,9 @@ def cancel_repeated(evidence: Evidence) -> Advice | None:
 def status_not_reported(evidence: Evidence) -> Advice | None:
     """It cancels, and never says how the goal ended."""
     part = evidence.part(HONOURED)
-    if part.first("cancel") is None or says_canceled(after_result(part), evidence.part(REFUSED).said()):
+    if part.first("cancel") is None or says_canceled(
+        after_result(part), evidence.part(CANCEL_REFUSED).said()
+    ):
         return None
     if part.first("result_request") is None:
         return Advice(
@@ -171,7 +173,7 @@ def status_not_reported(evidence: Evidence) -> Advice | None:
 
 def status_misreported(evidence: Evidence) -> Advice | None:
     """What it says of one goal is true of the other one."""
-    honoured, refused = evidence.part(HONOURED), evidence.part(REFUSED)
+    honoured, refused = evidence.part(HONOURED), evidence.part(CANCEL_REFUSED)
     claim = false_claim(honoured, refused)
     if claim is None:
         return None
@@ -198,5 +200,8 @@ MISTAKES = (
     Mistake("status_not_reported", only_if_ended(status_not_reported), certain=True),
     Mistake("status_misreported", status_misreported),
     Mistake("status_not_reported", status_not_reported),
+    Mistake("result_of_rejected_goal", goal_mistakes.result_of_rejected_goal),
+    Mistake("refusal_not_reported", goal_mistakes.refusal_not_reported),
+    Mistake("never_ended", goal_mistakes.never_ended),
 )
 """Most telling first, between those that any client of an action may show."""

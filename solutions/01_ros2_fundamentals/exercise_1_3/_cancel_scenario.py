@@ -1,9 +1,9 @@
-"""What the judge does with a client that cancels its goal: one run in which the cancel is honoured, one in which not.
+"""What the judge does with a client that cancels its goal: the cancel is honoured, it is refused, the goal is refused.
 
 The judge is the action server. In a first part it comes late and cancels as it is asked to; in a second one the goal
 succeeds all the same, so that a client that only claims "canceled" is told from one that looked at the status. There
 the judge refuses to cancel. Of a client that never asked for the result it accepts the request, since only the status
-on its topic tells then.
+on its topic tells then. In a third part the goal itself is refused.
 """
 
 from __future__ import annotations
@@ -11,17 +11,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from exercise_1_3._cancel_evidence import (
+    CANCEL_REFUSED,
     FIRST_FEEDBACK,
     HONOURED,
     LAST_FEEDBACK,
-    REFUSED,
     Request,
     after_result,
+    goals,
     request_of,
 )
 
+from autograder.kit.goal_reports import REFUSED
 from autograder.kit.lateness import hold_back, meets_late_action
 from autograder.kit.model import Bench, Pace
+from autograder.kit.recipes.action_client import refuse
 
 if TYPE_CHECKING:
     from autograder.kit.counterparts import ActionCounterpart
@@ -60,11 +63,21 @@ AFTERMATH = 1.0
 
 
 def scenario(bench: Bench) -> None:
-    """One run in which the cancel is honoured, one in which it is refused."""
+    """One run in which the cancel is honoured, one in which it is refused, one in which the goal is."""
     honoured = run(bench, HONOURED, accept=True)
-    if honoured is None:
-        return
-    refused = run(bench, REFUSED, accept=not honoured.asked_for_result, pause=PAUSE)
+    sends_a_goal = bool(goals(bench.seen()))
+    if honoured is not None:
+        cancel_is_refused(bench, honoured)
+    if sends_a_goal:
+        bench.part(REFUSED)
+        bench.start()
+        bench.release()
+        refuse(bench)
+
+
+def cancel_is_refused(bench: Bench, honoured: Request) -> None:
+    """The run in which the goal succeeds in spite of the request to cancel it."""
+    refused = run(bench, CANCEL_REFUSED, accept=not honoured.asked_for_result, pause=PAUSE)
     if bench.pace is Pace.FAST and refused is not None and not caused_by_feedback(honoured, refused):
         bench.doubt()
 

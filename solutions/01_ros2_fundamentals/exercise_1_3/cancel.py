@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from exercise_1_3._cancel_evidence import (
+    CANCEL_REFUSED,
     FIRST_FEEDBACK,
     HONOURED,
     LAST_FEEDBACK,
     LEFT,
-    REFUSED,
     after_result,
     expected_order,
     left_before_its_answer,
@@ -20,7 +20,13 @@ from exercise_1_3._cancel_scenario import scenario
 from exercise_1_3._cancel_words import false_claim, says_canceled
 
 from autograder.kit.draft import Draft
-from autograder.kit.goal_reports import MANY_REQUESTS, NOT_AWAITED, asked_for, left_at_once
+from autograder.kit.goal_reports import (
+    MANY_REQUESTS,
+    NOT_AWAITED,
+    asked_for,
+    left_at_once,
+    tells_of_refusal,
+)
 from autograder.kit.model import Finding
 from autograder.kit.recipes.action_client import ActionClient
 
@@ -91,7 +97,7 @@ def _cancels(part: Part) -> list[Event]:
 def reports_the_status(evidence: Evidence) -> Finding:
     """When the goal has ended it says "canceled" where it was, and not where it was not."""
     expected = "learns the status and says CANCELED (5), and only where it is so"
-    part, refused = evidence.part(HONOURED), evidence.part(REFUSED)
+    part, refused = evidence.part(HONOURED), evidence.part(CANCEL_REFUSED)
     if part.first("cancel") is None:
         return Finding(False, expected, "no cancel request")
     asked = len(part.of("result_request"))
@@ -112,13 +118,14 @@ def reports_the_status(evidence: Evidence) -> Finding:
 cancel = Draft(
     "exercise_1_3.cancel",
     "Exercise 1.3 · Cancel a goal",
-    "Cancel a goal of order 20 after 3 to 5 feedback messages and report how it ended.",
+    "Cancel a goal of order 20 after 3 to 5 feedback messages and report how it ended, or that it was refused.",
     ActionClient(scenario, *MISTAKES),
 )
 cancel.asks("goal", 2, "Sends one goal of the right order", sends_the_goal)
 cancel.asks("cancel", 3, "Asks to cancel at the right moment", cancels_in_the_window)
 cancel.asks("once", 1, "Asks only once at that moment", cancels_once)
 cancel.asks("late_feedback", 1, "Asks no more when more feedback arrives", ignores_late_feedback)
-cancel.asks("status", 3, "Reports how the goal really ended", reports_the_status)
+cancel.asks("status", 2, "Reports how the goal really ended", reports_the_status)
+cancel.asks("refused", 1, "Says when the goal is refused", tells_of_refusal)
 
 EXERCISE = cancel.exercise(limit=120.0)

@@ -34,6 +34,8 @@ def main() -> None:
     tally = Tally(options.after)
     sending = client.send_goal_async(Fibonacci.Goal(order=options.order), feedback_callback=tally)
     rclpy.spin_until_future_complete(node, sending)
+    if not sending.result().accepted:
+        raise SystemExit('fibonacci does not take the goal')
     result = sending.result().get_result_async()
     rclpy.spin_until_future_complete(node, tally.full)
     sending.result().cancel_goal_async()

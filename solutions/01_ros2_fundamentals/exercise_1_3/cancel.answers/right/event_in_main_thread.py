@@ -31,6 +31,8 @@ def main():
     future.add_done_callback(lambda _: accepted.set())
     accepted.wait()
     goal = future.result()
+    if not goal.accepted:
+        raise SystemExit('the goal was refused')
     enough.wait()
     goal.cancel_goal()
     print('status', goal.get_result().status)

@@ -29,6 +29,10 @@ class Abbrecher(Node):
 
     def antwort(self, zukunft):
         self.griff = zukunft.result()
+        if not self.griff.accepted:
+            self.get_logger().error('🚫 Der Server nimmt das Ziel nicht an.')
+            self.fertig = True
+            return
         self.griff.get_result_async().add_done_callback(self.ende)
 
     def rückmeldung(self, meldung):

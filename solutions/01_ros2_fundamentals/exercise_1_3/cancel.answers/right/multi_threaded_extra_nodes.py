@@ -29,9 +29,13 @@ class Worker(Node):
         self.start.cancel()
         self.client.wait_for_server(timeout_sec=10.0)
         sending = self.client.send_goal_async(Fibonacci.Goal(order=20), feedback_callback=self.on_feedback)
-        while not sending.done() or self.count < 3:
+        while not sending.done() or (sending.result().accepted and self.count < 3):
             time.sleep(0.002)
         goal = sending.result()
+        if not goal.accepted:
+            self.get_logger().warning('no such luck: the goal was turned down')
+            self.over = True
+            return
         goal.cancel_goal()
         status = goal.get_result().status
         self.get_logger().info(f'{status=} canceled={status == GoalStatus.STATUS_CANCELED}')

@@ -12,10 +12,13 @@ feedbacks = []
 goal = Fibonacci.Goal()
 goal.order = 20
 sent = client.send_goal_async(goal, feedback_callback=feedbacks.append)
-while not sent.done() or len(feedbacks) < 5:
+while not sent.done():
     rclpy.spin_once(node)
 
 handle = sent.result()
+assert handle.accepted, "the goal was refused"
+while len(feedbacks) < 5:
+    rclpy.spin_once(node)
 canceling = handle.cancel_goal_async()
 result = handle.get_result_async()
 while not result.done():

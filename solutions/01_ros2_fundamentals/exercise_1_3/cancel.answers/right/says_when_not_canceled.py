@@ -37,6 +37,8 @@ def main():
     sending = node.client.send_goal_async(Fibonacci.Goal(order=20), feedback_callback=node.feedback)
     rclpy.spin_until_future_complete(node, sending)
     node.goal = sending.result()
+    if not node.goal.accepted:
+        raise RuntimeError('the goal was not accepted')
     node.goal.get_result_async().add_done_callback(node.finished)
     rclpy.spin(node)
 

@@ -23,6 +23,8 @@ def main():
     client.wait_for_server(timeout_sec=10.0)
 
     goal_handle = until_done(client.send_goal_async(Fibonacci.Goal(order=20)))
+    if not goal_handle.accepted:
+        raise SystemExit('the goal was rejected')
     node.get_logger().info('goal accepted, going to sleep')
     time.sleep(2.0)
     node.get_logger().info('requesting cancel')

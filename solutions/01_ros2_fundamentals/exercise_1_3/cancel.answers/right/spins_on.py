@@ -20,6 +20,9 @@ class CancelingClient(Node):
 
     def on_response(self, future):
         self.goal = future.result()
+        if not self.goal.accepted:
+            self.get_logger().error('Goal was rejected')
+            return
         self.goal.get_result_async().add_done_callback(self.on_result)
 
     def on_feedback(self, message):

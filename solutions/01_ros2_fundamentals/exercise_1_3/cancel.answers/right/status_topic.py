@@ -19,6 +19,9 @@ class Watcher(Node):
 
     def on_answer(self, future):
         self.goal = future.result()
+        if not self.goal.accepted:
+            self.get_logger().error('the goal was refused')
+            raise SystemExit
 
     def on_feedback(self, message):
         self.count += 1

@@ -24,6 +24,10 @@ def main(args=None):
     sending = client.send_goal_async(Fibonacci.Goal(order=20), feedback_callback=feedback)
     rclpy.spin_until_future_complete(node, sending)
     goal = sending.result()
+    if not goal.accepted:
+        log.error('the server refused the goal')
+        rclpy.shutdown()
+        return
     while count < 3:
         rclpy.spin_once(node)
     cancelling = goal.cancel_goal_async()

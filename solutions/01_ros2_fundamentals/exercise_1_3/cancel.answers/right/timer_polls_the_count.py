@@ -24,6 +24,8 @@ class ClientDiscret(Node):
     def envoyer(self):
         futur = self.client.send_goal_async(Fibonacci.Goal(order=20), feedback_callback=self.compter)
         rclpy.spin_until_future_complete(self, futur)
+        if not futur.result().accepted:
+            return 'refusé'
         self.but = futur.result()
         resultat = self.but.get_result_async()
         rclpy.spin_until_future_complete(self, resultat)

@@ -1,0 +1,88 @@
+"""What is made of a client whose goal is refused, by both exercises about clients of actions: no ROS is started."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.kit.crashes import traceback_of
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.goal_mistakes import crashed_by_refusal, refusal_not_reported
+from autograder.kit.goal_reports import REFUSED, refused_as_seen
+
+REFERENCE = Reference("exercise_1_3.cancel", {})
+FRAME = '  File "/home/student/client.py", line 9, in run_client\n    '
+SLIP = f"Traceback (most recent call last):\n{FRAME}print(NAMES[answer.status])\nKeyError: 0"
+MEANT = f"Traceback (most recent call last):\n{FRAME}raise RuntimeError('refused')\nRuntimeError: refused"
+GOAL = Event(0.0, "goal", "/fibonacci", {"fields": {"order": 20}})
+ASKED = Event(0.2, "result_request", "/fibonacci", {"known": True})
+RESULT = Event(0.3, "result", "/fibonacci", {"status": "canceled", "fields": {"sequence": []}})
+
+
+def say(text: str) -> Event:
+    return Event(0.4, "output", "stdout", {"text": text})
+
+
+def raised(traceback: str) -> Event:
+    return Event(0.5, "subject", "raised", {"traceback": traceback})
+
+
+def evidence(
+    refused: list[Event], *, canceled: str = "ended as CANCELED", end: Event | None = None
+) -> Evidence:
+    answered = Event(0.1, "goal_answered", "/fibonacci")
+    last = end or Event(0.5, "subject", "returned")
+    head = [GOAL, answered, ASKED, RESULT]
+    return Evidence(
+        [
+            Part("the server cancels", {}, [*head, say(canceled), last]),
+            Part("the server refuses to cancel", {}, [*head, say("ended with 4"), last]),
+            Part(REFUSED, {}, [GOAL, *refused]),
+        ],
+        REFERENCE,
+    )
+
+
+@pytest.mark.parametrize(
+    ("refused", "wrong"),
+    [
+        ([raised(MEANT)], ""),
+        ([say("not accepted"), Event(0.5, "subject", "returned")], ""),
+        ([ASKED, say("ended with 0"), Event(0.5, "subject", "returned")], "asked for the result"),
+        ([ASKED, raised(SLIP)], "asked for the result"),
+        ([Event(0.5, "subject", "returned")], "nothing was said of it"),
+        ([], "nothing was said of it"),
+        ([say("not accepted")], "said so, and did not end"),
+    ],
+)
+def test_a_refusal_is_told_in_words_of_no_other_run(refused: list[Event], wrong: str) -> None:
+    seen = refused_as_seen(evidence(refused))
+    assert seen.startswith(wrong) if wrong else seen == ""
+
+
+def test_a_run_that_never_was_is_not_called_a_run_without_a_goal() -> None:
+    assert refused_as_seen(Evidence(evidence([]).parts[:2], REFERENCE)) == "not reached"
+
+
+def test_an_exception_that_only_a_refusal_causes_is_told_with_it() -> None:
+    advice = crashed_by_refusal(evidence([ASKED, raised(SLIP)]))
+    assert advice is not None
+    assert "refused" in advice.text
+    assert "KeyError: 0 (line 9, in run_client)" in advice.text
+    assert crashed_by_refusal(evidence([raised(MEANT)])) is None
+    assert crashed_by_refusal(evidence([raised(SLIP)], end=raised(SLIP))) is None
+
+
+def test_who_says_nothing_is_told_whether_it_still_waits() -> None:
+    waits, ends = (
+        refusal_not_reported(evidence([])),
+        refusal_not_reported(evidence([Event(0.5, "subject", "returned")])),
+    )
+    assert waits is not None
+    assert "still waits" in waits.text
+    assert ends is not None
+    assert "still waits" not in ends.text
+
+
+def test_what_is_raised_on_purpose_at_a_refusal_does_not_hide_a_slip_in_another_run() -> None:
+    assert traceback_of(evidence([raised(MEANT)], end=raised(SLIP))) == SLIP
+    assert traceback_of(evidence([raised(MEANT)])) == MEANT
