@@ -1,7 +1,8 @@
 """A cache of builds: one folder a build, named by the key of its sources, that only its owner may use.
 
 An entry is built in place (an install folder names its own path) under a lock, and counts only once its marker is
-written: whatever was interrupted is removed and done again.
+written: whatever was interrupted is removed and done again. Where the one who builds is killed, as a kernel is when
+JupyterLab restarts it, the build itself goes on. Who has the entry next ends it first: it would write among its files.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 import platformdirs
+
+from autograder.workspaces.running.processes import end_session, started_at
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -49,6 +52,17 @@ class Entry:
 
     folder: Path
     complete: bool
+    _lock: IO[str]
+
+    def built_by(self, session: int) -> None:
+        """Remember who builds, for whoever has the entry next.
+
+        Args:
+            session: The first process of a session of its own.
+        """
+        self._lock.truncate(0)
+        self._lock.write(f"{session} {started_at(session)}")
+        self._lock.flush()
 
     def finish(self) -> None:
         """Let the build count from now on."""
@@ -108,8 +122,10 @@ def entry(key: str, base: Path | None = None, cancelled: Callable[[], bool] | No
         GivenUp: It is not.
     """
     base = base or root()
-    with (base / f"{key}.lock").open("w") as lock:
+    # Opened for appending: opened for writing, it would forget who builds before it is one's own.
+    with (base / f"{key}.lock").open("a+") as lock:
         _await_turn(lock, cancelled)
+        _end_builder(lock)
         folder = base / key
         marker = folder / _MARKER
         complete = marker.is_file() and is_ones_own(folder)
@@ -119,12 +135,21 @@ def entry(key: str, base: Path | None = None, cancelled: Callable[[], bool] | No
             shutil.rmtree(folder, ignore_errors=True)
             folder.mkdir(mode=0o700)
         try:
-            yield Entry(folder, complete)
+            yield Entry(folder, complete, lock)
         finally:
+            lock.truncate(0)
             if not marker.is_file():
                 shutil.rmtree(folder, ignore_errors=True)
     if not complete:
         make_room(base)
+
+
+def _end_builder(lock: IO[str]) -> None:
+    """End a build that goes on although whoever had the entry before was killed."""
+    lock.seek(0)
+    match lock.read().split():
+        case [session, began]:
+            end_session(int(session), began)
 
 
 def _await_turn(lock: IO[str], cancelled: Callable[[], bool] | None) -> None:

@@ -67,7 +67,7 @@ def _build(found: Build, targets: Targets | None) -> Build:
             if graders.ok:
                 entry.finish()
             return graders
-        log = _colcon(workspace, chosen, entry.folder)
+        log = _colcon(workspace, chosen, entry)
         if log is None:
             shutil.rmtree(entry.folder / "build", ignore_errors=True)
             entry.finish()
@@ -136,12 +136,13 @@ def command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()
     ]  # fmt: skip
 
 
-def _colcon(workspace: Path, packages: Sequence[Package], folder: Path) -> str | None:
+def _colcon(workspace: Path, packages: Sequence[Package], entry: cache.Entry) -> str | None:
     """Run colcon; its output where it failed, else None."""
     environment = without_workspaces(os.environ, workspace)
     environment.pop("PYTHONDONTWRITEBYTECODE", None)  # setuptools warns of it in every log
     environment["COLCON_DEFAULTS_FILE"] = os.devnull
-    with OwnSession(command(packages, folder), environment, folder) as colcon:
+    with OwnSession(command(packages, entry.folder), environment, entry.folder) as colcon:
+        entry.built_by(colcon.pid)
         said, late = colcon.collect(LIMIT, sys.maxsize)
         code = colcon.exit_code()
     output = "\n".join(said.decode("utf-8", "replace").splitlines())

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
+import select
 import signal
 from pathlib import Path
 
@@ -45,6 +47,37 @@ def started_at(pid: int) -> str:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[19]
     except OSError:
         return ""
+
+
+def end_session(leader: int, began: str) -> None:
+    """Kill what is left of a session, also where its leader is gone, and wait until it is.
+
+    Args:
+        leader: The process that the session began with.
+        began: When that process began (:func:`started_at`). Its number is not given away while one of its session
+            lives; afterwards it may be another program's, which nothing happens to.
+    """
+    if started_at(leader) not in ("", began):
+        return
+    for pid in _session(leader):
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            handle = os.pidfd_open(pid)
+            try:
+                signal.pidfd_send_signal(handle, signal.SIGKILL)
+                select.select([handle], [], [])  # readable once it has ended (pidfd_open(2))
+            finally:
+                os.close(handle)
+
+
+def _session(leader: int) -> list[int]:
+    """The processes of a session, this one excepted."""
+    members = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        pid = int(folder.name)
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            if os.getsid(pid) == leader and pid != os.getpid():
+                members.append(pid)
+    return members
 
 
 def _status(pid: int, name: str) -> list[str]:

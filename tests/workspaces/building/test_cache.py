@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import contextlib
 import os
+import signal
+import subprocess
+import sys
 import threading
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from autograder.workspaces.building import cache
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from autograder.workspaces.running.processes import started_at
 
 
 def fill(key: str, size: int = 10) -> None:
@@ -37,6 +38,51 @@ def test_what_a_killed_builder_left_is_removed(empty_cache: Path) -> None:
     with cache.entry("a") as entry:
         assert not entry.complete
         assert list(entry.folder.iterdir()) == []
+
+
+def test_a_build_that_outlived_its_killed_builder_is_ended(empty_cache: Path) -> None:
+    """As where JupyterLab restarts a kernel in a check: colcon has a session of its own, and goes on."""
+    program = """
+import os, signal, subprocess, sys
+from autograder.workspaces.building import cache
+# The session's first process is gone, and one that it has started goes on writing.
+below = "while true; do mkdir -p half; echo x > half/$$; done"
+with cache.entry("a") as entry:
+    colcon = subprocess.Popen(
+        ["/bin/sh", "-c", f"({below}) & echo $!"], cwd=entry.folder, start_new_session=True, stdout=subprocess.PIPE
+    )
+    entry.built_by(colcon.pid)
+    print(int(colcon.stdout.readline()), flush=True)
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+    killed = subprocess.run([sys.executable, "-c", program], stdout=subprocess.PIPE, check=False)
+    assert killed.returncode == -signal.SIGKILL
+    writing = int(killed.stdout)
+    assert started_at(writing)
+    with cache.entry("a") as entry:
+        assert state_of(writing) in ("", "Z")  # nobody may have waited for it yet
+        assert list(entry.folder.iterdir()) == []
+
+
+def test_a_later_program_of_the_same_number_is_left_alone(empty_cache: Path) -> None:
+    with cache.entry("a") as entry:
+        entry.finish()
+    other = subprocess.Popen(["/bin/sleep", "60"], start_new_session=True)
+    try:
+        (empty_cache / "a.lock").write_text(f"{other.pid} 1", encoding="utf-8")
+        with cache.entry("a"):
+            assert other.poll() is None
+    finally:
+        other.kill()
+        other.wait()
+
+
+def state_of(pid: int) -> str:
+    """A process's state, as ps shows it; empty where there is none."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
+    except OSError:
+        return ""
 
 
 def test_two_builders_of_one_key_take_turns() -> None:
