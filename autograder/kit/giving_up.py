@@ -19,7 +19,7 @@ from autograder.kit.model import Advice
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from autograder.kit.evidence import Event, Part
+    from autograder.kit.evidence import Event, Evidence, Part
     from autograder.kit.model import Bench
 
 PATIENCE = "patience_sec"
@@ -113,6 +113,12 @@ def broken_patience(part: Part) -> str:
     if limit is None or part.ending is None or limit * TOO_SHORT <= waited(part) <= limit + TOO_LONG:
         return ""
     return f"gave up after {waited(part):.1f} s, where {PATIENCE} was {limit:g}"
+
+
+def other_names(evidence: Evidence, role: str) -> set[str]:
+    """The names under which it looks for a server, other than the task's: who looks there may give up as it does."""
+    named = {name for part in evidence for name in part.endpoints(role)}
+    return named - {evidence.reference.only(role)[0]}
 
 
 def ended_at_once(part: Part) -> bool:

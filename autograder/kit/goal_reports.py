@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.giving_up import objection, remark
+from autograder.kit.giving_up import objection, other_names, remark
 from autograder.kit.model import Finding
 from autograder.kit.numbers_said import mentions
 
@@ -212,13 +212,12 @@ def given_up(evidence: Evidence) -> str:
     """What is wrong about how it gave up without a server, in words."""
     part = evidence.part(ABSENT)
     # Who ends at once whether there is a server or not has not given up. But one that looks under another name has.
-    named = {name for p in evidence for name in p.endpoints("action_client")}
     # In which other runs one asks that hardly waits is a matter of chance; where the server is late, in none.
     late = evidence.part(LATE)
     asked = (
         asked_for(late)
         or (late.traceback and not raised_on_purpose(late) and any(map(asked_for, evidence)))
-        or named - {evidence.reference.only("action_client")[0]}
+        or other_names(evidence, "action_client")
     )
     if part.ending is not None and not asked:
         return "never sent a goal to anybody"

@@ -160,9 +160,8 @@ def gives_up_in_time(evidence: Evidence) -> Finding:
     """Without a service it gives up, or goes on, as the one rule for all clients says."""
     part = evidence.part(ABSENT)
     # Who ends at once whether there is a service or not has not given up. But one that looks under another name has.
-    named = {name for p in evidence for name in p.endpoints("client")}
     # In which other runs one asks that gives up at once is a matter of chance; where the service is late, in none.
-    asked = bool(requests(evidence.part(LATE)) or named - {evidence.reference.only("client")[0]})
+    asked = bool(requests(evidence.part(LATE)) or giving_up.other_names(evidence, "client"))
     # Who names the sum has not given up, but added up by itself.
     if bool(part.inputs) and mentions(part.said(), sum(part.inputs["numbers"])):
         wrong = "named a sum that no service gave"

@@ -6,7 +6,7 @@ import contextlib
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from autograder.judge.bench import clock, graph, own_endpoints, type_hashes
+from autograder.judge.bench import graph, node_clock, own_endpoints, type_hashes
 from autograder.judge.bench.action_client import RecordedActionClient
 from autograder.judge.bench.action_server import ScriptedActionServer
 from autograder.judge.bench.decoy_nodes import DecoyNodes
@@ -346,7 +346,7 @@ class TestBench:
             # A program that has destroyed its nodes is on its way out: how it ends says more than their silence.
             self.await_end(MATCH)
         for node in nodes:
-            if not self._subject.ended and not clock.answers(self.wire, self._recorder, node):
+            if not self._subject.ended and not node_clock.answers(self.wire, self._recorder, node):
                 self._recorder.record("unanswered", node.full)
                 self.note_where_it_hangs()
 

@@ -8,14 +8,9 @@ not seen so.
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-from rcl_interfaces.srv import GetParameters, SetParameters
-from rclpy.qos import QoSProfile
-from rosgraph_msgs.msg import Clock
-
-from autograder.judge.bench.clock import ANSWER_LIMIT, ask
+from autograder.judge.bench.node_clock import NodeClock
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,18 +21,13 @@ if TYPE_CHECKING:
 
 STEP = 0.1
 """Simulated seconds a step. What a timer does more often than that is done in real time before anybody looks."""
-_SIM_TIME = "use_sim_time"
 
 
 class BorrowedTime:
     """Moves the clock of one node of the subject's."""
 
     def __init__(self, wire: Wire, recorder: Recorder, node: NodeName) -> None:
-        self._wire = wire
-        self._recorder = recorder
-        self._publisher = wire.node.create_publisher(Clock, "/clock", QoSProfile(depth=10))
-        self._set = wire.node.create_client(SetParameters, f"{node.full}/set_parameters")
-        self._get = wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
+        self._clock = NodeClock(wire, recorder, node)
 
     def let_pass(self, seconds: float, until: Callable[[], bool]) -> bool:
         """Let simulated seconds pass, or fewer where ``until`` holds, and give the node its own time back.
@@ -47,38 +37,13 @@ class BorrowedTime:
         """
         began = time.time()
         try:
-            if not (self._follow(True) and self._hears() and self._show(began)):
+            if not (self._clock.follow(True) and self._clock.is_heard() and self._clock.show(began)):
                 return False
             steps = round(seconds / STEP)
-            return all(until() or self._show(began + STEP * step) for step in range(1, steps + 1))
+            return all(until() or self._clock.show(began + STEP * step) for step in range(1, steps + 1))
         finally:
-            self._follow(False)
+            self._clock.follow(False)
 
     def close(self) -> None:
         """Take away what was made for this."""
-        self._wire.node.destroy_publisher(self._publisher)
-        self._wire.node.destroy_client(self._set)
-        self._wire.node.destroy_client(self._get)
-
-    def _follow(self, simulated: bool) -> bool:
-        value = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=simulated)
-        request = SetParameters.Request(parameters=[Parameter(name=_SIM_TIME, value=value)])
-        answer = self._ask(self._set, request)
-        return answer is not None and bool(answer.results) and bool(answer.results[0].successful)
-
-    def _hears(self) -> bool:
-        return self._recorder.wait(
-            lambda: self._publisher.get_subscription_count() > 0, ANSWER_LIMIT, poll=0.002
-        )
-
-    def _show(self, now: float) -> bool:
-        """Publish the time; whether the node's executor has turned twice since, and so called what was due by it."""
-        message = Clock()
-        message.clock.sec, rest = int(now), now - int(now)
-        message.clock.nanosec = int(rest * 1e9)
-        self._publisher.publish(message)
-        question = GetParameters.Request(names=[_SIM_TIME])
-        return all(self._ask(self._get, question) is not None for _ in range(2))
-
-    def _ask(self, client: Any, request: Any) -> Any:
-        return ask(self._recorder, client, request, ANSWER_LIMIT)
+        self._clock.close()

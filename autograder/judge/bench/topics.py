@@ -30,16 +30,37 @@ _LOG_HISTORY = QoSProfile(
 )  # fmt: skip
 
 
-class RecordedSubscription:
+class RecordedEndpoint:
+    """What holds for both sides of a topic: it writes down whom it meets, and with whom it does not fit.
+
+    Attributes:
+        matched: How many endpoints of the other side it is matched with now.
+        type_name: The type of its messages.
+    """
+
+    def __init__(self, recorder: Recorder, topic: str, type_name: str) -> None:
+        self.matched = 0
+        self.type_name = type_name
+        self._recorder = recorder
+        self._topic = topic
+
+    def _match(self, info: Any) -> None:
+        self.matched = info.current_count
+        # All that it ever met: who comes and goes at once is told of once, and nobody is there any more.
+        self._recorder.record("matched", self._topic, count=info.total_count)
+
+    def _mismatch(self, info: Any) -> None:
+        policy = str(qos_policy_name_from_kind(info.last_policy_kind)).lower()
+        self._recorder.record("mismatch", self._topic, policy=policy)
+
+
+class RecordedSubscription(RecordedEndpoint):
     """A subscription that writes every message into the transcript."""
 
     def __init__(
         self, wire: Wire, recorder: Recorder, topic: str, type_name: str, *, latched: bool = False
     ) -> None:
-        self.matched = 0
-        self.type_name = type_name
-        self._recorder = recorder
-        self._topic = topic
+        super().__init__(recorder, topic, type_name)
         self.subscription = wire.node.create_subscription(
             interface(type_name),
             topic,
@@ -62,23 +83,12 @@ class RecordedSubscription:
             arrived=time.time(),
         )
 
-    def _match(self, info: Any) -> None:
-        self.matched = info.current_count
-        # All that it ever met: who comes and goes at once is told of once, and nobody is there any more.
-        self._recorder.record("matched", self._topic, count=info.total_count)
 
-    def _mismatch(self, info: Any) -> None:
-        _record_mismatch(self._recorder, self._topic, info)
-
-
-class RecordedPublisher:
+class RecordedPublisher(RecordedEndpoint):
     """A publisher as the course makes them (reliable, depth 10) that writes down what it sends."""
 
     def __init__(self, wire: Wire, recorder: Recorder, topic: str, type_name: str) -> None:
-        self.matched = 0
-        self.type_name = type_name
-        self._recorder = recorder
-        self._topic = topic
+        super().__init__(recorder, topic, type_name)
         self._type = interface(type_name)
         self.publisher = wire.node.create_publisher(
             self._type,
@@ -93,18 +103,6 @@ class RecordedPublisher:
         """Publish one message with these fields."""
         self._recorder.record("sent", self._topic, fields=dict(fields))
         self.publisher.publish(filled(self._type(), fields))
-
-    def _match(self, info: Any) -> None:
-        self.matched = info.current_count
-        # All that it ever met: who comes and goes at once is told of once, and nobody is there any more.
-        self._recorder.record("matched", self._topic, count=info.total_count)
-
-    def _mismatch(self, info: Any) -> None:
-        _record_mismatch(self._recorder, self._topic, info)
-
-
-def _record_mismatch(recorder: Recorder, topic: str, info: Any) -> None:
-    recorder.record("mismatch", topic, policy=str(qos_policy_name_from_kind(info.last_policy_kind)).lower())
 
 
 class LogReader:

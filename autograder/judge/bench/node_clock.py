@@ -1,0 +1,95 @@
+"""The time of one node of the subject's: it is told to follow ``/clock``, hears it, and is asked whether it keeps up.
+
+The answer of its parameter service proves that its executor has turned since the question.
+"""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING, Any
+
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import GetParameters, SetParameters
+from rclpy.qos import QoSProfile
+from rosgraph_msgs.msg import Clock
+
+from autograder.judge.bench.patience import Patience
+
+if TYPE_CHECKING:
+    from autograder.judge.bench.graph import NodeName
+    from autograder.judge.bench.recorder import Recorder
+    from autograder.judge.bench.wire import Wire
+
+ANSWER_LIMIT = 0.5
+"""Seconds of wall time in which a spinning node answers a question; one that does not is not stepped."""
+PATIENT_ANSWER = 1.5
+"""Seconds of wall time after which a node that does not answer is taken not to be spun."""
+_SIM_TIME = "use_sim_time"
+_QUESTION = GetParameters.Request(names=[_SIM_TIME])
+
+
+class NodeClock:
+    """Publishes ``/clock`` for one node of the subject's."""
+
+    def __init__(self, wire: Wire, recorder: Recorder, node: NodeName) -> None:
+        self._wire = wire
+        self._recorder = recorder
+        self._publisher = wire.node.create_publisher(Clock, "/clock", QoSProfile(depth=10))
+        self._set = wire.node.create_client(SetParameters, f"{node.full}/set_parameters")
+        self._get = wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
+
+    def follow(self, simulated: bool) -> bool:
+        """Have the node follow simulated time, or its own again; whether it said yes."""
+        value = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=simulated)
+        request = SetParameters.Request(parameters=[Parameter(name=_SIM_TIME, value=value)])
+        answer = ask(self._recorder, self._set, request, ANSWER_LIMIT)
+        return answer is not None and bool(answer.results) and bool(answer.results[0].successful)
+
+    def is_heard(self) -> bool:
+        """Wait until somebody hears the clock."""
+        return self._recorder.wait(
+            lambda: self._publisher.get_subscription_count() > 0, ANSWER_LIMIT, poll=0.002
+        )
+
+    def is_rivalled(self) -> bool:
+        """Whether somebody else publishes on /clock, too."""
+        return self._wire.node.count_publishers("/clock") > 1
+
+    def show(self, now: float) -> bool:
+        """Publish the time, in seconds; whether the node's executor has turned twice since.
+
+        In its first turn it takes the new time, in the second it calls the timers that are due by it.
+        """
+        message = Clock()
+        message.clock.sec = int(now)
+        message.clock.nanosec = round((now - int(now)) * 1e9)
+        self._publisher.publish(message)
+        return all(ask(self._recorder, self._get, _QUESTION, ANSWER_LIMIT) is not None for _ in range(2))
+
+    def close(self) -> None:
+        """Stop publishing and asking."""
+        self._wire.node.destroy_publisher(self._publisher)
+        self._wire.node.destroy_client(self._set)
+        self._wire.node.destroy_client(self._get)
+
+
+def ask(recorder: Recorder, client: Any, request: Any, limit: float) -> Any:
+    """The answer of a service of the subject's, or None where its executor does not turn within ``limit`` seconds."""
+    if not recorder.wait(client.service_is_ready, limit, poll=0.005):
+        return None
+    future = client.call_async(request)
+    done = threading.Event()
+    future.add_done_callback(lambda _: done.set())
+    patience = Patience(limit)
+    while not done.is_set() and (left := patience.left) > 0:
+        done.wait(left)
+    return future.result() if done.is_set() else None
+
+
+def answers(wire: Wire, recorder: Recorder, node: NodeName, limit: float = PATIENT_ANSWER) -> bool:
+    """Whether a node answers, within ``limit`` seconds, a question that every spun node answers."""
+    client = wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
+    try:
+        return ask(recorder, client, _QUESTION, limit) is not None
+    finally:
+        wire.node.destroy_client(client)
