@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from autograder.kit.counterparts import ActionCounterpart
     from autograder.kit.evidence import Evidence
+    from autograder.kit.model import Advice
 
 ORDERS = (11, 30)
 """The smallest and the largest order that the client is given."""
@@ -166,6 +167,7 @@ def unserved(bench: Bench) -> None:
 
 
 _WHAT_IS_SAID = (
+    ("refused_goal_used", goals.crashed_by_refusal),
     ("result_of_rejected_goal", goals.result_of_rejected_goal),
     ("result_not_reported", goals.result_not_requested),
     ("status_misreported", goals.status_misreported),
@@ -176,6 +178,15 @@ _WHAT_IS_SAID = (
     ("silent_end", goals.silent_end),
 )
 """What a client asks and says: where it has come to its own end in every part, time had no part in it."""
+
+
+def _not_by_refusal(mistake: Mistake) -> Mistake:
+    """A crash, unless only a refused goal leads to it: that is told after what else is wrong."""
+
+    def recognise(evidence: Evidence) -> Advice | None:
+        return None if goals.crashed_by_refusal(evidence) else mistake.recognise(evidence)
+
+    return replace(mistake, recognise=recognise)
 
 
 class ActionClient:
@@ -192,11 +203,10 @@ class ActionClient:
     def __init__(self, scenario: Callable[[Bench], None], *ladder: Mistake) -> None:
         self.scenario = scenario
         self.ladder = (
-            Mistake("refused_goal_used", goals.crashed_by_refusal),
-            *common.CRASHES,
+            *map(_not_by_refusal, common.CRASHES),
             common.endpoint_name("action_client"),
             common.message_type("action_client"),
-            *OTHER_SLIPS,
+            *map(_not_by_refusal, OTHER_SLIPS),
             Mistake("field_typo", goals.order_never_filled, certain=True),
             *ladder,
             *common.OTHER_CRASHES,

@@ -2,7 +2,7 @@
 # assignment = "exercise_1_3"
 # tries = "The client cancels as it should and never looks at the status: it says of every goal that it was canceled, or not, or succeeded."
 # could_earn = "The points for reporting the status."
-# earned = { "exercise_1_3.cancel" = 7 }
+# earned = { "exercise_1_3.cancel" = 8 }
 # undefended = "Full marks: a line that names both ends was taken for the right one in both runs."
 
 # %% right run_client

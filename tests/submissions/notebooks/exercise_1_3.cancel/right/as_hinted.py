@@ -28,6 +28,8 @@ def run_client():
     client = CancelingClient()
     try:
         send_goal(client, order=20)
+        if not client.goal_handle.accepted:
+            raise RuntimeError("the goal was not accepted")
         answer = wait_for(client, client.goal_handle.get_result_async(), 30.0)
         client.get_logger().info(f"final status: {STATUS_NAMES[answer.status]}")
     finally:

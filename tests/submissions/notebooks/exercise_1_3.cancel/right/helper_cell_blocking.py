@@ -29,6 +29,8 @@ def run_client():
         sending = client.send_goal_async(Fibonacci.Goal(order=20), feedback_callback=counter)
         sending.add_done_callback(lambda future: accepted.set())
         accepted.wait(timeout=10.0)
+        if not sending.result().accepted:
+            raise RuntimeError("the server refuses the goal")
         counter.reached.wait(timeout=30.0)
         sending.result().cancel_goal()
         status = sending.result().get_result().status

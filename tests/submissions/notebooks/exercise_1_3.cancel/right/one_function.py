@@ -10,9 +10,13 @@ def run_client():
             print("no action server")
             return None
         sending = client.send_goal_async(Fibonacci.Goal(order=20), feedback_callback=feedbacks.append)
-        while not sending.done() or len(feedbacks) < 5:
-            rclpy.spin_once(node, timeout_sec=0.1)
+        rclpy.spin_until_future_complete(node, sending)
         goal = sending.result()
+        if not goal.accepted:
+            print("the goal was refused")
+            return None
+        while len(feedbacks) < 5:
+            rclpy.spin_once(node, timeout_sec=0.1)
         goal.cancel_goal_async()
         result = goal.get_result_async()
         rclpy.spin_until_future_complete(node, result)
