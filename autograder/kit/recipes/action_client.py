@@ -32,6 +32,8 @@ SHOWN_WITHIN = {Pace.FAST: 0.5, Pace.REAL_TIME: 1.5}
 """Seconds at most in which a client shows a feedback message before the next one is sent."""
 HASTE = 0.2
 """What that is multiplied with once it was used up: who shows nothing is not waited for again and again."""
+RESULT = 12
+"""Numbers of a result: so many that a client that shows the first ten of them is found out."""
 GOAL_LIMIT = 15.0
 """Seconds in which a goal must arrive once the client is on the graph."""
 END_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 8.0}
@@ -116,7 +118,7 @@ def works_on_a_goal(bench: Bench, server: ActionCounterpart, status: str, feedba
     """Send feedback for the subject's goal and end it; whether the subject came to an end of its work."""
     # As many as an int32 allows, so that nobody can say them all.
     numbers = sorted(bench.random.sample(range(10**8, 10**9), feedbacks + 2))
-    result = sorted(bench.random.sample(range(10**9, 2 * 10**9), 4))
+    result = sorted(bench.random.sample(range(10**9, 2 * 10**9), RESULT))
     done = server.await_goal(GOAL_LIMIT)
     if done:
         wait = SHOWN_WITHIN[bench.pace]
