@@ -120,6 +120,8 @@ def _without_tracebacks(events: Sequence[Event]) -> Iterator[tuple[int, Event]]:
 
 REPORTS = ("@workspace ", "@process ")
 """How a line begins that a runner reports: of a build, of a launched process. These are not the subject's words."""
+_ROS2_RUN = "[ros2run]: "
+"""How a line of ``ros2 run`` itself begins, as where the program exited with failure 3: that says nothing of why."""
 _PREFIX = re2.compile(r"^\[\w+\] \[[\d.]+\] \[(?P<logger>[^\]]*)\]: ")
 """What rcutils puts before a line on a terminal: level, time stamp, logger. These are nobody's words."""
 
@@ -139,7 +141,11 @@ def spoken_by(event: Event) -> str | None:
         text = str(event.data["text"])
         prefix = _PREFIX.match(text) if text.startswith("[") else None
         logger = event.name if event.kind == "log" else prefix["logger"] if prefix else ""
-        if text.startswith(REPORTS) or (logger and _is_a_library(logger)) or _is_the_middlewares(text):
+        if (
+            text.startswith((*REPORTS, _ROS2_RUN))
+            or (logger and _is_a_library(logger))
+            or _is_the_middlewares(text)
+        ):
             return None
         return text[prefix.end() :] if prefix else text
     if event.kind == "subject" and event.name == "returned" and event.data.get("value") is not None:

@@ -148,3 +148,8 @@ def test_a_wait_without_a_limit_is_worth_a_remark() -> None:
     assert "limit" in remark(_waits(*EACH_SECOND))
     assert not remark(_waits((5.0, "nobody there"), ends=5.0))
     assert not remark(_waits(*EACH_SECOND, told=1.5))
+
+
+def test_what_ros2_run_says_of_an_exit_code_is_no_word_of_the_program() -> None:
+    assert objection(run("nobody there", [1, 2])) == ""
+    assert objection(run("[ros2run]: Process exited with failure 3", [1, 2])) == "ended without a word"
