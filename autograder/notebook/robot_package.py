@@ -47,7 +47,7 @@ def complete_package(workspace: str | Path = "ros2_ws", source: Path | None = No
 
 
 def _what_is_missing(package: Path) -> str:
-    missing = [name for name in PROGRAMS if not _has_program(package / "setup.py", name)]
+    missing = [name for name in PROGRAMS if not _has_program(package, name)]
     if not missing:
         return f"Your {PACKAGE} has the programs {' and '.join(PROGRAMS)}."
     return (

@@ -101,3 +101,17 @@ def test_a_setup_without_the_list_is_left_alone(tmp_path: Path, source: Path, pa
     assert "no list of console_scripts" in said
     assert '"talker = my_robot_pkg.talker:main"' in said
     assert (package / "setup.py").read_text() == "from setuptools import setup\n\nsetup()\n"
+
+
+def test_without_the_courses_own_package_a_finished_one_is_told_apart(
+    tmp_path: Path, source: Path, package: Path
+) -> None:
+    """As in what students are handed."""
+    nowhere = tmp_path / "no_solutions"
+    said = complete_package(tmp_path / "ros2_ws", nowhere)
+    assert "no program talker and no program listener yet. Do Lab 1.2 first" in said
+    complete_package(tmp_path / "ros2_ws", source)
+    assert (
+        complete_package(tmp_path / "ros2_ws", nowhere)
+        == "Your my_robot_pkg has the programs talker and listener."
+    )

@@ -10,6 +10,8 @@ import ast
 import json
 from typing import TYPE_CHECKING, Any
 
+import re2
+
 from autograder.kit import common_mistakes as common
 from autograder.kit.draft import OWN, Draft
 from autograder.kit.evidence import Evidence
@@ -28,6 +30,7 @@ CASES = ("the name differs", "the type differs", "both differ")
 ANSWERING = {Pace.FAST: 8.0, Pace.REAL_TIME: 15.0}
 """Seconds of wall time for an answer; discovery takes up to three in a process that has just started."""
 
+_GAVE_UP = re2.compile(r"(?m)^TimeoutError(?:: .*)?$")
 _THINGS = ("camera", "lidar", "gripper", "battery", "wheel", "sonar", "compass", "beacon", "valve", "lamp")
 _BYSTANDERS = ("actuator", "adapter", "aerial", "airbag")
 """These come first in every list of names, so that who takes the first one that there is takes the same in each run."""
@@ -204,8 +207,8 @@ def invented_answer(seen: Evidence, _: Evidence) -> bool:
     "not_written",
     certain=True,
     says="Your function ends and returns nothing: a step is not written yet.",
-    next_step="Find the TODO in your solution cell and write that step. Its last line returns the four answers as a "
-    "dictionary; the hints below the cell open one at a time.",
+    next_step="Do you make a dictionary and not return it? Then write return before it. Else find the TODO in your "
+    "solution cell and write that step; the hints below the cell open one at a time.",
 )
 def not_written(seen: Evidence, _: Evidence) -> bool:
     """Each time it returned, with nothing."""
@@ -214,6 +217,21 @@ def not_written(seen: Evidence, _: Evidence) -> bool:
         end for end in endings if end is not None and end.name == "returned" and end.data.get("value") is None
     ]
     return bool(returned) and len(returned) == len(endings) and not any(part.said() for part in seen)
+
+
+@mismatched.mistake("gave_up")
+def gave_up(seen: Evidence, _: Evidence) -> Advice | None:
+    """A TimeoutError, as the waiting that the notebook hands out raises it, although both nodes were there."""
+    for part, given in _wrong(seen):
+        found = _GAVE_UP.search(part.traceback)
+        if given is None and found:
+            return Advice(
+                f"Your function gave up waiting in one of the three runs, although both nodes were there: {found[0]}",
+                "If it names the talker or the listener: does own_topic go on to the next topic after one that every "
+                "node has? Then: do you ask for the publishers of the talker, and for the subscriptions of the "
+                "listener?",
+            )
+    return None
 
 
 @mismatched.mistake("no_answer")
