@@ -141,9 +141,10 @@ def test_every_page_of_the_documentation_can_be_reached_from_the_readme() -> Non
     assert not [page.name for page in ROOT.glob("docs/*.md") if page not in reached]
 
 
-# `me`, `you` and the like stand in examples; `work` at the top is where a machine that builds keeps its clones.
+# `me`, `you` and the like stand in examples, `ubuntu` is the user of the official image.
+# `work` at the top is where a machine that builds keeps its clones.
 HOMES = re.compile(
-    rb"(?<![\w.$}/-])/(?:root|home/(?!(?:ada|me|student|user|you)\b)\w+|Users/\w+|work(?:space)?|builds?)/[\w.]"
+    rb"(?<![\w.$}/-])/(?:root|home/(?!(?:ada|me|student|ubuntu|user|you)\b)\w+|Users/\w+|work(?:space)?|builds?)/[\w.]"
 )
 
 
