@@ -50,10 +50,18 @@ def _build_failed(evidence: Evidence) -> Advice | None:
     report = build_report(evidence.main)
     if report is None or report.trouble != "build":
         return None
-    return Advice(
-        f"colcon build fails in {report.package or 'the workspace'}: {report.line}",
-        "Go to the place that the line names. `colcon build` in the workspace shows the whole log.",
-    )
+    if re2.search(r"rosidl_generate_interfaces\(\) the passed file '[^']*' doesn't exist", report.line):
+        next_step = (
+            "Write the path as it is seen from the folder of the package, with the folder that the file is in, such as "
+            '"srv/Name.srv"; capitals count.'
+        )
+    elif re2.search(r":\d+: ", report.line):
+        next_step = (
+            "Go to the place that the line names. `colcon build` in the workspace shows the whole log."
+        )
+    else:
+        next_step = "`colcon build` in the workspace shows the whole log: look for the first line with the word error."
+    return Advice(f"colcon build fails in {report.package or 'the workspace'}: {report.line}", next_step)
 
 
 def _syntax_error(evidence: Evidence) -> Advice | None:

@@ -10,6 +10,9 @@ _COMPILER = re2.compile(
 _CMAKE = re2.compile(
     r"(?m)^CMake Error at (?P<file>[^:\n]+):(?P<line>\d+)[^\n]*:\n+(?P<what>[ \t]+\S.*(?:\n[ \t]+\S.*|\n\n  \S.*)*)"
 )
+_CMAKE_STATUS = re2.compile(r"(?m)^-- .*\n?")
+_CALL_STACK = re2.compile(r"\n+Call Stack \(most recent call first\):(?P<calls>(?:\n[ \t]+\S.*)+)")
+_CALL = re2.compile(r"^(?P<file>[^:\n]+):(?P<line>\d+)")
 _CMAKE_PLAIN = re2.compile(r"(?m)^CMake Error: (?P<what>.*)$")
 _PYTHON = re2.compile(r"(?m)^(?P<what>(?:[\w.]*(?:Error|Exception|Invalid\w+)|[\w.]+\.[A-Z]\w+)(?::.*)?)$")
 _PLACE = re2.compile(r'(?m)^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)')
@@ -29,12 +32,14 @@ def telling_line(log: str) -> str:
     if found := _COMPILER.search(log):
         return f"{_short(found['file'])}:{found['line']}: {found['what']}"
     python = _python(log)
+    # What CMake prints on the way goes to another stream: on a busy machine it comes between the lines of an error.
+    log = _CMAKE_STATUS.sub("", log) or log
     if found := _CMAKE.search(log):
         # What a generator raised is the cause; that CMake's call of it failed is only the consequence.
         if python and "execute_process" in found["what"]:
             return python
         what = " ".join(found["what"].split())
-        return f"{_short(found['file'])}:{found['line']}: {_first_sentences(what)}"
+        return f"{_place(found, log)}: {_first_sentences(what)}"
     if found := _CMAKE_PLAIN.search(log):
         return found["what"].strip()
     if python:
@@ -63,6 +68,14 @@ def _python(log: str) -> str:
 
 def _is_a_library(file: str) -> bool:
     return "site-packages" in file or "/lib/python3" in file or file.startswith("<frozen")
+
+
+def _place(error: re2.Match[str], log: str) -> str:
+    """Where a CMake error is to be mended: where it was raised may be a library's file, which the package called."""
+    stack = _CALL_STACK.match(log, error.end())
+    own = _CALL.search(stack["calls"].strip().splitlines()[-1].strip()) if stack else None
+    place = own or error
+    return f"{_short(place['file'])}:{place['line']}"
 
 
 def _short(file: str) -> str:

@@ -136,7 +136,8 @@ def first_answer_ignored(seen: Client, _: Client) -> Advice | None:
     return Advice(
         f"The service answered {first} to the first call, but your second call does not use that answer: it adds up "
         "on its own.",
-        "Take first.sum from the first answer and put it into the second request.",
+        "Put what the service answered first into the second call, and add nothing up yourself. (With the notebook's "
+        "ask, that is what the first ask returned.)",
     )
 
 

@@ -17,6 +17,23 @@ LOGS = {
         '"rosidl_generate_interfaces".\n\n\n-- Configuring incomplete, errors occurred!\n',
         'CMakeLists.txt:6: Unknown CMake command "rosidl_generate_interfaces".',
     ),
+    "called by the package": (
+        "CMake Error at /opt/ros/cmake/rosidl_generate_interfaces.cmake:95 (message):\n"
+        "  rosidl_generate_interfaces() the passed file 'AddTwoInts.srv' doesn't exist\n"
+        "  relative to the CMAKE_CURRENT_SOURCE_DIR '/ws/src/arm'\n"
+        "Call Stack (most recent call first):\n  CMakeLists.txt:6 (rosidl_generate_interfaces)\n\n\n"
+        "-- Configuring incomplete, errors occurred!\n",
+        "CMakeLists.txt:6: rosidl_generate_interfaces() the passed file 'AddTwoInts.srv' doesn't exist relative to the "
+        "CMAKE_CURRENT_SOURCE_DIR '/ws/src/arm'",
+    ),
+    "two streams at once": (
+        "CMake Error at /opt/ros/cmake/rosidl_generate_interfaces.cmake:95 (message):\n-- Found python_cmake_module\n"
+        "  rosidl_generate_interfaces() the passed file 'AddTwoInts.srv' doesn't exist\n"
+        "Call Stack (most recent call first):\n-- Configuring incomplete, errors occurred!\n"
+        "  CMakeLists.txt:6 (rosidl_generate_interfaces)\n\n\n",
+        "CMakeLists.txt:6: rosidl_generate_interfaces() the passed file 'AddTwoInts.srv' doesn't exist",
+    ),
+    "CMake's last words": ("no such thing\n-- Configuring incomplete, errors occurred!\n", "no such thing"),
     "generator": (
         'Traceback (most recent call last):\n  File "<string>", line 1, in <module>\n'
         "rosidl_adapter.parser.InvalidFieldDefinition: 'a' has no type\n"
