@@ -18,14 +18,14 @@ start_ros()
 def until(holds):
     while not holds():
         time.sleep(0.01)
-def drive(robot):
+def drive(robot, to=1.2):
     node = Node("driver")
     publisher = node.create_publisher(Twist, "/cmd_vel", 10)
     command = Twist()
     command.linear.x = 0.5
     node.create_timer(0.1, lambda: publisher.publish(command))
     driving = spin_in_background(node, name="driver")
-    until(lambda: robot.state.pose.x > 1.2)
+    until(lambda: robot.state.pose.x > to)
     driving.stop()
     until(lambda: robot.state.velocity.forward == 0)
 """
@@ -64,6 +64,12 @@ def test_a_second_run_of_the_cell_begins_anew_and_says_nothing_of_the_first(
 
 
 def test_shown_again_the_picture_above_rests(run: Callable[..., list[Any]]) -> None:
-    above, below, _ = run("robot = start_robot()", "robot.show(); drive(robot)", "robot.stop()")
+    above, below, third, _ = run(
+        "robot = start_robot()",
+        "robot.show(); drive(robot)",
+        "robot.show(); drive(robot, 1.4)",
+        "robot.stop()",
+    )
     assert "x = 1.00 m" in words(above)
     assert "x = 1.00 m" not in words(below)
+    assert words(third) != words(below), "each picture rests where the next one begins"
