@@ -122,6 +122,13 @@ KNOWN = (
     ),
     Crash(
         "callback_signature",
+        r"^ +.*(?:add_done_callback|create_\w+|Action(?:Client|Server)|\w*callback=).*\.\w+\(\)\).*\n(?:[ ~^]*\n)?"
+        r"TypeError: (?:[\w.<>]+\.)?(?P<method>\w+)\(\) missing \d+ required positional arguments?: ",
+        "The parentheses after {method} call it on the spot, without what ROS would give it. It is not handed over.",
+        "Write the name without parentheses, as in add_done_callback(self.{method}): ROS calls it when it is time.",
+    ),
+    Crash(
+        "callback_signature",
         r"Expected .* callback|[Cc]allback should be either|callback.*(?:takes|missing) .*positional argument"
         # Raised where rclpy calls the callback; a notebook's traceback leaves rclpy's own lines out.
         r"|(?:\A|rclpy/(?:executors|task|event_handler|action/client|action/server)\.py\".*\n(?: .*\n){1,2})"
@@ -147,10 +154,10 @@ KNOWN = (
     Crash(
         "raw_value_published",
         r"[Ee]xpected (?:<class )?'?[\w.]*(?:String|Int\d+|Message)\b.*got|TypeError: Expected [\w/.<>' ]+, got"
-        r"|(?:publish|send_goal_async|call_async|send_goal|call)\((?:.*\n)+TypeError:?\s*\z",
+        r"|(?:publish|publish_feedback|send_goal_async|call_async|send_goal|call)\((?:.*\n)+TypeError:?\s*\z",
         "A bare value was sent where a message is expected.",
-        "Make the message first (msg = String(), Fibonacci.Goal(), AddTwoInts.Request()), fill its field "
-        "and send that.",
+        "Make the message first (msg = String(), AddTwoInts.Request(), Fibonacci.Goal(), Fibonacci.Feedback()), fill "
+        "its field and send that.",
     ),
     Crash(
         "result_missing",
@@ -209,7 +216,8 @@ KNOWN = (
         r"'NoneType' object has no attribute '(?:sum|result|accepted|status|sequence|cancel_goal_async|"
         r"get_result_async|goals_canceling)'",
         "The answer was read before it was there: future.result() is None until the future is done.",
-        "Wait first: spin_until_future_complete(node, future), or go on in future.add_done_callback(...).",
+        "Wait first: spin_until_future_complete(node, future, timeout_sec=5.0), or go on in "
+        "future.add_done_callback(...).",
     ),
     Crash(
         "module_not_found",

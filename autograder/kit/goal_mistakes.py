@@ -102,7 +102,8 @@ def never_spun(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         "Your client sent its goal, but it takes in nothing that comes back: no callback of it is called any more.",
-        "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future), in one place.",
+        "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future, timeout_sec=5.0), in one "
+        "place.",
     )
 
 
@@ -111,7 +112,7 @@ def result_of_rejected_goal(evidence: Evidence) -> Advice | None:
     if evidence.part(REFUSED).first("result_request") is None:
         return None
     return Advice(
-        "The goal was refused, and your client asked for its result all the same: there is none, and the status that "
+        "The goal was rejected, and your client asked for its result all the same: there is none, and the status that "
         "comes back is 0, UNKNOWN.",
         "Look at goal_handle.accepted first. Where it is False, say so and stop.",
     )
@@ -123,10 +124,10 @@ def crashed_by_refusal(evidence: Evidence) -> Advice | None:
     if [part.name for part in crashed] != [REFUSED]:
         return None
     return Advice(
-        "The goal was refused, and your client went on as if it had been accepted, until an exception stopped it: "
+        "The goal was rejected, and your client went on as if it had been accepted, until an exception stopped it: "
         f"{what_and_where(crashed[0].traceback)}",
-        "Look at goal_handle.accepted as soon as the answer to the goal is there. Where it is False, say so (in a "
-        "function: raise a RuntimeError) and stop: there is no result to wait for.",
+        "Look at goal_handle.accepted as soon as the answer to the goal is there. Where it is False, say so, as the "
+        "task asks, and stop: there is no result to wait for.",
     )
 
 
@@ -135,7 +136,7 @@ def never_ended(evidence: Evidence) -> Advice | None:
     if refused_as_seen(evidence) != "said so, and did not end":
         return None
     return Advice(
-        "Your client says that the goal was refused, and then waits for ever for a result that will not come.",
+        "Your client says that the goal was rejected, and then waits for ever for a result that will not come.",
         "End it there, too: shut down where you found `not goal_handle.accepted`, or spin until a future of your own "
         "is complete and set its result.",
     )
@@ -147,8 +148,8 @@ def refusal_not_reported(evidence: Evidence) -> Advice | None:
         return None
     waits = evidence.part(REFUSED).ending is None
     return Advice(
-        "The goal was refused, and your client did not say so"
-        + (": it still waits for what a refused goal never sends." if waits else "."),
+        "The goal was rejected, and your client did not say so"
+        + (": it still waits for what a rejected goal never sends." if waits else "."),
         "Look at goal_handle.accepted when the answer to the goal is there, and log an error where it is False.",
     )
 
@@ -255,7 +256,8 @@ def abort_not_reported(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         f"The goal was aborted (status 6), but what your client said of it is the same as for a success: {wrong}.",
-        "Compare future.result().status with GoalStatus.STATUS_SUCCEEDED (from action_msgs.msg) and say what it is.",
+        "Look at the status that comes with the result: say its name, ABORTED, or compare it with "
+        "GoalStatus.STATUS_SUCCEEDED (from action_msgs.msg).",
     )
 
 

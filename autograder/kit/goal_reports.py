@@ -164,7 +164,7 @@ def refused_as_seen(evidence: Evidence) -> str:
         accepted = [other for other in evidence if other.name not in (REFUSED, ABSENT)]
         told = [line for line in _new_words(said, *accepted) if not _names_unknown(line)]
         if not (told or raised_on_purpose(part)):
-            return "asked for the result of a goal that was refused"
+            return "asked for the result of a goal that was rejected"
     if not (said or raised_on_purpose(part)):
         return "nothing was said of it"
     # A client that goes on after a success, too, may go on here.
@@ -272,7 +272,7 @@ def reports_the_result(evidence: Evidence) -> Finding:
 def tells_of_refusal(evidence: Evidence) -> Finding:
     """A refused goal is told, no result is asked for, and the client ends."""
     wrong = refused_as_seen(evidence)
-    return Finding(not wrong, "says that the goal was refused, and ends", wrong or "it did")
+    return Finding(not wrong, "says that the goal was rejected, and ends", wrong or "it did")
 
 
 def tells_of_abort(evidence: Evidence) -> Finding:

@@ -160,7 +160,7 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
         lambda found: any(map(_blocks, found)),
         "A blocking call waits for ever: the answer has come, but nothing spins the node, so nobody takes "
         "it.",
-        "Use call_async and rclpy.spin_until_future_complete(node, future), or spin the node in a "
+        "Use call_async and rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), or spin the node in a "
         "background executor "
         "while you use call().",
     ),

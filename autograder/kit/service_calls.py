@@ -23,6 +23,8 @@ ABSENT = "there is no service"
 CALLED = (LATE, BIASED, EXTREME)
 """The parts in which the service answers."""
 
+_BRACES = re2.compile(r"\{[\pL_][^{}]*\}")
+"""What an f-string would have filled in."""
 HANGS_AFTER = 8.0
 """Seconds without any event after which a client that has its answer is taken to hang."""
 
@@ -136,6 +138,17 @@ def new_words(part: Part, given: Event | None = None) -> list[str]:
     return [line for line in later if line.strip() and line not in before]
 
 
+def braces_left(part: Part) -> Advice | None:
+    """It said the name of a variable in braces where the sum was to be: Python fills them only in an f-string."""
+    line = next((line for line in new_words(part) if _BRACES.search(line)), None)
+    if line is None:
+        return None
+    return Advice(
+        f"Your program said “{line}”: Python did not fill in the braces, because there is no f in front of the text.",
+        'Write f directly before the quotation mark: f"...". Python then puts the number where the braces are.',
+    )
+
+
 def reports_the_sum(evidence: Evidence) -> Finding:
     """The last answer is logged, printed or returned."""
     calls = max(1, Client(evidence.reference).calls)
@@ -202,9 +215,9 @@ def call_never_spun(evidence: Evidence) -> Advice | None:
                 "waits. "
                 "call() blocks for ever then, and so does any wait inside a callback of the same callback "
                 "group.",
-                "Outside of callbacks, use call_async and rclpy.spin_until_future_complete(node, future), "
-                "or spin the "
-                "node in a background executor while you use call().",
+                "Outside of callbacks, use call_async and "
+                "rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), or spin the node in a "
+                "background executor while you use call().",
             )
     return None
 
@@ -234,7 +247,7 @@ def answer_not_awaited(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         "Your client called the service and did not wait for the answer, which may take a second.",
-        "Wait for it: rclpy.spin_until_future_complete(node, future) with a few seconds of patience, and look at "
+        "Wait for it: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), and look at "
         "future.done() before you read the result.",
     )
 

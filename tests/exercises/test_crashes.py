@@ -43,6 +43,39 @@ def test_the_traceback_names_the_mistake(key: str) -> None:
     assert "{" not in advice.text + advice.next_step
 
 
+CODE_AND_LAST_LINE = {
+    "self.future.add_done_callback(self.on_cancel_answer())": (
+        "TypeError: CancelingClient.on_cancel_answer() missing 1 required positional argument: 'future'",
+        "callback_signature",
+        "The parentheses after on_cancel_answer",
+    ),
+    "self.create_service(AddTwoInts, 'add_two_ints', self.add())": (
+        "TypeError: Adder.add() missing 2 required positional arguments: 'request' and 'response'",
+        "callback_signature",
+        "The parentheses after add",
+    ),
+    "goal_handle.publish_feedback(numbers)": ("TypeError", "raw_value_published", "A bare value"),
+    "self.show()": (
+        "TypeError: Node.show() missing 1 required positional argument: 'text'",
+        "crashed",
+        "missing 1",
+    ),
+}
+
+
+@pytest.mark.parametrize("code", CODE_AND_LAST_LINE)
+def test_the_line_that_raised_tells_what_the_last_line_means(code: str) -> None:
+    last, key, text = CODE_AND_LAST_LINE[code]
+    traceback = f'Traceback (most recent call last):\n  File "client.py", line 9, in f\n    {code}\n    ~~~~^^^\n{last}'
+    event = Event(0.1, "subject", "raised", {"traceback": traceback})
+    evidence = Evidence([Part("part", {}, [event])], Reference("x", {}))
+    found = next(m for m in (*CRASHES, *OTHER_CRASHES) if m.recognise(evidence))
+    advice = found.recognise(evidence)
+    assert found.key == key
+    assert advice is not None
+    assert text in advice.text
+
+
 @pytest.mark.parametrize(
     ("last", "advice"),
     [

@@ -66,7 +66,7 @@ def test_a_run_that_never_was_is_not_called_a_run_without_a_goal() -> None:
 def test_an_exception_that_only_a_refusal_causes_is_told_with_it() -> None:
     advice = crashed_by_refusal(evidence([ASKED, raised(SLIP)]))
     assert advice is not None
-    assert "refused" in advice.text
+    assert "rejected" in advice.text
     assert "KeyError: 0 (line 9, in run_client)" in advice.text
     assert crashed_by_refusal(evidence([raised(MEANT)])) is None
     assert crashed_by_refusal(evidence([raised(SLIP)], end=raised(SLIP))) is None

@@ -16,7 +16,7 @@ from autograder.kit.model import Pace
 from autograder.kit.numbers_said import mentions
 from autograder.kit.recipes import service_client
 from autograder.kit.recipes.service_client import Run, answering, has_spoken, is_done
-from autograder.kit.service_calls import ABSENT, BIASED, LATE, gives_up_in_time, reports
+from autograder.kit.service_calls import ABSENT, BIASED, LATE, braces_left, gives_up_in_time, reports
 
 SEEDS = range(60)
 RETURNED = Event(0.4, "subject", "returned", {"value": "-987654321"})
@@ -191,3 +191,13 @@ def test_who_waited_long_and_missed_an_answer_is_started_again_and_not_for_ever(
     assert service_client.called(bench, Run(BIASED, (1, 2), held=1), 1)
     assert held == [1, *[0] * (runs - 1)]
     assert bench.again.call_count == runs - 1
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [("the sum is {total}", True), ("{'sum': 7}", False), ("{}", False), ("the sum is 7", False)],
+)
+def test_braces_that_were_not_filled_in_are_told_as_a_missing_f(line: str, told: bool) -> None:
+    given = Event(0.1, "response", "/add_two_ints", {"fields": {"sum": 12}})
+    advice = braces_left(Part(BIASED, {}, [given, Event(0.2, "output", "stdout", {"text": line})]))
+    assert (advice is not None and line in advice.text) == told

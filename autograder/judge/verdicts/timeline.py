@@ -213,6 +213,13 @@ def _fields(data: Mapping[str, Any]) -> str:
     return ", ".join(f"{name}={value}" for name, value in told.items())
 
 
+def _goal(data: Mapping[str, Any]) -> str:
+    """A goal in words; a number alone would look like the goal's own."""
+    fields = data.get("fields", {})
+    name = next(iter(fields), "") if len(fields) == 1 else ""
+    return f"goal, {name} {_fields(data)}" if name else f"goal {_fields(data)}"
+
+
 def _leaves(fields: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
     for name, value in fields.items():
         if isinstance(value, Mapping):
@@ -222,12 +229,12 @@ def _leaves(fields: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, A
 
 
 _LABELS: dict[str, Callable[[Event], str]] = {
-    "goal": lambda e: f"goal {_fields(e.data)}",
+    "goal": lambda e: _goal(e.data),
     "cancel": lambda _: "cancel request",
     "result_request": lambda _: "asks for the result",
     "result": lambda e: f"{str(e.data['status']).upper()} {_fields(e.data)}".rstrip(),
-    "goal_sent": lambda e: f"goal {_fields(e.data)}",
-    "goal_answer": lambda e: "accepted" if e.data["accepted"] else "refused",
+    "goal_sent": lambda e: _goal(e.data),
+    "goal_answer": lambda e: "accepted" if e.data["accepted"] else "rejected",
     "cancel_sent": lambda _: "cancel request",
     "cancel_answer": lambda e: "will cancel" if e.data["accepted"] else "will not cancel",
     "result_heard": lambda e: f"{_STATUS.get(e.data['status'], e.data['status'])} {_fields(e.data)}",

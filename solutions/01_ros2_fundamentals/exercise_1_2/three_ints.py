@@ -187,9 +187,10 @@ def wrong_sum_reported(seen: Client, expected: Client) -> Advice | None:
     says="Both calls are right, but the final sum is never said.",
     next_step="Log or print the sum of the second answer (in the notebook, return it too).",
 )
-def sum_not_reported(seen: Client, expected: Client) -> bool:
+def sum_not_reported(seen: Client, expected: Client) -> bool | Advice:
     """The calls are right, and the last answer is never said."""
-    return unreported(seen, expected) is not None
+    part = unreported(seen, expected)
+    return part is not None and (service_calls.braces_left(part) or True)
 
 
 def unreported(seen: Client, expected: Client) -> Part | None:

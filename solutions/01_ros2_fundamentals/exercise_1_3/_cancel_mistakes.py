@@ -71,7 +71,7 @@ def never_spun(evidence: Evidence) -> Advice | None:
     return Advice(
         "Your client sent its goal, but it takes in nothing that comes back: no callback of it is called "
         "any more.",
-        "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future), in one "
+        "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future, timeout_sec=5.0), in one "
         "place, and never "
         "inside a callback.",
     )
@@ -93,8 +93,8 @@ def ended_on_the_way(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         f"Your client sent its goal, and ended before {missing}.",
-        "Keep it alive until the result is there: rclpy.spin(node), or rclpy.spin_until_future_complete(node, future) "
-        "with a few seconds of patience. A single spin_once takes in one thing only.",
+        "Keep it alive until the result is there: rclpy.spin(node), or rclpy.spin_until_future_complete(node, future, "
+        "timeout_sec=30.0). A single spin_once takes in one thing only.",
     )
 
 

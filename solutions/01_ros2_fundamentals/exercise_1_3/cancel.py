@@ -118,14 +118,14 @@ def reports_the_status(evidence: Evidence) -> Finding:
 cancel = Draft(
     "exercise_1_3.cancel",
     "Exercise 1.3 · Cancel a goal",
-    "Cancel a goal of order 20 after 3 to 5 feedback messages and report how it ended, or that it was refused.",
+    "Cancel a goal of order 20 after 3 to 5 feedback messages and report how it ended, or that it was rejected.",
     ActionClient(scenario, *MISTAKES),
 )
 cancel.asks("goal", 2, "Sends one goal of the right order", sends_the_goal)
 cancel.asks("cancel", 3, "Asks to cancel at the right moment", cancels_in_the_window)
-cancel.asks("once", 1, "Asks only once at that moment", cancels_once)
-cancel.asks("late_feedback", 1, "Asks no more when more feedback arrives", ignores_late_feedback)
+cancel.asks("once", 1, "Sends one request at that moment", cancels_once)
+cancel.asks("late_feedback", 1, "Sends no other request when later feedback arrives", ignores_late_feedback)
 cancel.asks("status", 2, "Reports how the goal really ended", reports_the_status)
-cancel.asks("refused", 1, "Says when the goal is refused", tells_of_refusal)
+cancel.asks("refused", 1, "Says when the goal is rejected", tells_of_refusal)
 
 EXERCISE = cancel.exercise(limit=120.0)

@@ -265,7 +265,7 @@ def _crashed(part: Part) -> bool:
 @question.mistake(
     "looked_once",
     certain=True,
-    says="You looked once, at once. A node that was just made knows hardly anything of the graph, and a service may "
+    says="You looked only once. A node that was just made knows hardly anything of the graph, and a service may "
     "start later than whoever looks for it.",
     next_step="Look again and again, with a short pause, until the service is there or patience_sec seconds have "
     "passed.",

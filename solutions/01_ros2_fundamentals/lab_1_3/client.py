@@ -162,9 +162,10 @@ def wrong_sum_reported(seen: Client, expected: Client) -> Advice | None:
     says="The call is right, but the sum is never said.",
     next_step="Log or print the sum of the answer (in the notebook, return it too): future.result().sum.",
 )
-def sum_not_reported(seen: Client, expected: Client) -> bool:
+def sum_not_reported(seen: Client, expected: Client) -> bool | Advice:
     """The call is right, and the answer is never said."""
-    return unreported(seen, expected) is not None
+    part = unreported(seen, expected)
+    return part is not None and (service_calls.braces_left(part) or True)
 
 
 def unreported(seen: Client, expected: Client) -> Part | None:

@@ -88,7 +88,7 @@ def objection(evidence: Evidence, seen: Goal) -> str:
     if seen.accepted is None:
         return f"{where}the goal was not answered"
     if not seen.accepted:
-        return f"{where}the goal was refused"
+        return f"{where}the goal was rejected"
     if seen.status is None:
         return f"{where}no result"
     if seen.status != SUCCEEDED:

@@ -112,7 +112,7 @@ def _cancel_objection(evidence: Evidence, long: Goal) -> str:
     if long.order is None:
         return "not reached"
     if not long.accepted:
-        return f"order {long.order} was refused" if long.accepted is False else "the goal was not answered"
+        return f"order {long.order} was rejected" if long.accepted is False else "the goal was not answered"
     if long.cancel_accepted is None and long.status is None:
         return f"the cancel request was not answered; {long.unread} feedback messages came after it"
     if not long.cancel_accepted:
@@ -142,7 +142,7 @@ def refuses_bad_orders(evidence: Evidence) -> Finding:
     """Negative and too large orders are refused, and a good goal after them succeeds."""
     part, expected = (
         evidence.part(BAD_ORDERS),
-        f"refuses negative orders and {FIRST_TOO_LARGE} or more, and lives on",
+        f"rejects negative orders and {FIRST_TOO_LARGE} or more, and lives on",
     )
     sent = all_goals(part)
     bad, last = [s for s in sent if s.order != LAST_ORDER], [s for s in sent if s.order == LAST_ORDER]
@@ -153,4 +153,4 @@ def refuses_bad_orders(evidence: Evidence) -> Finding:
     if not last:
         return Finding(False, expected, "not reached")
     wrong = objection(evidence, last[0])
-    return Finding(not wrong, expected, f"after the refusals, {wrong}" if wrong else "it does")
+    return Finding(not wrong, expected, f"after the rejected goals, {wrong}" if wrong else "it does")

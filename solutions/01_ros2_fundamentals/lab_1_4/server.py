@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 server = Draft(
     "lab_1_4.server",
     "Lab 1.4 · An action server that counts",
-    "Serve the action fibonacci: feedback for each number, cancel at any time, bad orders refused.",
+    "Serve the action fibonacci: feedback for each number, cancel at any time, bad orders rejected.",
     sends := SendsGoals(scenario, good=good_goals, canceled=(GOALS, LONG)),
 )
 server.asks("action", 1, "Serves fibonacci, with the right type", criteria.serves)
@@ -49,7 +49,7 @@ server.asks("sequence", 3, "Succeeds with the right numbers", criteria.counts)
 server.asks("feedback", 1, "Sends feedback that grows by one number", criteria.gives_feedback)
 server.asks("two", 1, "Serves two goals at once", criteria.serves_two_at_once)
 server.asks("cancel", 2, "Lets a goal be canceled", criteria.lets_cancel)
-server.asks("refuse", 2, "Refuses bad orders and lives on", criteria.refuses_bad_orders)
+server.asks("refuse", 2, "Rejects bad orders and lives on", criteria.refuses_bad_orders)
 
 
 @server.mistake("bad_order_accepted", certain=True)
@@ -68,12 +68,12 @@ def goal_rejected(seen: Evidence, _: Evidence) -> Advice | None:
         return None
     if len(refused) < sum(one.accepted is not None for one in good):
         return Advice(
-            f"Your server refused a goal of order {refused[0].order}, which is a good one, and took others.",
+            f"Your server rejected a goal of order {refused[0].order}, which is a good one, and took others.",
             f"Look at the comparison in your goal_callback: all orders from 0 to {FIRST_TOO_LARGE - 1} can be served.",
         )
     return Advice(
-        f"Your server refused a goal of order {refused[0].order}, which is a good one. A goal_callback that returns "
-        "True (or anything but GoalResponse.ACCEPT) refuses.",
+        f"Your server rejected a goal of order {refused[0].order}, which is a good one. A goal_callback that returns "
+        "True (or anything but GoalResponse.ACCEPT) rejects.",
         "Return GoalResponse.ACCEPT for the orders that you can serve, and GoalResponse.REJECT for the others.",
     )
 
