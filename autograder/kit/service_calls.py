@@ -288,6 +288,16 @@ def zero_taken_for_failure(evidence: Evidence) -> Advice | None:
     )
 
 
+def cut_short(client: Client) -> str:
+    """What was seen where the judge made no more runs, because the client hung in one; empty where it made all."""
+    hung = next((part for part in client.served if part.events and part.ending is None), None)
+    if hung is None or all(part.events for part in client.served):
+        return ""
+    count = len(requests(hung))
+    made = "no call" if not count else "one call" if count == 1 else f"{count} calls"
+    return f"{made} ({hung.name}), then it hung; the other runs were left out"
+
+
 def fields_never_filled(evidence: Evidence) -> Advice | None:
     """Every request asks for 0 + 0."""
     made = [pair(event) for part in Client(evidence).served for event in requests(part)]

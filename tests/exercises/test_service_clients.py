@@ -16,7 +16,16 @@ from autograder.kit.model import Pace
 from autograder.kit.numbers_said import mentions
 from autograder.kit.recipes import service_client
 from autograder.kit.recipes.service_client import Run, answering, has_spoken, is_done
-from autograder.kit.service_calls import ABSENT, BIASED, LATE, braces_left, gives_up_in_time, reports
+from autograder.kit.service_calls import (
+    ABSENT,
+    BIASED,
+    LATE,
+    Client,
+    braces_left,
+    cut_short,
+    gives_up_in_time,
+    reports,
+)
 
 SEEDS = range(60)
 RETURNED = Event(0.4, "subject", "returned", {"value": "-987654321"})
@@ -201,3 +210,12 @@ def test_braces_that_were_not_filled_in_are_told_as_a_missing_f(line: str, told:
     given = Event(0.1, "response", "/add_two_ints", {"fields": {"sum": 12}})
     advice = braces_left(Part(BIASED, {}, [given, Event(0.2, "output", "stdout", {"text": line})]))
     assert (advice is not None and line in advice.text) == told
+
+
+def test_a_client_that_hangs_after_its_call_is_not_said_to_have_made_none() -> None:
+    asked = Event(0.1, "request", "/add_two_ints", {"fields": {"a": 19201, "b": 0}})
+    hung = Evidence([Part(LATE, {"numbers": [19201, 0]}, [asked])], Reference("lab_1_3.client", {}))
+    words = "one call (the service comes late), then it hung; the other runs were left out"
+    assert cut_short(Client(hung)) == words
+    ended = Evidence([Part(LATE, {}, [asked, RETURNED])], Reference("lab_1_3.client", {}))
+    assert cut_short(Client(ended)) == ""

@@ -221,7 +221,7 @@ def _returned_none(evidence: Evidence) -> Advice | None:
     if traceback_of(evidence).strip() != "TypeError":
         return None
     return Advice(
-        "The service callback did not return the response: rclpy could not send what came back, and the server died of "
-        "it.",
+        "The service callback did not return the response: rclpy cannot send what came back, and the client waits in "
+        "vain. A program ends with this error.",
         "End the callback with `return response`, on every way out.",
     )

@@ -95,6 +95,8 @@ def chain(seen: Client, expected: Client) -> Finding:
     wanted = "first a + b, then that answer + c"
     if wrong is None:
         return Finding(True, wanted, wanted)
+    if not wrong.events and (hung := service_calls.cut_short(seen)):
+        return Finding(False, wanted, hung)
     made = [f"{e.data['fields']['a']} + {e.data['fields']['b']}" for e in requests(wrong)[:3]]
     numbers = wrong.inputs.get("numbers")
     found = (f"for {', '.join(map(str, numbers))}: " if numbers else "") + (", then ".join(made) or "no call")

@@ -82,6 +82,8 @@ def call(seen: Client, expected: Client) -> Finding:
     wanted = "one call with the two numbers, in each run"
     if wrong is None:
         return Finding(True, wanted, wanted)
+    if not wrong.events and (hung := service_calls.cut_short(seen)):
+        return Finding(False, wanted, hung)
     made = [f"{e.data['fields']['a']} + {e.data['fields']['b']}" for e in requests(wrong)[:3]]
     numbers = " and ".join(map(str, wrong.inputs.get("numbers", ())))
     return Finding(False, wanted, (f"for {numbers}: " if numbers else "") + (", ".join(made) or "no call"))
