@@ -49,7 +49,8 @@ You need Linux on x86-64 (or Windows with WSL 2) and Python 3.11 or newer. Then:
 $ ./course lab
 ```
 
-The first time this sets everything up, in one to three minutes. It opens a map of all notebooks; press *Begin*.
+The first time this sets everything up, in one to three minutes, or longer where the network is slow or the computer is
+busy. It opens a map of all notebooks; press *Begin*.
 
 On a Mac, on Windows without WSL or on an ARM computer, use Docker: `environment/jazzy.Dockerfile` begins with the two
 commands to type. Or open this folder in VS Code, choose *Reopen in Container*, and type `./course lab --no-browser`.

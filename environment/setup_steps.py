@@ -92,7 +92,7 @@ class Setup:
             return (
                 f"using the sourced ROS 2 Jazzy ({self.ros.flavour}), installing Jupyter and the build tools"
             )
-        return "installing ROS 2 Jazzy, Jupyter and the build tools (a minute or two)"
+        return "installing ROS 2 Jazzy, Jupyter and the build tools (a minute or two, longer if the computer is busy)"
 
     def _run(self, what: str, command: Command, **more: str) -> None:
         """Run a command with its output in the log.

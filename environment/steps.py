@@ -6,14 +6,19 @@ it has succeeded, so an interrupted set-up goes on at the step it was in.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
+import threading
 import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+
+SIGN_OF_LIFE = 30.0
+"""Seconds after which a step that still runs says so, again and again."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +81,8 @@ def run_steps(steps: Sequence[Step], stamps: Path, root: Path, say: Callable[[st
         stamp.unlink(missing_ok=True)
         started = time.monotonic()
         say(step.doing)
-        step.run()
+        with _signs_of_life(say):
+            step.run()
         # After the run: the step that makes the environment empties the folder of the stamps.
         stamps.mkdir(parents=True, exist_ok=True)
         beside = stamps / f"{step.name}.new"
@@ -85,3 +91,22 @@ def run_steps(steps: Sequence[Step], stamps: Path, root: Path, say: Callable[[st
         say(f"  {time.monotonic() - started:.1f} s")
         done.append(step.name)
     return done
+
+
+@contextlib.contextmanager
+def _signs_of_life(say: Callable[[str], None]) -> Iterator[None]:
+    """Say now and then that a step is still at work: on a busy computer one can take many minutes."""
+    started = time.monotonic()
+    ended = threading.Event()
+
+    def tell() -> None:
+        while not ended.wait(SIGN_OF_LIFE):
+            say(f"  still at work, after {time.monotonic() - started:.0f} s")
+
+    teller = threading.Thread(target=tell, daemon=True)
+    teller.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        teller.join()

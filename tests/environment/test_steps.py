@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import threading
 from typing import TYPE_CHECKING
 
 import pytest
 
+from environment import steps as environment_steps
 from environment.steps import Step, digest, run_steps
 
 if TYPE_CHECKING:
@@ -92,3 +94,36 @@ def test_a_renamed_file_gives_another_digest(tmp_path: Path) -> None:
     first.write_text("same")
     second.write_text("same")
     assert digest([first], tmp_path) != digest([second], tmp_path)
+
+
+def test_a_step_that_takes_long_says_that_it_is_still_at_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(environment_steps, "SIGN_OF_LIFE", 0.01)
+    said: list[str] = []
+    twice = threading.Event()
+
+    def say(line: str) -> None:
+        said.append(line)
+        if sum("still at work" in told for told in said) == 2:
+            twice.set()
+
+    def long_work() -> None:
+        assert twice.wait(60.0)
+
+    run_steps([Step("long", "working", (), long_work)], tmp_path / "stamps", tmp_path, say)
+    assert said[0] == "working"
+    assert all(line.startswith("  still at work, after ") for line in said[1:-1])
+    assert len(said) >= 4
+
+
+def test_a_step_that_fails_is_silent_after_that(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(environment_steps, "SIGN_OF_LIFE", 0.01)
+
+    def fail() -> None:
+        raise OSError("no room")
+
+    before = threading.active_count()
+    with pytest.raises(OSError, match="no room"):
+        run_steps([Step("short", "working", (), fail)], tmp_path / "stamps", tmp_path, lambda line: None)
+    assert threading.active_count() == before
