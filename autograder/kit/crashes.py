@@ -129,10 +129,30 @@ KNOWN = (
     ),
     Crash(
         "callback_signature",
-        r"Expected .* callback|[Cc]allback should be either|callback.*(?:takes|missing) .*positional argument"
+        r"create_subscription\([^,\n]*,[^,\n]*, *(?:callback *= *)?(?P<name>[\w.]+)\(\)(?:.*\n)+"
+        r".*callback should be either",
+        "{name}() calls the method on the spot, so the subscription was given what it returned, and not the method.",
+        "Pass the method itself, without parentheses after it: {name}.",
+    ),
+    Crash(
+        "callback_signature",
+        r"create_subscription\([^,\n]*,[^,\n]*, *(?:callback *= *)?self\.(?P<name>\w+) *[,)](?:.*\n)+"
+        r".*callback should be either",
+        "The callback {name} takes the wrong number of arguments: a subscription hands it the message.",
+        "Write one parameter for the message besides self: def {name}(self, message).",
+    ),
+    Crash(
+        "callback_signature",
         # Raised where rclpy calls the callback; a notebook's traceback leaves rclpy's own lines out.
-        r"|(?:\A|rclpy/(?:executors|task|event_handler|action/client|action/server)\.py\".*\n(?: .*\n){1,2})"
-        r"TypeError: .*positional argument",
+        r"(?:\A|rclpy/(?:executors|task|event_handler|action/client|action/server)\.py\".*\n(?: .*\n){1,2})"
+        r"TypeError: (?P<what>.*positional argument.*)",
+        "A callback takes the wrong number of arguments: {what}.",
+        "Change what stands between its parentheses where it is defined. Besides self, a timer's callback takes "
+        "nothing and a subscription's takes the message.",
+    ),
+    Crash(
+        "callback_signature",
+        r"Expected .* callback|[Cc]allback should be either|callback.*(?:takes|missing) .*positional argument",
         "A callback has the wrong form: it was called on the spot (cb() instead of cb), or it takes the "
         "wrong number "
         "of arguments.",
@@ -153,11 +173,34 @@ KNOWN = (
     ),
     Crash(
         "raw_value_published",
+        r"TypeError: Expected <class '[\w.]+\.msg\.\w+\.(?P<type>\w+)'>, got <class '(?:\w+\.)*(?P<got>\w+)'>",
+        "What your code published is of the type {got}; a message of the type {type} is expected.",
+        "Make the message first, msg = {type}(), fill its field and publish that: publish(msg).",
+    ),
+    Crash(
+        "raw_value_published",
+        r"publish_feedback\((?:.*\n)+TypeError:?\s*\z",
+        "A bare value was sent where feedback is expected.",
+        "Make the feedback first (feedback = Fibonacci.Feedback()), fill its field and send that.",
+    ),
+    Crash(
+        "raw_value_published",
+        r"send_goal(?:_async)?\((?:.*\n)+TypeError:?\s*\z",
+        "A bare value was sent where a goal is expected.",
+        "Make the goal first (goal = Fibonacci.Goal()), fill its field and send that.",
+    ),
+    Crash(
+        "raw_value_published",
+        r"call(?:_async)?\((?:.*\n)+TypeError:?\s*\z",
+        "A bare value was sent where a request is expected.",
+        "Make the request first (request = AddTwoInts.Request()), fill its fields and send that.",
+    ),
+    Crash(
+        "raw_value_published",
         r"[Ee]xpected (?:<class )?'?[\w.]*(?:String|Int\d+|Message)\b.*got|TypeError: Expected [\w/.<>' ]+, got"
-        r"|(?:publish|publish_feedback|send_goal_async|call_async|send_goal|call)\((?:.*\n)+TypeError:?\s*\z",
+        r"|publish\((?:.*\n)+TypeError:?\s*\z",
         "A bare value was sent where a message is expected.",
-        "Make the message first (msg = String(), AddTwoInts.Request(), Fibonacci.Goal(), Fibonacci.Feedback()), fill "
-        "its field and send that.",
+        "Make the message first, fill its field and send that.",
     ),
     Crash(
         "result_missing",
@@ -190,13 +233,24 @@ KNOWN = (
     ),
     Crash(
         "field_typo",
-        r"AttributeError: '(?:String|U?Int\d+|Twist|Vector3"
-        r"|\w+_(?:Request|Response|Goal|Result|Feedback|FeedbackMessage))' object has no attribute '(?P<name>\w+)'"
+        r"AttributeError: 'Twist' object has no attribute '(?P<name>\w+)'",
+        "A Twist has no field of the name {name}: it has two parts, linear and angular, and each has the numbers x, y "
+        "and z.",
+        "Name the part, too: command.linear.x is the speed straight ahead, command.angular.z the turn to the left.",
+    ),
+    Crash(
+        "field_typo",
+        r"AttributeError: '\w+_FeedbackMessage' object has no attribute '(?P<name>\w+)'",
+        "The message has no field of the name {name}.",
+        "In an action's feedback callback the fields are one level down: msg.feedback.partial_sequence.",
+    ),
+    Crash(
+        "field_typo",
+        r"AttributeError: '(?:String|U?Int\d+|Vector3"
+        r"|\w+_(?:Request|Response|Goal|Result|Feedback))' object has no attribute '(?P<name>\w+)'"
         r"|Invalid arguments passed to constructor: '?(?P<keyword>\w+(?:, \w+)*)",
         "The message has no field of the name {name}{keyword}.",
-        "Look the fields up with `ros2 interface show` and spell the name exactly so. In an action's "
-        "feedback "
-        "callback the fields are one level down: msg.feedback.partial_sequence.",
+        "Look the fields up with `ros2 interface show` and spell the name exactly so.",
     ),
     Crash(
         "callback_returned_none",

@@ -69,7 +69,7 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
         return Advice(
             f"The package is built, but it has no program {entry.program}: "
             + (f"setup.py names only {named}." if named else "setup.py names no entry point."),
-            f"In setup.py, 'console_scripts' must hold {entry.line}. Then build again.",
+            f"In setup.py, 'console_scripts' must hold {entry.line}. {_again(evidence)}",
         )
     tracebacks = "\n".join(part.traceback for part in evidence)
     found = re2.search(
@@ -78,11 +78,12 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
         tracebacks,
     )
     if found is None:
-        return _unknown_module(tracebacks, entry)
+        return _unknown_module(tracebacks, entry, _again(evidence))
     what = f"the module {found['module']}" if found["module"] else f"the function {found['name']}"
     return Advice(
         f"The entry point in setup.py leads to {what}, which is not there.",
-        f"It must read {entry.line}, with a comma behind it: the file without .py, a colon, and the function.",
+        f"It must read {entry.line}, with a comma behind it: the file without .py, a colon, and the function. "
+        f"{_again(evidence)}",
     )
 
 
@@ -94,7 +95,16 @@ _LED_NOWHERE = re2.compile(
 )
 
 
-def _unknown_module(tracebacks: str, entry: Entry) -> Advice | None:
+def _again(evidence: Evidence) -> str:
+    """What to do after a change: the judge of a workspace builds it, and `ros2 run` starts what somebody has built."""
+    return (
+        "Then build and check again."
+        if report_of(evidence.main) is None
+        else "Then check again: the judge builds."
+    )
+
+
+def _unknown_module(tracebacks: str, entry: Entry, again: str) -> Advice | None:
     """The entry point names a module in another way than with the package before it."""
     found = _LED_NOWHERE.search(tracebacks)
     if found is None or found["module"] == entry.package:
@@ -102,7 +112,7 @@ def _unknown_module(tracebacks: str, entry: Entry) -> Advice | None:
     return Advice(
         f"The entry point in setup.py names the module {found['module']}, which is not there. A module of the package "
         "is named with the package before it.",
-        f"Write package, dot, file, without .py: {entry.line}. Then build again.",
+        f"Write package, dot, file, without .py: {entry.line}. {again}",
     )
 
 
@@ -140,8 +150,8 @@ def wrong_folder(evidence: Evidence, entry: Entry) -> Advice | None:
         return None
     return Advice(
         f"{file} is in another folder than the package's modules: it is src/{package}/{lost}.",
-        f"Move it to src/{package}/{package}/{file}, into the inner one of the two folders {package}, and build "
-        "again.",
+        f"Move it to src/{package}/{package}/{file}, into the inner one of the two folders {package}, and check "
+        "again: the judge builds.",
     )
 
 

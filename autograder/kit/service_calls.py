@@ -10,6 +10,7 @@ import re2
 
 from autograder.kit import giving_up
 from autograder.kit.hangs import stacks
+from autograder.kit.in_words import counted
 from autograder.kit.model import Advice, Finding
 from autograder.kit.numbers_said import mentions
 
@@ -198,7 +199,7 @@ def how_it_went(part: Part) -> str:
     ending = part.ending
     if ending is None:
         return f"neither done nor ended, and silent for {HANGS_AFTER:g} s"
-    return f"it {ending.name} after {len(requests(part))} calls"
+    return f"it {ending.name} after {counted(len(requests(part)), 'call')}"
 
 
 def call_never_spun(evidence: Evidence) -> Advice | None:

@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING
 from autograder.kit.evidence import REPORTS, Part
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
+
+    from autograder.kit.evidence import Event
 
 MARK = REPORTS[0]
 MAX_LINE = 3_900
@@ -108,11 +110,19 @@ def as_line(report: WorkspaceReport) -> str:
 
 def report_of(part: Part, phase: str = "built") -> WorkspaceReport | None:
     """The first report of a phase; None where there is none, as where a command was run that built nothing."""
+    return next((report for _, report in _reports(part) if report.phase == phase), None)
+
+
+def build_ended(part: Part) -> float:
+    """Seconds after the beginning of a part at which the workspace was built; 0 where nothing was built in it."""
+    return next((event.t for event, report in _reports(part) if report.phase == "built"), 0.0)
+
+
+def _reports(part: Part) -> Iterator[tuple[Event, WorkspaceReport]]:
     for event in part.of("output"):
         text = str(event.data["text"])
-        if text.startswith(MARK) and (report := _parsed(text[len(MARK) :])) and report.phase == phase:
-            return report
-    return None
+        if text.startswith(MARK) and (report := _parsed(text[len(MARK) :])):
+            yield event, report
 
 
 def _parsed(text: str) -> WorkspaceReport | None:

@@ -28,7 +28,8 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
         package: The name of the package.
 
     Returns:
-        The executables that the package has now, a line each, or what the student has to do.
+        The executables that the package has now, a line each and a warning where an entry cannot work, or what the
+        student has to do.
     """
     setup = Path(workspace) / "src" / package / "setup.py"
     wanted = list(entries)
@@ -55,7 +56,13 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
         return f"{package} has no executable yet."
     if merged != _texts(programs):
         setup.write_text(_with_list(text, programs, merged), encoding="utf-8")
-    return "\n".join([f"Executables of {package}:", *(f"  {entry}" for entry in merged)])
+    return "\n".join(
+        [
+            f"Executables of {package}:",
+            *(f"  {entry}" for entry in merged),
+            *_without_package(wanted, package),
+        ]
+    )
 
 
 def add_dependencies(workspace: str | Path, names: Iterable[str], package: str = PACKAGE) -> str:
@@ -117,7 +124,34 @@ def _no_entry_point(entry: object) -> str:
             f"Two entry points have run together: {entry!r}. A comma is missing between them: Python joins two texts "
             "with nothing between. Write a comma after each entry point, behind its closing quotation mark."
         )
-    return f"{entry!r} is no entry point. Write: executable = module : function"
+    what = _what_is_wrong(entry) if isinstance(entry, str) else ""
+    return f"{entry!r} is no entry point. {what}Write: executable = module : function"
+
+
+def _what_is_wrong(entry: str) -> str:
+    """The slip in what was meant for an entry point, as a sentence and a space; empty where none is known."""
+    if len(entry.strip()) <= 1:
+        return "It is a single letter: put the text into a list, in square brackets. "
+    if "(" in entry:
+        return "Leave out the parentheses: the function is named here and not called. "
+    if "/" in entry:
+        return "Write dots in the module in place of slashes, as in an import. "
+    if "=" not in entry:
+        return "The equals sign between the executable and the module is missing. "
+    if ":" not in entry:
+        return "The colon between the module and the function is missing. "
+    return ""
+
+
+def _without_package(entries: list[str], package: str) -> list[str]:
+    """A warning for each module that is named without its package."""
+    modules = [(entry, _parts(entry)[1].partition(":")[0]) for entry in entries]
+    return [
+        f"Careful: in {entry!r} the module has no package in front of it, so Python will not find it. "
+        f"Write {package}.{module}."
+        for entry, module in modules
+        if "." not in module
+    ]
 
 
 def _parts(entry: str) -> tuple[str, str]:

@@ -36,6 +36,45 @@ def _evidence(*started: int, talkers: dict[int, str], listener: int) -> Evidence
 
 
 @pytest.mark.parametrize(
+    ("what", "next_step"),
+    [
+        (
+            "TypeError: Node(remappings=…) must be a list of pairs, got 'chatter' (a.launch.py, line 6)",
+            "list of pairs",
+        ),
+        (
+            "InvalidPythonLaunchFileError: 'generate_launch_description()' must return a LaunchDescription",
+            "`return`",
+        ),
+        (
+            "TypeError: LaunchDescription.__init__() takes from 1 to 2 positional arguments but 3 were",
+            "one list",
+        ),
+        ("TypeError: 'Node' object is not iterable (n.launch.py, line 6)", "one list"),
+        (
+            "TypeError: Node() got an unexpected keyword argument 'remap' (e.launch.py, line 6)",
+            "of the arguments",
+        ),
+        ("NameError: name 'Nod' is not defined (l.launch.py, line 6)", "imports"),
+        ("package 'my_robot' not found", "ros2 pkg executables my_robot_pkg"),
+        ("executable 'listner' not found", "ros2 pkg executables my_robot_pkg"),
+        ("XML: mismatched tag, line 4", "with the example"),
+    ],
+)
+def test_the_next_step_fits_what_the_launch_says(what: str, next_step: str) -> None:
+    failed = Event(0.0, "output", "stderr", {"text": f"[ERROR] [launch]: {what}"})
+    seen = Evidence([Part("launching", {"text": "status 1"}, [failed])], REFERENCE)
+    (advice,) = [
+        mistake.recognise(seen)
+        for mistake in exercises.get("exercise_1_1.remap").mistakes
+        if mistake.key == "launch_error"
+    ]
+    assert advice is not None
+    assert what in advice.text
+    assert next_step in advice.next_step
+
+
+@pytest.mark.parametrize(
     ("started", "certain"),
     [
         pytest.param((11, 12), True, id="all programs are on the graph"),

@@ -74,6 +74,29 @@ def test_what_is_no_entry_point_changes_nothing(workspace: Path, entry: str) -> 
     assert (workspace / "src/my_robot_pkg/setup.py").read_text() == before
 
 
+@pytest.mark.parametrize(
+    ("entry", "what"),
+    [
+        ("t", "square brackets"),
+        ("simple_node = my_robot_pkg.simple_node:main()", "Leave out the parentheses"),
+        ("simple_node = my_robot_pkg/simple_node:main", "dots in the module"),
+        ("simple_node : my_robot_pkg.simple_node:main", "equals sign"),
+        ("simple_node = my_robot_pkg.simple_node.main", "colon between"),
+    ],
+)
+def test_what_is_wrong_with_it_is_said(workspace: Path, entry: str, what: str) -> None:
+    told = add_entry_points(workspace, [entry])
+    assert "is no entry point" in told
+    assert what in told
+
+
+def test_a_module_without_its_package_is_warned_of(workspace: Path) -> None:
+    told = add_entry_points(workspace, ["simple_node = simple_node:main", TALKER])
+    assert told.count("Careful") == 1
+    assert told.endswith("Write my_robot_pkg.simple_node.")
+    assert "Careful" not in add_entry_points(workspace, [HELLO])
+
+
 def test_two_entry_points_without_a_comma_between_them_are_told_as_that(workspace: Path) -> None:
     before = (workspace / "src/my_robot_pkg/setup.py").read_text()
     told = add_entry_points(workspace, [TALKER + HELLO])

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from action_msgs.msg import GoalStatus
 
+from autograder.kit.workspace_report import build_ended
 from autograder.verdict import Moment
 
 if TYPE_CHECKING:
@@ -86,7 +88,16 @@ def moments(evidence: Evidence) -> tuple[Moment, ...]:
     return tuple(kept[:MOST_MOMENTS])
 
 
+def _since_the_build(part: Part) -> Part:
+    """The part with the time counted from the end of its build, where it has one: the program began only then."""
+    built = build_ended(part)
+    if not built:
+        return part
+    return replace(part, events=[replace(event, t=max(event.t - built, 0.0)) for event in part.events])
+
+
 def _of_part(part: Part, reference: Reference, title: str) -> list[Moment]:
+    part = _since_the_build(part)
     start = next((e.sim for e in part.events if e.sim is not None), None)
     shown = [
         event for event in _without_echoes(part.events) if event.kind in _DIRECTION and not _began(event)

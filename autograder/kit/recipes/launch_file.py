@@ -200,9 +200,35 @@ class LaunchFile:
             return None
         return Advice(
             f"The launch failed: {what}",
-            f"Compare the names of the package and of the programs with `ros2 pkg executables {self._package}`, and "
-            "the file with the example.",
+            next((todo for pattern, todo in _TODO if re2.search(pattern, what)), _COMPARE).format(
+                package=self._package
+            ),
         )
+
+
+_TODO = (
+    (
+        r"remappings",
+        "remappings takes a list of pairs: square brackets outside, and in them a pair of two texts in parentheses, as "
+        'in remappings=[("image", "/left/image")].',
+    ),
+    (
+        r"must return|NoneType",
+        "Put `return` in front of the LaunchDescription: generate_launch_description has to hand it back.",
+    ),
+    (
+        r"LaunchDescription|is not iterable",
+        "Give LaunchDescription one list: square brackets around all the Nodes, and a comma between them.",
+    ),
+    (
+        r"(?i)\b(?:package|executable)\b.* not found|libexec",
+        "Compare the names of the package and of the programs with `ros2 pkg executables {package}`.",
+    ),
+    (r"keyword argument", "Compare the names of the arguments with those in the example, letter by letter."),
+    (r"^NameError", "Compare the name with the imports at the top of the file, letter by letter."),
+)
+"""What to do about what a launch says, the most telling first."""
+_COMPARE = "Compare the file with the example, first the line that is named."
 
 
 def _has_begun(evidence: Evidence) -> bool:

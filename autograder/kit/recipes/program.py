@@ -11,6 +11,7 @@ from autograder.kit import common_mistakes as common
 from autograder.kit import package_programs as programs
 from autograder.kit import workspace_mistakes as workspace
 from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.in_words import first_difference
 from autograder.kit.model import Bench, Finding, Mistake, Pace
 from autograder.kit.runners import RunsProgram
 
@@ -66,6 +67,11 @@ class Ran:
         words = self.words
         near = difflib.get_close_matches(self.line, words, n=1, cutoff=0.0) or words[:1]
         return near[0] if near else ""
+
+    @property
+    def first_difference(self) -> str:
+        """Where that stops being the line, in a sentence."""
+        return first_difference(self.nearest, self.line)
 
 
 def _nodes(part: Part) -> list[str]:

@@ -6,9 +6,12 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
+import re2
+
 from autograder.kit import common_mistakes as common
 from autograder.kit import package_programs as package
 from autograder.kit import workspace_mistakes as workspace
+from autograder.kit.crashes import traceback_of
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part
 from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake, Pace
 from autograder.kit.runners import RunsPrograms
@@ -264,7 +267,8 @@ class Programs:
         yield Mistake("entry_point", self._another_program)
         for program in self._programs:
             late = () if program.ends_by_itself else (Mistake("ended_too_early", common.ended_too_early),)
-            for mistake in (*program.node.mistakes, *late):
+            copied = Mistake("crashed", partial(_class_not_in_its_file, program), certain=True)
+            for mistake in (copied, *program.node.mistakes, *late):
                 yield replace(mistake, recognise=partial(_in_one_program, program, mistake))
         for program in self._programs:
             yield Mistake("ignores_ctrl_c", partial(_ignores_ctrl_c, program))
@@ -313,6 +317,23 @@ def _in_one_program(program: Program, mistake: Mistake, evidence: Evidence) -> A
         return None
     advice = mistake.recognise(program.view(evidence))
     return Advice(f"{program.name}: {advice.text}", advice.next_step) if advice else None
+
+
+_MADE_OF_NOTHING = re2.compile(
+    r"\n +\w+ = (?P<made>[A-Z]\w*)\([^\n]*\n(?:[ ~^]*\n)?NameError: name '(?P<unknown>\w+)' is not defined"
+)
+
+
+def _class_not_in_its_file(program: Program, evidence: Evidence) -> Advice | None:
+    """It makes a node of a class that its file does not have."""
+    found = _MADE_OF_NOTHING.search(traceback_of(evidence))
+    if found is None or found["made"] != found["unknown"]:
+        return None
+    file = f"{program.file or program.name}.py"
+    return Advice(
+        f"{file} makes a node of the class {found['made']}, and this class is not in the file (NameError).",
+        f"Copy your class {found['made']} into {file}, above main, and write the file again.",
+    )
 
 
 def _ignores_ctrl_c(program: Program, evidence: Evidence) -> Advice | None:

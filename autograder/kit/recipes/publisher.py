@@ -11,6 +11,7 @@ import re2
 from autograder.kit import common_mistakes as common
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.hangs import HANGS
+from autograder.kit.in_words import counted
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.rate import ROW, Rate, confirmed, rate_of, simulated
 
@@ -246,7 +247,7 @@ class Hears:
         rate = rate_of(messages, wanted, self._enough(evidence.before))
         expected = f"one every {wanted:g} s"
         if rate is None:
-            return Finding(False, expected, f"{len(messages)} messages in all")
+            return Finding(False, expected, f"{counted(len(messages), 'message')} in all")
         seen = f"one every {rate.period:.2g} s"
         if not rate.even:
             seen += f", but unevenly: {_gaps(rate)} s apart"
@@ -329,7 +330,7 @@ class Hears:
         if not 0 < came < seen.enough or part.ending is not None or part.of("unanswered"):
             return None
         return Advice(
-            f"Your node published {came} messages and then no more, although it is still there.",
+            f"Your node published {counted(came, 'message')} and then no more, although it is still there.",
             "The task has no end: leave out what stops the timer, or what keeps the callback from publishing.",
         )
 

@@ -11,6 +11,7 @@ from autograder.kit import common_mistakes as common
 from autograder.kit.crashes import traceback_of
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.hangs import HANGS, stacks
+from autograder.kit.in_words import counted
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
 
 if TYPE_CHECKING:
@@ -210,8 +211,8 @@ class Asks:
         if not stuck:
             return None
         return Advice(
-            f"Your server answered {len(seen.answers)} calls and then no more: its callback {stuck[0][0].function} was "
-            "called and never came back.",
+            f"Your server answered {counted(len(seen.answers), 'call')} and then no more: its callback "
+            f"{stuck[0][0].function} was called and never came back.",
             "A callback has to come to its end at each call. Look for a wait, a loop or a lock in it.",
         )
 

@@ -237,7 +237,9 @@ def _expected_texts(evidence: Evidence) -> int:
 def says_every_text(evidence: Evidence) -> Finding:
     """Each text that was sent is said afterwards."""
     sent, missing = _sent(evidence), _missing(evidence)
-    seen = f"{len(sent) - len(missing)} of {len(sent)} said" if sent else "none was sent"
+    topic, _ = evidence.reference.only("subscription")
+    nobody = f"nobody subscribed to {topic}, so nothing was sent"
+    seen = f"{len(sent) - len(missing)} of {len(sent)} said" if sent else nobody
     if missing:
         seen += f"; not “{_text(missing[0])}”"
     complete = len(sent) >= _expected_texts(evidence) and not missing

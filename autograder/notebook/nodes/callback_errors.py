@@ -20,6 +20,8 @@ from autograder.notebook.nodes.node_ends import NodeEndedError, node_label
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rclpy.node import Node
+
     from autograder.notebook.nodes.spin_threads import Failure
 
 
@@ -126,11 +128,18 @@ def _hints(failure: Failure) -> list[str]:
     if isinstance(failure.entity, Timer) and failure.entity.callback is None:
         return [
             "The timer has None for a callback: the method was called when the timer was made, and what it "
-            "returned was given. Give the method itself, without parentheses: create_timer(0.5, self.tick)."
+            "returned was given. Give the method itself, without parentheses: "
+            f"create_timer({failure.entity.timer_period_ns / 1e9:g}, self.{_likely_callback(failure.node)})."
         ]
     if isinstance(failure.entity, Service):
         return ["The callback of a service must return its response: end it with `return response`."]
     return []
+
+
+def _likely_callback(node: Node | None) -> str:
+    """The one method that the student's class has of its own; where there are several, a word for it."""
+    own = [name for name, value in vars(type(node)).items() if callable(value) and not name.startswith("__")]
+    return own[0] if len(own) == 1 else "your_method"
 
 
 def describe(entity: Any) -> str:

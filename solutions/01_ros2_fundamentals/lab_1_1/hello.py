@@ -21,7 +21,7 @@ hello.asks("line", 4, "Says the line", recipe.says_the_line)
     "wrong_text",
     late=True,
     says="Your node says “{seen.nearest}”; the task asks for “{seen.line}”.",
-    next_step="Compare the two letter by letter: capitals, the comma, the exclamation mark and the full stop count.",
+    next_step="{seen.first_difference} Every letter counts.",
 )
 def wrong_text(seen: Ran, _: Ran) -> bool:
     """Its node says something else."""

@@ -7,6 +7,7 @@ from itertools import pairwise
 import re2
 
 from autograder.kit.draft import Draft
+from autograder.kit.in_words import first_difference
 from autograder.kit.model import Advice, Finding
 from autograder.kit.recipes.publisher import Hears, Publisher
 
@@ -87,7 +88,8 @@ def counter_stuck(seen: Publisher, _: Publisher) -> bool:
 def wrong_text(seen: Publisher, expected: Publisher) -> Advice | None:
     """Messages arrive, but with another text."""
     finding = text(seen, expected)
-    if all(form in expected.templates for form in seen.templates):
+    odd = next((form for form in seen.templates if form not in expected.templates), None)
+    if odd is None:
         return None
     if blank := re2.search(r"\{[^{}]*\}|%[ds]", finding.seen):
         return Advice(
@@ -101,8 +103,8 @@ def wrong_text(seen: Publisher, expected: Publisher) -> Advice | None:
         )
     return Advice(
         f"Your talker says {finding.seen}; the task asks for {finding.expected}",
-        "Compare the two letter by letter: capitals, the comma, the exclamation mark and the space before the number "
-        "all count, because other nodes read this text.",
+        f"{first_difference(odd, expected.templates[0])} (N is the number.) Every letter counts, because other nodes "
+        "read this text.".replace("#", "N"),
     )
 
 

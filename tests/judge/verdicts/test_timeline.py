@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.judge.verdicts.timeline import MAX_MOMENTS, moments
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.workspace_report import WorkspaceReport, as_line
 
 if TYPE_CHECKING:
     from autograder.verdict import Moment
@@ -53,6 +54,16 @@ def test_a_time_of_sending_that_cannot_be_is_not_believed() -> None:
     forged = Event(0.5, "log", "talker", {"text": "x", "sent": 0.0, "arrived": 1000.0})
     later = Event(0.6, "log", "talker", {"text": "y", "sent": 2000.0, "arrived": 1000.0})
     assert [moment.t for moment in told(forged, later)] == [0.0, 0.6]
+
+
+def test_a_program_that_was_built_first_begins_after_its_build() -> None:
+    built = as_line(WorkspaceReport("built", built=True))
+    shown = told(
+        Event(20.5, "output", "stdout", {"text": built}),
+        Event(21.7, "log", "simple_node", {"text": "Hello", "sent": 1000.0, "arrived": 1000.1}),
+        Event(22.0, "subject", "exited", {"code": 0}),
+    )
+    assert [round(moment.t, 3) for moment in shown] == [1.1, 1.5]
 
 
 def test_each_goal_has_a_lane_where_there_are_several() -> None:

@@ -91,17 +91,23 @@ def test_a_background_shows_it_and_goes_on(nodes: Any, capfd: pytest.CaptureFixt
     assert printed.err == ""
 
 
+class Eager(Node):
+    def say_hello(self) -> None:
+        """Is called when the timer is made."""
+
+
+@pytest.mark.parametrize(("made", "method"), [(Eager, "say_hello"), (Node, "your_method")])
 def test_a_timer_made_with_the_result_of_its_callback_is_explained(
-    capfd: pytest.CaptureFixture[str], until: Callable[[Any], Any]
+    made: type[Node], method: str, capfd: pytest.CaptureFixture[str], until: Callable[[Any], Any]
 ) -> None:
-    node = Node("eager")
+    node = made("eager")
     node.create_timer(0.005, None)  # type: ignore[arg-type]
     background = spin_in_background(node)
     until(lambda: background.errors)
     background.stop()
     printed = capfd.readouterr().out
     assert "'NoneType' object is not callable" in printed
-    assert "without parentheses: create_timer(0.5, self.tick)" in printed
+    assert f"without parentheses: create_timer(0.005, self.{method})" in printed
     assert "Traceback" not in printed
 
 
