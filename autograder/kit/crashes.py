@@ -122,8 +122,8 @@ KNOWN = (
     ),
     Crash(
         "callback_signature",
-        r"^ +.*(?:add_done_callback|create_\w+|Action(?:Client|Server)|\w*callback=).*\.\w+\(\)\).*\n(?:[ ~^]*\n)?"
-        r"TypeError: (?:[\w.<>]+\.)?(?P<method>\w+)\(\) missing \d+ required positional arguments?: ",
+        r"^ +.*(?:add_done_callback|create_(?:timer|subscription|service)|ActionServer|\w*callback=).*\.\w+\(\)[,)].*\n"
+        r"(?:[ ~^]*\n)?TypeError: (?:[\w.<>]+\.)?(?P<method>\w+)\(\) missing \d+ required positional arguments?: ",
         "The parentheses after {method} call it on the spot, without what ROS would give it. It is not handed over.",
         "Write the name without parentheses, as in add_done_callback(self.{method}): ROS calls it when it is time.",
     ),

@@ -54,6 +54,11 @@ CODE_AND_LAST_LINE = {
         "callback_signature",
         "The parentheses after add",
     ),
+    "self.create_subscription(String, 'chatter', self.hear(), 10)": (
+        "TypeError: Listener.hear() missing 1 required positional argument: 'message'",
+        "callback_signature",
+        "The parentheses after hear",
+    ),
     "goal_handle.publish_feedback(numbers)": ("TypeError", "raw_value_published", "A bare value"),
     "self.show()": (
         "TypeError: Node.show() missing 1 required positional argument: 'text'",
