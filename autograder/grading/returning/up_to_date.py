@@ -11,7 +11,7 @@ from autograder.grading.table.entries import SubmissionEntry, read_entries
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from autograder.grading.classes.class_directory import ClassDirectory, Submission
+    from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.entering.records import Records
     from autograder.grading.entering.writer import Writer
     from autograder.grading.running.timings import Timings
@@ -49,26 +49,26 @@ class UpToDate:
 
     def bring(self, work: Work, entry: SubmissionEntry) -> None:
         """Bring a submission up to date whose grades were in the gradebook already, as ``entry``."""
-        self._make_pages(work, self._keep_time(work.submission, entry))
+        self._make_pages(work, self._keep_time(work, entry))
 
     def bring_graded(self, work: Work) -> None:
         """Bring a submission up to date that was entered just now, with its time."""
-        self._make_pages(work, self._read(work.submission))
+        self._make_pages(work, self._read(work))
 
-    def _keep_time(self, submission: Submission, entry: SubmissionEntry) -> SubmissionEntry:
+    def _keep_time(self, work: Work, entry: SubmissionEntry) -> SubmissionEntry:
         """Enter a changed time of handing in, or a changed due date, and what being late costs now."""
-        at = handed_in_at(submission.folder)
+        at = handed_in_at(work.submission.folder)
         moved = at is not None and at != entry.handed_in
         if not (moved or entry.is_late or entry.penalty):
             return entry
         with self._timings.measure("gradebook"):
-            self._writer().enter_time(submission, at if moved else None)
-        return self._read(submission)
+            self._writer().enter_time(work.submission, at if moved else None)
+        return self._read(work)
 
-    def _read(self, submission: Submission) -> SubmissionEntry:
-        key = (submission.student, submission.assignment)
-        entries = read_entries(self._directory.gradebook_url, student=key[0], assignment=key[1])
-        return entries.get(key, SubmissionEntry())
+    def _read(self, work: Work) -> SubmissionEntry:
+        student, assignment = work.key
+        entries = read_entries(self._directory.gradebook_url, student=student, assignment=assignment)
+        return entries.get(work.key, SubmissionEntry())
 
     def _make_pages(self, work: Work, entry: SubmissionEntry) -> None:
         """Make the pages of a submission that has none, or whose pages say what the gradebook said before."""

@@ -21,6 +21,8 @@ from autograder.notebook.nodes.spin_threads import CallbackBrokenOff
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from autograder.notebook.nodes.background import Background
+
 pytestmark = [pytest.mark.ros, pytest.mark.usefixtures("ros")]
 
 
@@ -195,12 +197,9 @@ def test_an_endless_callback_is_broken_off_and_shown_where_it_was(
     assert printed.err == ""
 
 
-def test_a_call_that_waits_for_ever_is_released(
-    capfd: pytest.CaptureFixture[str], count_spin_threads: Callable[[], int], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The classical deadlock: call() inside a callback of a single-threaded executor."""
-    monkeypatch.setattr(spin_threads, "_LONG_WAIT", 0.0)
-    node = Node("deadlocked")
+def in_a_call_that_nobody_answers(name: str) -> Background:
+    """A node in the background whose timer's callback has made a blocking call."""
+    node = Node(name)
     client = node.create_client(AddTwoInts, "nobody_serves_this")
     begun = threading.Event()
 
@@ -211,6 +210,15 @@ def test_a_call_that_waits_for_ever_is_released(
     node.create_timer(0.005, ask)
     background = spin_in_background(node)
     assert begun.wait(20)
+    return background
+
+
+def test_a_call_that_waits_for_ever_is_released(
+    capfd: pytest.CaptureFixture[str], count_spin_threads: Callable[[], int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The classical deadlock: call() inside a callback of a single-threaded executor."""
+    monkeypatch.setattr(spin_threads, "_LONG_WAIT", 0.0)
+    background = in_a_call_that_nobody_answers("deadlocked")
     background.end(grace=20)
     assert count_spin_threads() == 0
     assert isinstance(background.errors[0].error, NodeEndedError), "released, not broken off"
@@ -219,17 +227,7 @@ def test_a_call_that_waits_for_ever_is_released(
 
 def test_a_healthy_call_that_the_end_cuts_off_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(spin_threads, "_LONG_WAIT", 60.0)
-    node = Node("healthy")
-    client = node.create_client(AddTwoInts, "nobody_serves_this")
-    begun = threading.Event()
-
-    def ask() -> None:
-        begun.set()
-        client.call(AddTwoInts.Request())
-
-    node.create_timer(0.005, ask)
-    background = spin_in_background(node)
-    assert begun.wait(20)
+    background = in_a_call_that_nobody_answers("healthy")
     background.stop()
     assert background.errors == ()
 
