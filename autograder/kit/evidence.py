@@ -94,13 +94,20 @@ INTERRUPTED = "Ctrl-C"
 
 _OF_A_TRACEBACK = (
     "Exception in thread ",
+    "terminate called ",
     "Fatal Python error: ",
+    "Extension modules: ",
+    "  <no Python frame>",
     "Thread 0x",
     "Current thread 0x",
     "During handling of the above exception",
     "The above exception was the direct cause",
 )
-"""How lines of tracebacks and of stacks begin, also where two threads print theirs at once."""
+"""How lines of tracebacks and of stacks begin, also where two threads print theirs at once.
+
+A Python program that ends while a thread of it still spins is often aborted by the C++ runtime (``terminate called
+without an active exception``), and faulthandler shows what ran.
+"""
 _FRAME = re2.compile(r'\s+File ".*", line \d+')
 
 

@@ -102,9 +102,18 @@ def objection(part: Part) -> str:
         return "not reached"
     if part.ending is None:
         return "" if goes_on_waiting(part) else f"still waiting after {GIVE_UP_LIMIT:g} s"
-    if not (part.said() or part.traceback or part.ending.name == "raised"):
+    if not (any(map(str.strip, part.said())) or _failed_aloud(part) or part.ending.name == "raised"):
         return "ended without a word"
     return broken_patience(part)
+
+
+def _failed_aloud(part: Part) -> bool:
+    """Whether it has shown what went wrong.
+
+    A thread that spins while the program calls ``rclpy.shutdown()`` shows a traceback at every end, also at a good one.
+    """
+    lines = part.traceback.strip().splitlines()
+    return bool(lines) and not lines[-1].startswith("rclpy.executors.ExternalShutdownException")
 
 
 def broken_patience(part: Part) -> str:

@@ -99,6 +99,29 @@ def _waits(
 
 
 EACH_SECOND = tuple((float(t), f"waiting, try {t}") for t in range(1, 12))
+ABORTED = tuple(
+    (5.0, line)
+    for line in (
+        "terminate called without an active exception",
+        "Fatal Python error: Aborted",
+        "",
+        "Thread 0x00007fb7af88c4c0 (most recent call first):",
+        "  <no Python frame>",
+        "",
+        "Extension modules: yaml._yaml, rclpy._rclpy_pybind11 (total: 2)",
+    )
+)
+SHUT_DOWN = tuple(
+    (5.0, line)
+    for line in (
+        "Exception in thread Thread-1 (spin):",
+        "Traceback (most recent call last):",
+        '  File "/usr/lib/python3.12/threading.py", line 1075, in _bootstrap_inner',
+        "    self.run()",
+        "rclpy.executors.ExternalShutdownException",
+    )
+)
+RAISED = (*SHUT_DOWN[1:4], (5.0, "RuntimeError: nobody adds"))
 AT_ONCE = tuple((0.1 + t / 1000, "waiting") for t in range(200))
 
 
@@ -107,6 +130,15 @@ AT_ONCE = tuple((0.1 + t / 1000, "waiting") for t in range(200))
     [
         pytest.param(_waits((5.0, "nobody there"), ends=5.0), "", id="ends and says why"),
         pytest.param(_waits(ends=5.0), "ended without a word", id="ends silently"),
+        pytest.param(
+            _waits(*ABORTED, ends=5.0), "ended without a word", id="is aborted while a thread of it spins"
+        ),
+        pytest.param(
+            _waits(*SHUT_DOWN, ends=5.0),
+            "ended without a word",
+            id="a thread of it sees that ROS is shut down",
+        ),
+        pytest.param(_waits(*RAISED, ends=5.0), "", id="ends with an exception"),
         pytest.param(_waits(*EACH_SECOND), "", id="says again and again that it waits"),
         pytest.param(
             _waits(*EACH_SECOND[4::5], (11.9, "waiting, try 3")), "", id="says so every five seconds"

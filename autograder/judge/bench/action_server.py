@@ -90,7 +90,7 @@ class ScriptedActionServer:
         ]
         # rclpy answers a request when its callback returns; these answers come when it is time for them.
         self._late = [
-            LateAnswers(goals, goal_answer_takes, sending=self._note_goal_answer, sent=self._repeat_status),
+            LateAnswers(goals, goal_answer_takes, sending=self._note_goal_answer),
             LateAnswers(cancels, cancel_answer_takes, sending=self._note_cancel_answer),
         ]
         self._answer = patiently(results)
@@ -164,17 +164,12 @@ class ScriptedActionServer:
         if self._accept_goal:
             self._goal_id = request.goal_id
             self._result = None
-            self._set_status(GoalStatus.STATUS_EXECUTING)
+            self._status = GoalStatus.STATUS_EXECUTING
         self._recorder.record("goal", self._name, fields=to_data(request.goal))
         return response
 
     def _note_goal_answer(self, response: Any) -> None:
         self._recorder.record("goal_answered", self._name, accepted=bool(response.accepted))
-
-    def _repeat_status(self, response: Any) -> None:
-        # Who has a goal handle only now has missed the first word on the status of its goal.
-        if response.accepted:
-            self._set_status(self._status)
 
     def _note_cancel_answer(self, response: Any) -> None:
         self._recorder.record("cancel_answered", self._name, accepted=bool(response.goals_canceling))
@@ -199,6 +194,8 @@ class ScriptedActionServer:
     def _take_result_request(self, request: Any, response: Any) -> Any:
         known = self._goal_id is not None and goal_text(request.goal_id) == goal_text(self._goal_id)
         self._recorder.record("result_request", self._name, known=known)
+        if known:
+            self._say_status()
         response.status = GoalStatus.STATUS_UNKNOWN
         return None if known else response
 
@@ -211,7 +208,15 @@ class ScriptedActionServer:
 
     def _set_status(self, status: int) -> None:
         self._status = status
-        line = GoalStatus(goal_info=GoalInfo(goal_id=self._goal_id), status=status)
+        self._say_status()
+
+    def _say_status(self) -> None:
+        """Tell the goal's status: when it changes later on, and when its client asks for the result.
+
+        Not together with the answer to the goal. The status in a handle that has just come is UNKNOWN, which is 0, and
+        a client that reads it to learn whether its goal was accepted must not be right by chance.
+        """
+        line = GoalStatus(goal_info=GoalInfo(goal_id=self._goal_id), status=self._status)
         self._statuses.publish(GoalStatusArray(status_list=[line]))
 
 
