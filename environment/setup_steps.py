@@ -16,6 +16,7 @@ from typing import IO, TYPE_CHECKING
 from environment import course_process, ros_flavour
 from environment.interface_packages import build_command
 from environment.jupyter_files import kernel_install_options, write_jupyter_files
+from environment.lighter_imports import make_lighter
 from environment.lock import EXTRAS, split_blocks
 from environment.place import INTERFACES, Place, environment_paths, environment_values
 from environment.ros2_command.install import install as install_ros2_command
@@ -62,6 +63,7 @@ class Setup:
             place.environment / "repair_wheels.py",
             *(file for package in place.interfaces for file in files_below(package)),
         )
+        lighter = (place.environment / "lighter_imports.py",)
         start = (place.environment / "course_process.py", place.environment / "place.py")
         ros2 = (place.environment / "ros2_command" / "install.py",)
         jupyter = (place.environment / "jupyter_files.py",)
@@ -70,6 +72,7 @@ class Setup:
         steps = [
             Step("environment", f"making .venv with {python}", kind, self._make_environment),
             Step("packages", self._what_is_installed(), tuple(locks), lambda: self._install(locks)),
+            Step("imports", "making the imports of ROS lighter", lighter, self._make_imports_lighter),
             Step(
                 "interfaces", f"building {self._interfaces()} with colcon", interfaces, self._build_interfaces
             ),
@@ -154,6 +157,12 @@ class Setup:
         command += ["--progress-bar=off", "--no-build-isolation", "--use-pep517", *arguments]
         # A user's setting that installs into the home folder would be refused inside an environment.
         self._run("installing packages", command, PIP_USER="0")
+
+    def _make_imports_lighter(self) -> None:
+        changed = make_lighter(self.place.site_packages)
+        if changed:
+            # For a user who may read this environment and not write to it.
+            self._run("compiling what was changed", [self.place.python, "-m", "compileall", "-q", *changed])
 
     def _build_interfaces(self) -> None:
         place = self.place

@@ -34,7 +34,7 @@ def made_from(step: Step) -> str:
 
 def test_the_order() -> None:
     assert list(steps(with_tests=True)) == [
-        *("environment", "packages", "interfaces", "start", "ros2", "jupyter", "project", "dev"),
+        *("environment", "packages", "imports", "interfaces", "start", "ros2", "jupyter", "project", "dev"),
         *("cluster", "postgresql"),
     ]
 

@@ -7,7 +7,6 @@ another student with the same sources. The box gets it as an archive and sees no
 from __future__ import annotations
 
 import contextlib
-import os
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -24,30 +23,26 @@ if TYPE_CHECKING:
     from autograder.workspaces.building.result import Build
     from autograder.workspaces.sources.packages import Package
 
-VARIABLE = "AUTOGRADER_BUILDS"
-"""Names the socket of the grader's side in a graded notebook's environment."""
 LIMIT = 300.0
 """Seconds of wall time that the grader may take for a build."""
 
 
-def ask(found: Build, chosen: Iterable[Package], install: Path) -> Build | None:
+def ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) -> Build | None:
     """Let the grader build packages of a workspace.
 
     Args:
+        socket: The grader's.
         found: The workspace, looked at.
         chosen: The packages.
         install: Where the build is put; not there yet.
 
     Returns:
-        The build, with its install folder's own path in it wherever it names itself; None where nobody can be asked,
-        or does not want to.
+        The build, with its install folder's own path in it wherever it names itself; None where nobody answers, or
+        does not want to.
     """
-    path = os.environ.get(VARIABLE)
-    if not path:
-        return None
     try:
         collected = collecting.collect_workspace(found.workspace)
-        lines = Lines.to(path, LIMIT)
+        lines = Lines.to(socket, LIMIT)
     except (collecting.BadSources, Hangup):
         return None
     with contextlib.closing(lines), contextlib.suppress(Hangup, NotUnderstood, artefacts.BadArtefacts):

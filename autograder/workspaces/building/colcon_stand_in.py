@@ -12,8 +12,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.workspaces.building.client import VARIABLE
-from autograder.workspaces.building.colcon import build, look
+from autograder.workspaces.building.colcon import GRADERS, build, look
 from autograder.workspaces.building.placing import CannotPlace, place
 from autograder.workspaces.sources.packages import needed
 
@@ -34,7 +33,7 @@ def main(arguments: Sequence[str]) -> int:
     here = Path.cwd()
     chosen = _chosen(arguments)
     found = look(here)
-    if os.environ.get(VARIABLE) and chosen is not None and not found.trouble and not found.unusable:
+    if os.environ.get(GRADERS) and chosen is not None and not found.trouble and not found.unusable:
         option, names = chosen
         if set(names) <= {package.name for package in found.packages}:
             made = build(here, _targets(option, names))

@@ -10,7 +10,6 @@ import shutil
 import stat
 import sys
 from dataclasses import dataclass
-from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
@@ -29,6 +28,7 @@ FORMAT = "1"
 NOT_SOURCES = {"__pycache__", ".git", ".ipynb_checkpoints", ".pytest_cache", ".mypy_cache", ".ruff_cache"}
 """Folders that tools leave among sources."""
 _HIDING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
+_TOOLS = ("colcon_core-", "colcon_cmake-", "colcon_ros-", "setuptools-", "cmake-")
 _ENVIRONMENT = ("CC", "CXX", "CFLAGS", "CXXFLAGS", "LDFLAGS", "CMAKE_GENERATOR", "RMW_IMPLEMENTATION")
 
 
@@ -148,7 +148,6 @@ def key(src: Path, packages: Iterable[Package] | None = None) -> str:
 
 def toolchain() -> tuple[str, ...]:
     """What else decides what a build brings: the interpreter, the build tools, the compiler and the underlay."""
-    tools = ("colcon-core", "colcon-cmake", "colcon-ros", "setuptools", "cmake")
     programs = [
         shutil.which(os.environ.get(name) or usual) or "" for name, usual in (("CC", "cc"), ("CXX", "c++"))
     ]
@@ -156,7 +155,7 @@ def toolchain() -> tuple[str, ...]:
     return (
         sys.version,
         sys.prefix,
-        *(f"{tool} {_version(tool)}" for tool in tools),
+        *_tools(),
         *(f"{program} {_state(program)}" for program in programs),
         f"ros {_state(str(Path(sys.prefix, 'share', 'rosidl_default_generators', 'package.xml')))}",
         os.environ.get("ROS_DISTRO", ""),
@@ -165,11 +164,14 @@ def toolchain() -> tuple[str, ...]:
 
 
 @functools.cache
-def _version(distribution: str) -> str:
-    try:
-        return metadata.version(distribution)
-    except metadata.PackageNotFoundError:
-        return ""
+def _tools() -> tuple[str, ...]:
+    """The build tools and their versions, as the names of their folders have them (PEP 376).
+
+    Asked at each start of a program in a workspace: to import importlib.metadata costs five times as much.
+    """
+    folders = [Path(folder) for folder in sys.path if folder]
+    entries = {entry.name for folder in folders if folder.is_dir() for entry in folder.iterdir()}
+    return tuple(sorted(e for e in entries if e.startswith(_TOOLS) and e.endswith(("dist-info", "egg-info"))))
 
 
 def _state(file: str) -> str:

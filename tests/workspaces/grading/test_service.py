@@ -18,7 +18,7 @@ import pytest
 from autograder.kit.evidence import REPORTS
 from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, Lines
-from autograder.workspaces.building import client, colcon_stand_in
+from autograder.workspaces.building import colcon, colcon_stand_in
 from autograder.workspaces.grading import service, session
 from autograder.workspaces.grading.jobs import BuildJob, Built, ProgramJob
 from autograder.workspaces.grading.plain_jobs import PlainProgram
@@ -390,7 +390,7 @@ def test_a_notebook_s_build_comes_from_the_grader(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.setenv(client.VARIABLE, str(sockets.notebook))
+    monkeypatch.setenv(colcon.GRADERS, str(sockets.notebook))
     monkeypatch.chdir(lab)
     assert colcon_stand_in.main(["build", "--packages-select", "my_robot_pkg"]) == 0
     assert "Finished <<< my_robot_pkg" in capsys.readouterr().out
@@ -409,7 +409,7 @@ def test_a_notebook_s_failed_build_shows_what_colcon_said(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     jobs.built = Built(1, b"SyntaxError: invalid syntax\nFailed   <<< my_robot_pkg\n")
-    monkeypatch.setenv(client.VARIABLE, str(sockets.notebook))
+    monkeypatch.setenv(colcon.GRADERS, str(sockets.notebook))
     monkeypatch.chdir(lab)
     assert colcon_stand_in.main(["build"]) == 1
     assert "SyntaxError" in capsys.readouterr().out

@@ -1,0 +1,90 @@
+"""Make importing rclpy lighter: leave out of it what no node needs.
+
+Each Python program with a node imports, through the generated messages, two things that it never uses:
+
+* ``rosidl_generator_py``, of which a message wants one small function, imports the generator of Python code with
+  its parser and its templates (48 ms of processor time);
+* ``service_msgs/msg/ServiceEventInfo``, which every node has through its type description service, imports numpy
+  (65 ms) for a field that is set only where somebody makes such a message.
+
+Both are imported here when they are asked for. Only the wheels in ``.venv`` are changed, never a ROS that was
+sourced. A file that does not look as expected, as one of a later release may, is left alone.
+
+Only the standard library is used: this runs during the set-up.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_MARK = "# Changed by the set-up of the course (environment/lighter_imports.py): "
+
+
+@dataclass(frozen=True)
+class Lighter:
+    """A module that is to import something later.
+
+    Attributes:
+        file: the module, below site-packages.
+        now: how it imports that now.
+        later: what takes its place.
+    """
+
+    file: str
+    now: re.Pattern[str]
+    later: str
+
+
+MODULES = (
+    Lighter(
+        "rosidl_generator_py/__init__.py",
+        re.compile(r"^try:\n    from \.generate_py_impl import generate_py\n.*\Z", re.MULTILINE | re.DOTALL),
+        _MARK
+        + """the generator is imported where it is used.
+def __getattr__(name):
+    if name == 'generate_py':
+        from .generate_py_impl import generate_py
+        return generate_py
+    raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
+""",
+    ),
+    Lighter(
+        "service_msgs/msg/_service_event_info.py",
+        re.compile(r"^import numpy\b[^\n]*$", re.MULTILINE),
+        _MARK
+        + """numpy is imported where it is used.
+class _Numpy:
+    def __getattr__(self, name):
+        import numpy
+        return getattr(numpy, name)
+
+
+numpy = _Numpy()""",
+    ),
+)
+
+
+def make_lighter(site_packages: Path) -> list[Path]:
+    """Change the modules that are there and not changed yet, and return them.
+
+    Each file is replaced in one step: after an interruption it is the old one or the new one.
+    """
+    changed = []
+    for module in MODULES:
+        path = site_packages / module.file
+        if not path.is_file():
+            continue
+        text = path.read_text(encoding="utf-8")
+        new = module.now.sub(lambda _, module=module: module.later, text, count=1)  # type: ignore[misc]
+        if _MARK not in text and new != text:
+            beside = path.with_name(f"{path.name}.lighter")
+            beside.write_text(new, encoding="utf-8")
+            beside.chmod(path.stat().st_mode)
+            beside.replace(path)
+            changed.append(path)
+    return changed
