@@ -31,12 +31,15 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 
 TOGETHER = ("tests/attacks", "tests/boxes")
 """Folders whose tests share what takes long to make, so that one process runs them all."""
+APART = ("tests/test_recording.py", "tests/authoring/test_new_exercise.py")
+"""Files with long tests that share nothing, so that several processes take them."""
 LONGEST = (
     "tests/judge/test_bank.py",
     "tests/attacks",
     "tests/appeals/test_every_exercise.py",
     "tests/grading/cluster/test_cluster.py",
     "tests/grading/classes/test_sample_class.py",
+    "tests/test_recording.py",
     "tests/grading/test_killed.py",
     "tests/benchmarks/test_short_run.py",
     "tests/grading/running/test_workers.py",
@@ -47,8 +50,11 @@ LONGEST = (
     "tests/grading/classes/test_class_lock.py",
     "tests/workspaces",
     "tests/authoring",
+    "tests/masters/test_run_again.py",
+    "tests/masters/test_programs.py",
+    "tests/test_second_chapter.py",
     "tests/test_adding_an_exercise.py",
-    "tests/test_recording.py",
+    "tests/mutation",
     "tests/grading",
 )
 """Begun first, so that nobody waits for one of them at the end."""
@@ -64,6 +70,8 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
 
         def _split_scope(self, nodeid: str) -> str:
             file = nodeid.split("::")[0]
+            if file in APART:
+                return nodeid
             return next((folder for folder in TOGETHER if file.startswith(f"{folder}/")), file)
 
     config.option.loadscopereorder = False
@@ -72,10 +80,13 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
-    """One process for each core, and one that mostly waits for the bank, which is judged beside all other tests."""
+    """One process for each core, one that waits for the bank, which is judged beside all other tests, and one more.
+
+    Most tests of the rest wait for half of their time: for a kernel, a browser, a robot's pace.
+    """
     from autograder.grading.running.pacing import cores
 
-    return cores() + 1
+    return cores() + 2
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

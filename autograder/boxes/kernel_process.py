@@ -73,6 +73,9 @@ def prepare(*interfaces: str) -> None:
     Args:
         interfaces: The modules with the course's own interfaces. Of the course itself this process sees nothing.
     """
+    # JupyterLab's debugger is of no use where nobody sits before the notebook, and a seventh of what a kernel imports.
+    # ipykernel does without where it is not installed (ipykernel/debugger.py).
+    sys.modules.setdefault("debugpy", None)  # type: ignore[arg-type]
     for name in (*_PRELOADED, *_rehearsed()):
         with contextlib.suppress(Exception):
             module = importlib.import_module(name)
