@@ -19,11 +19,13 @@ ROOT = Path(__file__).resolve().parents[2]
 CHECKED = [
     (master, named.check.exercise, named.check.subject)
     for master in masters(ROOT)
-    for named in named_cells(master)
+    # Parsed once: every process of tests comes by here.
+    for cells in [named_cells(master)]
+    # The first notebook writes no program yet.
+    if any(written_file(other.cell.source) for other in cells)
+    for named in cells
     # Where the subject is a path, the check looks at the files.
     if named.cell.kind is CellRole.CHECK and named.check is not None and not named.check.is_path
-    # The first notebook writes no program yet.
-    if any(written_file(other.cell.source) for other in named_cells(master))
 ]
 each_checked = pytest.mark.parametrize(
     ("master", "exercise", "subject"), CHECKED, ids=[exercise for _, exercise, _ in CHECKED]
