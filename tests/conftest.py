@@ -80,13 +80,13 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
-    """One process for each core, one that waits for the bank, which is judged beside all other tests, and one more.
+    """One process for each core, and one that mostly waits for the bank, which is judged beside all other tests.
 
-    Most tests of the rest wait for half of their time: for a kernel, a browser, a robot's pace.
+    With one more of them the processors were busy all the time, and did each thing more slowly: nothing was gained.
     """
     from autograder.grading.running.pacing import cores
 
-    return cores() + 2
+    return cores() + 1
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

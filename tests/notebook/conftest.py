@@ -174,7 +174,10 @@ def run_cells(as_in_a_notebook: None) -> Callable[..., list[Any]]:
 
     def run(*sources: str, allow_errors: bool = False) -> list[Any]:
         notebook = new_notebook(cells=[new_code_cell(source) for source in sources])
-        NotebookClient(notebook, timeout=LIMIT, allow_errors=allow_errors, kernel_name="python3").execute()
+        # What one print says may come in two pieces, where the kernel has flushed in between; JupyterLab joins them.
+        NotebookClient(
+            notebook, timeout=LIMIT, allow_errors=allow_errors, kernel_name="python3", coalesce_streams=True
+        ).execute()
         return [cell.outputs for cell in notebook.cells]
 
     return run
