@@ -19,6 +19,8 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from environment.replacing import replace_content
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -70,10 +72,7 @@ numpy = _Numpy()""",
 
 
 def make_lighter(site_packages: Path) -> list[Path]:
-    """Change the modules that are there and not changed yet, and return them.
-
-    Each file is replaced in one step: after an interruption it is the old one or the new one.
-    """
+    """Change the modules that are there and not changed yet, each in one step, and return them."""
     changed = []
     for module in MODULES:
         path = site_packages / module.file
@@ -82,9 +81,6 @@ def make_lighter(site_packages: Path) -> list[Path]:
         text = path.read_text(encoding="utf-8")
         new = module.now.sub(lambda _, module=module: module.later, text, count=1)  # type: ignore[misc]
         if _MARK not in text and new != text:
-            beside = path.with_name(f"{path.name}.lighter")
-            beside.write_text(new, encoding="utf-8")
-            beside.chmod(path.stat().st_mode)
-            beside.replace(path)
+            replace_content(path, new.encode())
             changed.append(path)
     return changed

@@ -17,6 +17,8 @@ import sysconfig
 from dataclasses import dataclass
 from pathlib import Path
 
+from environment.replacing import replace_content
+
 _BUILD_PYTHON = r"/opt/python/cp\d+-cp\d+t?"
 _PYTHON_INCLUDE = re.compile(_BUILD_PYTHON + r"/include/python3\.\d+t?")
 _NUMPY_INCLUDE = re.compile(_BUILD_PYTHON + r"/lib/python3\.\d+t?/site-packages/numpy/_?core/include")
@@ -68,8 +70,7 @@ def repaired(text: str, headers: HeaderFolders) -> str:
 def repair(prefix: Path, headers: HeaderFolders) -> list[Path]:
     """Repair every CMake file that the wheels installed below `prefix`, and return those that were changed.
 
-    Each file is replaced in one step: after an interruption it is the old one or the new one, and running
-    again goes on from there.
+    Each file is replaced in one step: after an interruption, running again goes on from there.
 
     Raises:
         RepairError: a file names a folder that this program does not know; the message says which file.
@@ -83,10 +84,7 @@ def repair(prefix: Path, headers: HeaderFolders) -> list[Path]:
         except RepairError as error:
             raise RepairError(f"{path}: {error}") from None
         if new != text:
-            beside = path.with_name(path.name + ".repaired")
-            beside.write_bytes(new.encode("utf-8", "surrogateescape"))
-            beside.chmod(path.stat().st_mode)
-            beside.replace(path)
+            replace_content(path, new.encode("utf-8", "surrogateescape"))
             changed.append(path)
     return changed
 

@@ -85,7 +85,7 @@ def test_a_second_run_changes_nothing(wheels: Path) -> None:
     assert make_lighter(wheels) == []
     assert [path.read_bytes() for path in changed] == texts
     assert {path.stat().st_mode & 0o777 for path in changed} == {0o644}
-    assert not list(wheels.rglob("*.lighter"))
+    assert not list(wheels.rglob("*.new"))
 
 
 def test_a_file_that_looks_otherwise_and_one_that_is_not_there_are_left_alone(tmp_path: Path) -> None:
