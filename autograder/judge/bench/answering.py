@@ -66,7 +66,6 @@ class LateAnswers:
         service: Whose answers.
         seconds: Of wall time from the request to its answer.
         sending: Called with each answer just before it is sent.
-        sent: Called with each answer when it has been sent.
     """
 
     def __init__(
@@ -75,12 +74,11 @@ class LateAnswers:
         seconds: float,
         *,
         sending: Callable[[Any], None],
-        sent: Callable[[Any], None] = lambda _: None,
     ) -> None:
         self._closed = False
         self._send_now = patiently(service, wanted=lambda: not self._closed)
         self._seconds = seconds
-        self._sending, self._sent = sending, sent
+        self._sending = sending
         self._delivering = threading.Lock()
         service.send_response = self._send  # type: ignore[method-assign]
 
@@ -103,4 +101,3 @@ class LateAnswers:
             if not self._closed:
                 self._sending(response)
                 self._send_now(response, header)
-                self._sent(response)

@@ -22,8 +22,6 @@ def imports() -> None:
     """Import the judge, every exercise, the interfaces of the course and their compiled type supports."""
     from autograder import course, exercises
 
-    # An action's goal id is an array of numpy's, which the first one would import.
-    importlib.import_module("numpy")
     for name in ("subjects.command_subject", "subjects.remote_subject", "verdicts.trial"):
         importlib.import_module(f"autograder.judge.{name}")
 

@@ -79,11 +79,12 @@ def _build(found: Build, targets: Targets | None) -> Build:
 
 def _ask_the_grader(found: Build, chosen: Sequence[Package], install: Path) -> Build | None:
     """A build that a graded notebook's grader has made; None where there is no grader, as at every start of a check."""
-    if GRADERS not in os.environ:
+    socket = os.environ.get(GRADERS)
+    if not socket:
         return None
     from autograder.workspaces.building import client
 
-    return client.ask(os.environ[GRADERS], found, chosen, install)
+    return client.ask(socket, found, chosen, install)
 
 
 def failed(found: Build, log: str) -> Build:

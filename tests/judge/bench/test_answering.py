@@ -33,11 +33,10 @@ def test_nobody_there_is_not_waited_for_without_end() -> None:
 
 
 def test_an_answer_is_held_back_as_long_as_it_is_told() -> None:
-    sent: list[int] = []
     told: list[str] = []
     done = threading.Event()
-    held = service(0, sent)
-    LateAnswers(held, 0.3, sending=lambda _: told.append("sending"), sent=lambda _: done.set())
+    held: Any = SimpleNamespace(send_response=lambda *_: done.set())
+    LateAnswers(held, 0.3, sending=lambda _: told.append("sending"))
     began = time.monotonic()
     held.send_response(None, None)
     assert done.wait(180.0)
