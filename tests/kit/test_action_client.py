@@ -1,0 +1,63 @@
+"""In which order the judge's action server answers, sends feedback and ends a goal."""
+
+from __future__ import annotations
+
+import random
+from typing import TYPE_CHECKING, Any, cast
+
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.model import Bench, Pace
+from autograder.kit.recipes.action_client import works_on_a_goal
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.kit.counterparts import ActionCounterpart
+
+
+class PatientClient:
+    """A bench and its action server in one: the client asks for the result when it is waited for, and then ends."""
+
+    pace = Pace.FAST
+    in_a_cell = False
+
+    def __init__(self) -> None:
+        self.random = random.Random(0)
+        self.events: list[Event] = []
+
+    def happens(self, kind: str, **data: Any) -> bool:
+        self.events.append(Event(float(len(self.events)), kind, "/fibonacci", data))
+        return True
+
+    def wait_until(self, condition: Callable[[Evidence], bool], within: float) -> bool:
+        if not self.seen().of("result_request"):
+            self.happens("result_request")
+        return condition(Evidence([self.seen()], Reference("lab_9_1.client", {})))
+
+    def seen(self) -> Part:
+        return Part("a run", {}, self.events)
+
+    def send_feedback(self, **fields: Any) -> None:
+        self.happens("feedback", fields=fields)
+
+    def finish(self, status: str, **fields: Any) -> None:
+        self.happens("result", status=status, fields=fields)
+
+    def await_goal(self, within: float) -> bool:
+        return self.happens("goal_answered")
+
+    def await_result_request(self, within: float) -> bool:
+        return True
+
+    def await_end(self, within: float) -> bool:
+        return True
+
+    def run_time(self, seconds: float) -> bool:
+        return True
+
+
+def test_feedback_begins_when_the_client_has_asked_for_the_result() -> None:
+    client = PatientClient()
+    assert works_on_a_goal(cast("Bench", client), cast("ActionCounterpart", client), "succeeded", 2)
+    kinds = [event.kind for event in client.events]
+    assert kinds == ["goal_answered", "result_request", "feedback", "feedback", "result"]
