@@ -1,6 +1,8 @@
 """The time of one node of the subject's: it is told to follow ``/clock``, hears it, and is asked whether it keeps up.
 
-The answer of its parameter service proves that its executor has turned since the question.
+The answer of its parameter service proves that its executor has turned since the question. An executor takes one
+request of a service in each of its turns (rclpy/executors.py, ``_take_service``), so questions that are asked together
+are answered in as many turns, and cost one journey to the node and back.
 """
 
 from __future__ import annotations
@@ -24,6 +26,12 @@ ANSWER_LIMIT = 0.5
 """Seconds of wall time in which a spinning node answers a question; one that does not is not stepped."""
 PATIENT_ANSWER = 1.5
 """Seconds of wall time after which a node that does not answer is taken not to be spun."""
+TURNS = 3
+"""Turns of an executor after which it has called the timers that a new time makes due.
+
+It takes the time in one and calls the timers in the next. And where it looks at its subscriptions a moment before the
+time arrives, and at its services a moment after the question has, the first turn is about the question alone.
+"""
 _SIM_TIME = "use_sim_time"
 _QUESTION = GetParameters.Request(names=[_SIM_TIME])
 
@@ -56,15 +64,12 @@ class NodeClock:
         return self._wire.node.count_publishers("/clock") > 1
 
     def show(self, now: float) -> bool:
-        """Publish the time, in seconds; whether the node's executor has turned twice since.
-
-        In its first turn it takes the new time, in the second it calls the timers that are due by it.
-        """
+        """Publish the time, in seconds; whether the node's executor has called the timers that are due by it."""
         message = Clock()
         message.clock.sec = int(now)
         message.clock.nanosec = round((now - int(now)) * 1e9)
         self._publisher.publish(message)
-        return all(ask(self._recorder, self._get, _QUESTION, ANSWER_LIMIT) is not None for _ in range(2))
+        return ask(self._recorder, self._get, _QUESTION, ANSWER_LIMIT, turns=TURNS) is not None
 
     def close(self) -> None:
         """Stop publishing and asking."""
@@ -73,17 +78,31 @@ class NodeClock:
         self._wire.node.destroy_client(self._get)
 
 
-def ask(recorder: Recorder, client: Any, request: Any, limit: float) -> Any:
-    """The answer of a service of the subject's, or None where its executor does not turn within ``limit`` seconds."""
+def ask(recorder: Recorder, client: Any, request: Any, limit: float, *, turns: int = 1) -> Any:
+    """The answer of a service of the subject's, or None where its executor does not turn in time.
+
+    Args:
+        recorder: What wakes up a wait.
+        client: Of the service.
+        request: What is asked.
+        limit: Seconds of wall time for each turn.
+        turns: Turns that the executor must make: the request is sent so often at once, and the last answer counts.
+    """
     if not recorder.wait(client.service_is_ready, limit, poll=0.005):
         return None
-    future = client.call_async(request)
+    futures = [client.call_async(request) for _ in range(turns)]
+    return futures[-1].result() if all(_is_there(future, limit) for future in futures) else None
+
+
+def _is_there(future: Any, limit: float) -> bool:
+    if future.done():
+        return True
     done = threading.Event()
     future.add_done_callback(lambda _: done.set())
     patience = Patience(limit)
     while not done.is_set() and (left := patience.left) > 0:
         done.wait(left)
-    return future.result() if done.is_set() else None
+    return done.is_set()
 
 
 def answers(wire: Wire, recorder: Recorder, node: NodeName, limit: float = PATIENT_ANSWER) -> bool:

@@ -1,0 +1,104 @@
+"""The clock of a subject's node: when the judge goes on to the next step, the timers of this one have been called."""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+
+from autograder.judge.bench import node_clock
+from autograder.judge.bench.graph import NodeName
+from autograder.judge.bench.node_clock import NodeClock
+from autograder.judge.bench.recorder import Recorder
+from autograder.judge.bench.wire import Wire
+from autograder.judge.serving import domain
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+pytestmark = pytest.mark.ros
+
+OFF_THE_PROCESSOR = 0.03
+"""Seconds after each answer in which the judge may ask again, or go on."""
+
+
+class QuestionFirst(SingleThreadedExecutor):
+    """Sees a question before the time that was published before it, as may happen where both arrive while it looks.
+
+    After each answer it is off the processor for a moment.
+    """
+
+    asked = False
+
+    def can_execute(self, entity: Any) -> bool:
+        if getattr(entity, "topic_name", "").endswith("/clock"):
+            return self.asked and super().can_execute(entity)
+        return super().can_execute(entity)
+
+    def watch(self, node: Node) -> None:
+        """Be off the processor after each question about a parameter."""
+        service = next(s for s in node.services if s.service_name.endswith("/get_parameters"))
+        answer: Callable[..., Any] = service.callback
+
+        def answer_and_pause(request: Any, response: Any) -> Any:
+            self.create_task(self._pause)
+            return answer(request, response)
+
+        service.callback = answer_and_pause
+
+    def miss_the_next_time(self) -> None:
+        """See the next time only when there was another question."""
+        done = threading.Event()
+
+        def begin() -> None:
+            self.asked = False
+            done.set()
+
+        # Behind the pauses that are due.
+        self.create_task(begin)
+        done.wait()
+
+    def _pause(self) -> None:
+        time.sleep(OFF_THE_PROCESSOR)
+        self.asked = True
+
+
+def test_the_timers_of_a_step_are_called_before_the_next_one_where_a_question_overtakes_the_time(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(node_clock, "ANSWER_LIMIT", 30.0)
+    fired: list[float] = []
+    with domain.lease() as domain_id, Wire(domain_id) as wire:
+        context = Context()
+        context.init(domain_id=domain_id)
+        node = Node("subject", context=context)
+        executor = QuestionFirst(context=context)
+        executor.add_node(node)
+        executor.watch(node)
+
+        def on_timer() -> None:
+            fired.append(round(node.get_clock().now().nanoseconds / 1e9, 3))
+
+        thread = threading.Thread(target=executor.spin, daemon=True)
+        thread.start()
+        clock = NodeClock(wire, Recorder(), NodeName("subject", "/"))
+        try:
+            assert clock.follow(True)
+            assert clock.is_heard()
+            assert clock.show(100.0)
+            node.create_timer(1.0, on_timer)
+            for now in (101.0, 102.0, 103.0):
+                executor.miss_the_next_time()
+                assert clock.show(now)
+                assert fired[-1:] == [now]
+        finally:
+            clock.close()
+            executor.shutdown()
+            thread.join()
+            node.destroy_node()
+            context.try_shutdown()
