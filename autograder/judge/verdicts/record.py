@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 SEED = "reference"
 """Recording draws the same inputs each time."""
 LOOKS = 10
-"""What a busy machine has blurred is looked at again, so often in all: three in ten are, where twenty are recorded at
-once on two processors."""
+"""What a busy machine has blurred is looked at again, so often in all. With three looks, 1 recording of 36 was given up
+where eighteen were made at once on two processors."""
 
 
 class NotRecordable(RuntimeError):
