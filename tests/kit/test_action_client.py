@@ -30,8 +30,6 @@ class PatientClient:
         return True
 
     def wait_until(self, condition: Callable[[Evidence], bool], within: float) -> bool:
-        if not self.seen().of("result_request"):
-            self.happens("result_request")
         return condition(Evidence([self.seen()], Reference("lab_9_1.client", {})))
 
     def seen(self) -> Part:
@@ -47,7 +45,7 @@ class PatientClient:
         return self.happens("goal_answered")
 
     def await_result_request(self, within: float) -> bool:
-        return True
+        return bool(self.seen().of("result_request")) or self.happens("result_request")
 
     def await_end(self, within: float) -> bool:
         return True

@@ -1,7 +1,7 @@
 """Simulated time: the judge publishes ``/clock`` and steps it, so that seconds cost milliseconds.
 
-Each step is followed by a question to the subject's parameter service. The answer proves that its executor has turned
-since the step, so the result does not depend on how busy the machine is. What does not follow the clock (a
+Each step is followed by questions to the subject's parameter service. The answers prove that its executor has called
+the timers of the step, so the result does not depend on how busy the machine is. What does not follow the clock (a
 ``time.sleep``, a loop that spins only now and then) shows itself: it publishes while the clock stands still, or its
 executor is slow to answer; the caller then looks again in real time.
 """

@@ -124,7 +124,7 @@ def works_on_a_goal(bench: Bench, server: ActionCounterpart, status: str, feedba
         wait = SHOWN_WITHIN[bench.pace]
         # The first feedback must not come together with the goal's answer: what a client that takes in one event and
         # ends has then would be chance. Who goes on asks for the result next.
-        bench.wait_until(lambda seen: seen.main.first("result_request") is not None, wait)
+        server.await_result_request(wait)
         for count in range(3, 3 + feedbacks):
             server.send_feedback(partial_sequence=numbers[:count])
             if not bench.wait_until(lambda seen: not unshown_feedback(seen.main), wait):

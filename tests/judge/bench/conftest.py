@@ -1,13 +1,16 @@
-"""A bench with a program as its subject."""
+"""A bench with a program as its subject, and a node of a subject's in this process."""
 
 from __future__ import annotations
 
 import contextlib
 import sys
+import threading
 from random import Random
 from typing import TYPE_CHECKING
 
 import pytest
+from rclpy.context import Context
+from rclpy.node import Node
 
 from autograder.judge.bench.bench import TestBench
 from autograder.judge.serving import domain
@@ -19,8 +22,12 @@ if TYPE_CHECKING:
     from contextlib import AbstractContextManager
     from pathlib import Path
 
+    from rclpy.executors import Executor
+
     from autograder.kit.evidence import Reference
 
+    SubjectNode = Callable[[int], AbstractContextManager[Node]]
+    Spun = Callable[[Executor, Node], AbstractContextManager[None]]
     BenchOf = Callable[[str, Reference], AbstractContextManager[TestBench]]
 
 
@@ -41,3 +48,39 @@ def bench_of(tmp_path: Path) -> BenchOf:
                 yield bench
 
     return opened
+
+
+@pytest.fixture
+def subject_node() -> SubjectNode:
+    """Makes the node ``/subject`` on a domain, in a context of its own; leaving it takes it off the graph."""
+
+    @contextlib.contextmanager
+    def made(domain_id: int) -> Iterator[Node]:
+        context = Context()
+        context.init(domain_id=domain_id)
+        node = Node("subject", context=context)
+        try:
+            yield node
+        finally:
+            node.destroy_node()
+            context.try_shutdown()
+
+    return made
+
+
+@pytest.fixture
+def spun() -> Spun:
+    """Has an executor spin a node in a thread, until it is left."""
+
+    @contextlib.contextmanager
+    def spinning(executor: Executor, node: Node) -> Iterator[None]:
+        executor.add_node(node)
+        thread = threading.Thread(target=executor.spin, daemon=True)
+        thread.start()
+        try:
+            yield
+        finally:
+            executor.shutdown()
+            thread.join()
+
+    return spinning

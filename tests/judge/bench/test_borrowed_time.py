@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import threading
 import time
 from contextlib import closing
+from typing import TYPE_CHECKING
 
 import pytest
-from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.node import Node
 
 from autograder.judge.bench.borrowed_time import BorrowedTime
 from autograder.judge.bench.graph import NodeName
@@ -17,21 +15,19 @@ from autograder.judge.bench.recorder import Recorder
 from autograder.judge.bench.wire import Wire
 from autograder.judge.serving import domain
 
+if TYPE_CHECKING:
+    from conftest import Spun, SubjectNode
+
 pytestmark = pytest.mark.ros
 
 
-def test_timers_fire_as_they_would_later_on_and_the_clock_is_given_back() -> None:
+def test_timers_fire_as_they_would_later_on_and_the_clock_is_given_back(
+    subject_node: SubjectNode, spun: Spun
+) -> None:
     fired: list[float] = []
-    with domain.lease() as domain_id, Wire(domain_id) as wire:
-        context = Context()
-        context.init(domain_id=domain_id)
-        node = Node("subject", context=context)
+    with domain.lease() as domain_id, Wire(domain_id) as wire, subject_node(domain_id) as node:
         node.create_timer(20.0, lambda: fired.append(node.get_clock().now().nanoseconds / 1e9))
-        executor = SingleThreadedExecutor(context=context)
-        executor.add_node(node)
-        thread = threading.Thread(target=executor.spin, daemon=True)
-        thread.start()
-        try:
+        with spun(SingleThreadedExecutor(context=node.context), node):
             began = time.time()
             with closing(BorrowedTime(wire, Recorder(), NodeName("subject", "/"))) as borrowed:
                 # A machine that is busy for half a second ends it before its time; the judge then waits instead.
@@ -40,21 +36,13 @@ def test_timers_fire_as_they_would_later_on_and_the_clock_is_given_back() -> Non
             assert all(moment - began >= 19.0 for moment in fired)
             assert not node.get_parameter("use_sim_time").value
             assert abs(node.get_clock().now().nanoseconds / 1e9 - time.time()) < 5.0
-        finally:
-            executor.shutdown()
-            thread.join()
-            node.destroy_node()
-            context.try_shutdown()
 
 
-def test_who_is_not_spun_does_not_go_along() -> None:
-    with domain.lease() as domain_id, Wire(domain_id) as wire:
-        context = Context()
-        context.init(domain_id=domain_id)
-        node = Node("subject", context=context)
-        try:
-            with closing(BorrowedTime(wire, Recorder(), NodeName("subject", "/"))) as borrowed:
-                assert not borrowed.let_pass(5.0, lambda: False)
-        finally:
-            node.destroy_node()
-            context.try_shutdown()
+def test_who_is_not_spun_does_not_go_along(subject_node: SubjectNode) -> None:
+    with (
+        domain.lease() as domain_id,
+        Wire(domain_id) as wire,
+        subject_node(domain_id),
+        closing(BorrowedTime(wire, Recorder(), NodeName("subject", "/"))) as borrowed,
+    ):
+        assert not borrowed.let_pass(5.0, lambda: False)

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import threading
 import time
+from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.node import Node
 
 from autograder.judge.bench import node_clock
 from autograder.judge.bench.graph import NodeName
@@ -20,6 +19,9 @@ from autograder.judge.serving import domain
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from conftest import Spun, SubjectNode
+    from rclpy.node import Node
 
 pytestmark = pytest.mark.ros
 
@@ -69,25 +71,18 @@ class QuestionFirst(SingleThreadedExecutor):
 
 
 def test_the_timers_of_a_step_are_called_before_the_next_one_where_a_question_overtakes_the_time(
-    monkeypatch: pytest.MonkeyPatch,
+    subject_node: SubjectNode, spun: Spun, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(node_clock, "ANSWER_LIMIT", 30.0)
     fired: list[float] = []
-    with domain.lease() as domain_id, Wire(domain_id) as wire:
-        context = Context()
-        context.init(domain_id=domain_id)
-        node = Node("subject", context=context)
-        executor = QuestionFirst(context=context)
-        executor.add_node(node)
+    with domain.lease() as domain_id, Wire(domain_id) as wire, subject_node(domain_id) as node:
+        executor = QuestionFirst(context=node.context)
         executor.watch(node)
 
         def on_timer() -> None:
             fired.append(round(node.get_clock().now().nanoseconds / 1e9, 3))
 
-        thread = threading.Thread(target=executor.spin, daemon=True)
-        thread.start()
-        clock = NodeClock(wire, Recorder(), NodeName("subject", "/"))
-        try:
+        with spun(executor, node), closing(NodeClock(wire, Recorder(), NodeName("subject", "/"))) as clock:
             assert clock.follow(True)
             assert clock.is_heard()
             assert clock.show(100.0)
@@ -96,9 +91,3 @@ def test_the_timers_of_a_step_are_called_before_the_next_one_where_a_question_ov
                 executor.miss_the_next_time()
                 assert clock.show(now)
                 assert fired[-1:] == [now]
-        finally:
-            clock.close()
-            executor.shutdown()
-            thread.join()
-            node.destroy_node()
-            context.try_shutdown()
