@@ -233,6 +233,8 @@ def only_if_ended(recognise: Callable[[Evidence], Advice | None]) -> Callable[[E
 
 def _not_written(evidence: Evidence) -> Advice | None:
     part = evidence.main
+    if part.logged_and_ended:  # it may be gone before the graph tells of its endpoints
+        return None
     nodes = any(survey.data.get("nodes") for survey in part.of("interface"))
     returned = part.ending is not None and part.ending.name == "returned" and not part.said()
     if not (nodes or returned) or any(part.endpoints(role) for role in _WORD):
@@ -270,6 +272,9 @@ def _nothing_on_the_graph(evidence: Evidence) -> Advice | None:
     if any(
         part.of("log") or part.of("request") or part.of("goal") or part.of("message") for part in evidence
     ):
+        return None
+    # It may be gone before the graph tells of its node.
+    if any(part.logged_and_ended for part in evidence):
         return None
     return Advice(
         "No node of yours appeared on the graph.",

@@ -67,6 +67,12 @@ class Part:
         return found
 
     @property
+    def logged_and_ended(self) -> bool:
+        """Whether it ended by itself after a line that its terminal shows as a logger's, and not ROS's own."""
+        lines = [event for event in self.of("output") if _logger_of(event)]
+        return self.ending is not None and any(spoken_by(line) is not None for line in lines)
+
+    @property
     def ending(self) -> Event | None:
         """How the subject ended by itself: an event named ``exited``, ``returned`` or ``raised``; or None."""
         return next((e for e in self.events if e.kind == "subject" and e.name in _ENDINGS), None)
@@ -146,18 +152,30 @@ def spoken_by(event: Event) -> str | None:
     """What the subject said with an event, without what its terminal puts before it; None where it said nothing."""
     if event.kind in ("log", "output"):
         text = str(event.data["text"])
-        prefix = _PREFIX.match(text) if text.startswith("[") else None
-        logger = event.name if event.kind == "log" else prefix["logger"] if prefix else ""
+        logger = _logger_of(event)
         if (
             text.startswith((*REPORTS, _ROS2_RUN))
             or (logger and _is_a_library(logger))
             or _is_the_middlewares(text)
         ):
             return None
+        prefix = _prefix_of(text)
         return text[prefix.end() :] if prefix else text
     if event.kind == "subject" and event.name == "returned" and event.data.get("value") is not None:
         return str(event.data["value"])
     return None
+
+
+def _logger_of(event: Event) -> str:
+    """Who logged a line; empty where it was only printed."""
+    if event.kind == "log":
+        return event.name
+    prefix = _prefix_of(str(event.data["text"])) if event.kind == "output" else None
+    return prefix["logger"] if prefix else ""
+
+
+def _prefix_of(text: str) -> Any:
+    return _PREFIX.match(text) if text.startswith("[") else None
 
 
 @functools.lru_cache(maxsize=256)

@@ -75,6 +75,28 @@ def test_a_talker_that_spoke_for_a_while_did_not_publish_all_at_once_whatever_wa
     assert first == "ended_too_early"
 
 
+NODE_ONLY = Event(0.2, "interface", "graph", {"nodes": ["/node"]})
+
+
+@pytest.mark.parametrize("seen", [[], [NODE_ONLY], [NODE_ONLY, _interface("service")]])
+def test_a_node_that_logs_and_ends_is_told_the_same_whatever_the_graph_showed_of_it(
+    seen: list[Event],
+) -> None:
+    logged = Event(0.3, "output", "stderr", {"text": "[INFO] [1732200000.123456789] [server]: Ready."})
+    ended = Event(0.4, "subject", "exited", {"code": 0})
+    evidence = Evidence([Part("serving", {}, [*seen, logged, ended])], Reference("lab_1_3.server", {}))
+    first = next(mistake.key for mistake in common.NOTHING_THERE if mistake.recognise(evidence))
+    assert first == "ended_too_early"
+
+
+def test_a_program_that_only_prints_and_ends_has_no_node() -> None:
+    printed = Event(0.3, "output", "stdout", {"text": "Ready."})
+    ended = Event(0.4, "subject", "exited", {"code": 0})
+    evidence = Evidence([Part("serving", {}, [printed, ended])], Reference("lab_1_3.server", {}))
+    first = next(mistake.key for mistake in common.NOTHING_THERE if mistake.recognise(evidence))
+    assert first == "nothing_on_the_graph"
+
+
 @pytest.mark.parametrize("heard", [[], [_message(1)]])
 def test_a_deaf_talker_is_told_and_earns_the_same_whether_its_only_text_was_heard(heard: list[Event]) -> None:
     stack = 'Thread 0x1 (most recent call first):\n  File "/x/rclpy/executors.py", line 1 in spin\n'

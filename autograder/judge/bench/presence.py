@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from autograder.judge.bench import graph
+from autograder.judge.bench.patience import Patience
 from autograder.judge.bench.settling import Settling
 
 if TYPE_CHECKING:
@@ -22,8 +23,11 @@ if TYPE_CHECKING:
     Counterparts = Mapping[str, RecordedSubscription | RecordedPublisher]
 
 APPEAR = 12.0
-"""Seconds of wall time in which a subject that runs must show up on the graph at all. Generous: starting slowly is
+"""Seconds of patience in which a subject that runs must show up on the graph at all. Generous: starting slowly is
 not wrong, and a program needs a quarter of a second."""
+AT_WORK = 2
+"""How often, in one look, a subject gets that patience anew because it went on starting processes: a command may build
+its package before it runs the program. It is a limit, since others start processes for ever."""
 MATCH = 5.0
 """Seconds in which two endpoints that fit must have met."""
 GRAPH_POLL = 0.004
@@ -51,6 +55,7 @@ class Presence:
         self._recorder = recorder
         self._subject = subject
         self._settled = settled
+        self._again = AT_WORK
 
     def survey(self) -> graph.Interface:
         """The subject's endpoints as they are now."""
@@ -102,7 +107,7 @@ class Presence:
             nodes[:] = self.nodes()
             return bool(nodes)
 
-        self._recorder.wait(lambda: there() or self._subject.ended, APPEAR, poll=GRAPH_POLL)
+        self._await_appearance(lambda: there() or self._subject.ended)
         self.note_interface()
         return bool(nodes)
 
@@ -139,9 +144,31 @@ class Presence:
                 return True
             return marker is None and settled.unchanged(interface, len(self.nodes()))
 
-        self._recorder.wait(over, APPEAR, poll=GRAPH_POLL)
+        self._await_appearance(over)
         self.note_interface(interface)
         return interface
+
+    def _await_appearance(self, condition: Callable[[], bool]) -> None:
+        """Wait for what a subject shows when it has started; one that still starts processes is at work until then."""
+        patience = Patience(APPEAR)
+        # What runs a command starts it at once. Whatever begins in the second half tells of work.
+        earlier: frozenset[int] | None = None
+
+        def overdue() -> bool:
+            nonlocal earlier
+            left = patience.left
+            if left <= APPEAR / 2 and earlier is None:
+                earlier = self._subject.processes()
+            if left > 0 or earlier is None:
+                return False
+            if not self._again or self._subject.processes() <= earlier:
+                return True
+            self._again -= 1
+            patience.restart()
+            earlier = None
+            return False
+
+        self._recorder.wait(lambda: condition() or overdue(), (AT_WORK + 2) * APPEAR, poll=GRAPH_POLL)
 
     # --- writing down --------------------------------------------------------------------------------------
 

@@ -167,6 +167,12 @@ class CommandSubject(InOwnProcesses):
         """Whether the command has exited and all it printed was read."""
         return self._done.is_set()
 
+    def processes(self) -> frozenset[int]:
+        """The ids of the processes that the command has started and that live."""
+        return (
+            frozenset(process.pid for process in _below(self._process.pid)) if self._process else frozenset()
+        )
+
     def stack(self) -> str:
         """Abort the command: Python's faulthandler, which its environment has switched on, prints the stacks.
 

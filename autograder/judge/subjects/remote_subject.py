@@ -115,6 +115,10 @@ class RemoteSubject:
         """Whether the function has returned or something was raised, or the notebook is gone."""
         return self._ended or self._gone.is_set()
 
+    def processes(self) -> frozenset[int]:
+        """Nobody can tell: it runs in the notebook's kernel, beside whatever else that has started."""
+        return frozenset()
+
     @property
     def marker(self) -> str | None:
         """The topic that the notebook made after the subject's constructor had ended."""

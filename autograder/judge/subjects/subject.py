@@ -62,6 +62,10 @@ class Subject(Protocol):
         """A topic that appears on the graph after everything the subject made; None where nobody can know."""
         ...
 
+    def processes(self) -> frozenset[int]:
+        """The ids of the processes that it has started and that live; none where nobody can tell."""
+        ...
+
     def stack(self) -> str:
         """Where each of its threads is, innermost call first, as faulthandler says it; empty where nobody can tell.
 
@@ -80,6 +84,10 @@ class InOwnProcesses:
     shares_participant = False
     keeper = ""
     marker = None
+
+    def processes(self) -> frozenset[int]:
+        """Nobody can tell, where they are not this process's children."""
+        return frozenset()
 
     def renew(self) -> None:
         """The next run has a participant of its own in any case."""

@@ -6,7 +6,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from autograder.judge.bench.bench import TestBench
-from autograder.judge.verdicts.trial import look
+from autograder.judge.verdicts.trial import is_certain, judge, look
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.launch_report import processes
 from autograder.kit.model import Exercise, Pace
@@ -30,19 +30,35 @@ class NotRecordable(RuntimeError):
 def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference:
     """Look at the reference solution's interface, then run the scenario on it.
 
+    As with any subject, a fast look that fails proves nothing unless the mistake is certain: on a busy machine a goal
+    may be over before it is canceled, or the first message lost before the judge could hear it. So it is looked at
+    again.
+
+    Returns:
+        The recording. Where the solution was right in none of the looks, it is the last one, by which it is not.
+
     Raises:
-        NotRecordable: It never had an endpoint of the exercise's roles, or it is not right by its own
-            measure.
+        NotRecordable: It never had an endpoint of the exercise's roles, or each look was doubtful.
     """
     subject.begin(domain_id)
     interface = _interface(exercise, subject, domain_id)
     if exercise.roles and not any(interface.get(role) for role in exercise.roles):
         raise NotRecordable(f"{exercise.id}: the reference solution showed no {' or '.join(exercise.roles)}")
     bare = Reference(exercise.id, interface)
+    wrong: Reference | None = None
     for _ in range(LOOKS):
         seen = look(exercise, subject, bare, Pace.FAST, seed=SEED, domain_id=domain_id)
-        if not seen.doubtful:
-            return Reference(exercise.id, interface, seen.evidence.parts)
+        if seen.doubtful:
+            continue
+        recorded = Reference(exercise.id, interface, seen.evidence.parts)
+        evidence = as_evidence(recorded)
+        if judge(exercise, evidence, SEED).passed:
+            return recorded
+        wrong = recorded
+        if is_certain(exercise, evidence):
+            break
+    if wrong is not None:
+        return wrong
     raise NotRecordable(
         f"{exercise.id}: the reference solution did not follow the clock, or asked to cancel at another moment in "
         "each run; is the machine busy?"

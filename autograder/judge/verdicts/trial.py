@@ -66,7 +66,7 @@ def check(
         with limited():
             verdict = judge(exercise, evidence, seed)
             again = exercise.second_look and (seen.doubtful or not verdict.passed)
-            again = again and not _is_certain(exercise, evidence)
+            again = again and not is_certain(exercise, evidence)
         if again:
             evidence = _look_again(exercise, subject, reference, seen, seed=seed, domain_id=domain_id)
             with limited():
@@ -167,7 +167,8 @@ def _recognised(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice
     return None
 
 
-def _is_certain(exercise: Exercise, evidence: Evidence) -> bool:
+def is_certain(exercise: Exercise, evidence: Evidence) -> bool:
+    """Whether the evidence proves a mistake whatever the machine's load was."""
     found = _recognised(exercise, evidence)
     return found is not None and found[0].certain
 

@@ -1,16 +1,17 @@
-"""What the graph tells is asked in the order in which it is announced."""
+"""What the graph tells is asked in the order in which it is announced, and who is still at work is waited for."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
+import pytest
+
 from autograder.judge.bench import graph
-from autograder.judge.bench.presence import Presence
+from autograder.judge.bench import presence as presence_module
+from autograder.judge.bench.presence import AT_WORK, Presence
 from autograder.judge.bench.recorder import Recorder
 
 if TYPE_CHECKING:
-    import pytest
-
     from autograder.judge.subjects.subject import Subject
 
 TOPIC, TYPE = "/chatter", "std_msgs/msg/String"
@@ -45,3 +46,45 @@ def test_a_publisher_that_comes_with_the_sign_that_all_is_made_is_seen(
     presence = Presence(cast("Any", None), recorder, cast("Subject", _ASubject()), settled=1.0)
     assert presence.await_endpoint("publisher", TOPIC)
     assert recorder.part().endpoints("publisher") == {TOPIC: TYPE}
+
+
+class _ACommand:
+    """One that builds, or hangs, before it makes its publisher."""
+
+    shares_participant, keeper, marker, ended = False, "", None, False
+
+    def __init__(self, works_for: int) -> None:
+        self.asked, self._works_for = 0, works_for
+
+    def processes(self) -> frozenset[int]:
+        """Asked twice in each span of patience; in those in which it works, another process lives then."""
+        self.asked += 1
+        return frozenset({self.asked if self.asked <= 2 * self._works_for else 0})
+
+
+@pytest.mark.parametrize(
+    ("works_for", "publishes_after", "appears", "spans"),
+    [
+        pytest.param(AT_WORK, AT_WORK, True, AT_WORK, id="it builds and then publishes"),
+        pytest.param(0, 99, False, 1, id="it hangs: nothing more is waited for"),
+        pytest.param(99, 99, False, AT_WORK + 1, id="it starts processes for ever"),
+    ],
+)
+def test_who_goes_on_starting_processes_is_waited_for(
+    monkeypatch: pytest.MonkeyPatch, works_for: int, publishes_after: int, appears: bool, spans: int
+) -> None:
+    subject = _ACommand(works_for)
+
+    def survey(_: Any) -> graph.Interface:
+        empty: graph.Interface = {role: {} for role in graph.ROLES}
+        return {**empty, "publisher": {TOPIC: TYPE}} if subject.asked >= 2 * publishes_after else empty
+
+    monkeypatch.setattr(presence_module, "APPEAR", 0.2)
+    monkeypatch.setattr(graph, "survey", survey)
+    monkeypatch.setattr(graph, "subject_nodes", lambda *_: [])
+    monkeypatch.setattr(graph, "topic_ends", lambda *_: [])
+    recorder = Recorder()
+    recorder.begin("a part", {})
+    presence = Presence(cast("Any", None), recorder, cast("Subject", subject), settled=1.0)
+    assert presence.await_endpoint("publisher", TOPIC) is appears
+    assert (subject.asked + 1) // 2 == spans

@@ -153,3 +153,20 @@ def test_a_command_that_does_not_exist_is_named() -> None:
     subject.begin(1)
     with pytest.raises(CannotStart, match="no-such-program"):
         subject.start(Recorder(), (), {})
+
+
+def test_the_processes_that_a_command_started_are_known() -> None:
+    program = (
+        "import subprocess, sys\n"
+        "child = subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(600)'])\n"
+        "print(child.pid)\n"
+        "child.wait()"
+    )
+
+    def look(subject: CommandSubject, recorder: Recorder) -> None:
+        assert recorder.wait(lambda: recorder.part().said() != [], 60.0)
+        recorder.record("output", "found", text=",".join(map(str, subject.processes())))
+        subject.stop()
+
+    started, found = _part(look, program).said()
+    assert found == started

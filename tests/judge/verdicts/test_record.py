@@ -1,0 +1,85 @@
+"""A recording is a look in which nothing was blurred: what a busy machine has blurred is looked at again."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import pytest
+
+from autograder.judge.verdicts import record
+from autograder.judge.verdicts.trial import Seen
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+def _has_first(evidence: Evidence) -> Finding:
+    first = evidence.main.of("message")[0].data["number"]
+    return Finding(first == 1, "1", str(first))
+
+
+def _never_right(evidence: Evidence) -> Advice | None:
+    return Advice("It says 0.", "Say 1.") if evidence.main.of("message")[0].data["number"] == 0 else None
+
+
+EXERCISE = Exercise(
+    "lab_9_1.talker",
+    "",
+    "",
+    lambda _: None,
+    (Criterion("first", "Begins at 1", 10, _has_first),),
+    (Mistake("wrong_number", _never_right, certain=True),),
+    (),
+)
+
+
+class _Looks:
+    """Looks that show a first message of these numbers; None for one that is doubtful."""
+
+    def __init__(self, *numbers: int | None) -> None:
+        self.taken = 0
+        self._numbers: Iterator[int | None] = iter(numbers)
+
+    def __call__(
+        self, _exercise: Exercise, _subject: object, reference: Reference, *_: Any, **__: Any
+    ) -> Seen:
+        number = next(self._numbers)
+        self.taken += 1
+        message = Event(0.5, "message", "/chatter", {"number": number})
+        return Seen(Evidence([Part("talking", {}, [message])], reference), number is None)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "recorded", "looks"),
+    [
+        pytest.param((1,), 1, 1, id="clear at once"),
+        pytest.param(
+            (2, None, 1), 1, 3, id="the first message was lost once, and once it did not follow the clock"
+        ),
+        pytest.param((2,) * record.LOOKS, 2, record.LOOKS, id="never right"),
+        pytest.param((0,), 0, 1, id="surely wrong"),
+    ],
+)
+def test_a_blurred_look_is_followed_by_another(
+    monkeypatch: pytest.MonkeyPatch, numbers: tuple[int | None, ...], recorded: int, looks: int
+) -> None:
+    taken = _record(monkeypatch, look := _Looks(*numbers))
+    assert taken.parts[0].events[0].data["number"] == recorded
+    assert look.taken == looks
+
+
+def test_what_was_doubtful_each_time_is_not_recorded(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(record.NotRecordable, match="is the machine busy"):
+        _record(monkeypatch, _Looks(*(None,) * record.LOOKS))
+
+
+def _record(monkeypatch: pytest.MonkeyPatch, look: _Looks) -> Reference:
+    class Subject:
+        def begin(self, _: int) -> None:
+            pass
+
+    monkeypatch.setattr(record, "look", look)
+    monkeypatch.setattr(record, "_interface", lambda *_: {})
+    return record.record(EXERCISE, cast("Any", Subject()), domain_id=1)
