@@ -6,7 +6,10 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import nbformat
 import pytest
+
+from autograder.grading.returning.page_exporter import PageExporter
 
 sys.path.insert(0, str(Path(__file__).parent))
 from open_notebook import OpenNotebook, look
@@ -43,6 +46,21 @@ def test_the_course_page_fits(page: Page, lab: str, scheme: str, width: int) -> 
     page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
     page.goto(lab.format("course"))
     look(page, f"course-{width}-{scheme}")
+    assert page.evaluate(TOO_WIDE) <= 0
+
+
+@pytest.mark.parametrize("width", [WIDTH, 1100])
+def test_the_figures_of_a_feedback_page_fit(page: Page, chapters: Path, tmp_path: Path, width: int) -> None:
+    notebook = nbformat.read(chapters / "01_ros2_fundamentals" / "lab_1_2.ipynb", as_version=4)
+    for cell in notebook.cells:
+        cell.metadata.setdefault("nbgrader", {}).update(score=2.0, points=2.0)
+    names = {"notebook": "lab_1_2", "score": 30.0, "max_score": 30.0, "late_penalty": 0.0}
+    file = tmp_path / "lab_1_2.html"
+    file.write_text(PageExporter().page(notebook, names), encoding="utf-8")
+    page.set_viewport_size({"width": width, "height": 900})
+    page.goto(file.as_uri())
+    look(page, f"feedback-{width}")
+    assert page.locator("img").count() > 0
     assert page.evaluate(TOO_WIDE) <= 0
 
 

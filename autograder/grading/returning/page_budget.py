@@ -9,6 +9,8 @@ alike.
 
 from __future__ import annotations
 
+import contextlib
+import gc
 import time
 from typing import TYPE_CHECKING
 
@@ -17,7 +19,7 @@ from autograder.grading.returning.page_limits import HARMLESS_LENGTH
 from autograder.judge.verdicts.deciding import Undecided, limited
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
 SECONDS = 0.5
 """Of processor time for a notebook; what students usually write takes a few hundredths."""
@@ -35,10 +37,16 @@ def too_costly(cells: Sequence[Cell], seconds: float = SECONDS) -> tuple[int, ..
     own = [(place, cell) for place, cell in enumerate(cells) if cell.own and cell.source]
     if sum(len(cell.source) for _, cell in own) <= HARMLESS_LENGTH:
         return ()
+    with _without_collector():
+        return _beyond(seconds, own)
+
+
+def _beyond(seconds: float, cells: Sequence[tuple[int, Cell]]) -> tuple[int, ...]:
+    """The places of the first cell that goes beyond the budget, and of all behind it."""
     render = _renderer()
     found = []
     left = seconds
-    for place, cell in own:
+    for place, cell in cells:
         began = time.thread_time()
         try:
             if left <= 0:
@@ -50,6 +58,18 @@ def too_costly(cells: Sequence[Cell], seconds: float = SECONDS) -> tuple[int, ..
             left = 0.0
         left -= time.thread_time() - began
     return tuple(found)
+
+
+@contextlib.contextmanager
+def _without_collector() -> Iterator[None]:
+    """Collects no garbage: it would go through what earlier notebooks have left, and this one would pay for it."""
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collects:
+            gc.enable()
 
 
 def _renderer() -> Callable[[Cell], object]:

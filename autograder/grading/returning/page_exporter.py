@@ -129,7 +129,9 @@ def markdown_to_html(context: Any, source: str) -> str:
     In ``nbgrader_config.py`` it is ``HTMLExporter.filters["markdown2html"]``, for formgrader.
     """
     rendered: str = _NBCONVERTS.markdown2html(context, source)
-    return without_dead_links(rendered if is_the_masters(context.get("cell", {})) else clean(rendered))
+    harmless = rendered if is_the_masters(context.get("cell", {})) else clean(rendered)
+    # Neither nbgrader's pages nor nbconvert's classic template keep a picture within its column.
+    return without_dead_links(harmless.replace("<img ", '<img style="max-width: 100%" '))
 
 
 # The same for all students of an assignment, and most of a page.

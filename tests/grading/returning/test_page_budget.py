@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from typing import Any
 
 import nbformat
@@ -9,6 +10,7 @@ import pytest
 from nbconvert.exporters import HTMLExporter
 
 from autograder.boxes.execution import Cell, CellType
+from autograder.grading.returning import page_budget
 from autograder.grading.returning.page_budget import SECONDS, too_costly
 from autograder.grading.returning.page_limits import HARMLESS_LENGTH
 from autograder.grading.returning.sanitize import make_harmless
@@ -146,6 +148,15 @@ def test_what_students_usually_write_is_within_it() -> None:
     assert len(text) > HARMLESS_LENGTH
     cells = [Cell(text, CellType.MARKDOWN, own=True), Cell(code, CellType.CODE, own=True)]
     assert too_costly(cells, SECONDS) == ()
+
+
+def test_what_others_have_left_behind_is_not_charged_to_a_notebook(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A collection of garbage goes through all that lives in the process."""
+    collects: list[bool] = []
+    monkeypatch.setattr(page_budget, "_renderer", lambda: lambda _: collects.append(gc.isenabled()))
+    assert too_costly([Cell("a" * (HARMLESS_LENGTH + 1), CellType.MARKDOWN, own=True)], BUDGET) == ()
+    assert collects == [False]
+    assert gc.isenabled()
 
 
 def test_a_masters_texts_cost_nothing() -> None:
