@@ -30,7 +30,11 @@ _PORT_BASE = 7400
 _DOMAIN_GAIN = 250
 _CLAIM_OFFSET = 9
 """RTPS uses the offsets 0, 1 and those from 10 on; the ones between belong to nobody."""
-_PROBED_OFFSETS = (0, *range(10, 26, 2))
+GROUP_OFFSET = 0
+"""Multicast discovery."""
+PARTICIPANT_OFFSET = 10
+"""Discovery of a domain's first participant; that of the next one is two further."""
+_PROBED_OFFSETS = (GROUP_OFFSET, *range(PARTICIPANT_OFFSET, PARTICIPANT_OFFSET + 16, 2))
 """Multicast discovery, and the first eight participants: a new participant takes the lowest free place."""
 
 
@@ -65,7 +69,7 @@ def claim_free_domain(candidates: Iterable[int] | None = None) -> DomainClaim:
     """
     domains = random.sample(FREE_TO_PICK, len(FREE_TO_PICK)) if candidates is None else list(candidates)
     for domain in domains:
-        holder = _bind(_port(domain, _CLAIM_OFFSET))
+        holder = _bind(port(domain, _CLAIM_OFFSET))
         if holder is None:
             continue
         if _looks_used(domain):
@@ -95,13 +99,14 @@ def domain_from_environment() -> int | None:
     return int(text)
 
 
-def _port(domain: int, offset: int) -> int:
+def port(domain: int, offset: int) -> int:
+    """The UDP port of a domain that lies ``offset`` ports behind its first."""
     return _PORT_BASE + _DOMAIN_GAIN * domain + offset
 
 
 def _looks_used(domain: int) -> bool:
     for offset in _PROBED_OFFSETS:
-        probe = _bind(_port(domain, offset))
+        probe = _bind(port(domain, offset))
         if probe is None:
             return True
         probe.close()

@@ -179,7 +179,7 @@ def _main_guard(evidence: Evidence) -> Advice | None:
     ending = evidence.main.ending
     if ending is None or ending.name != "exited" or ending.data.get("code") != 0 or evidence.main.said():
         return None
-    if any(evidence.main.endpoints(role) for role in _WORD):
+    if evidence.main.had_node:
         return None
     return Advice(
         "The program ended at once and said nothing: its main() was not called, or nothing keeps it alive.",
@@ -233,8 +233,8 @@ def only_if_ended(recognise: Callable[[Evidence], Advice | None]) -> Callable[[E
 
 def _not_written(evidence: Evidence) -> Advice | None:
     part = evidence.main
-    if part.logged_and_ended:  # it may be gone before the graph tells of its endpoints
-        return None
+    if part.ending is not None and part.ending.name == "exited" and part.had_node:
+        return None  # a program may be gone before the graph tells of its endpoints
     nodes = any(survey.data.get("nodes") for survey in part.of("interface"))
     returned = part.ending is not None and part.ending.name == "returned" and not part.said()
     if not (nodes or returned) or any(part.endpoints(role) for role in _WORD):
@@ -267,14 +267,11 @@ def _returned_at_once(evidence: Evidence) -> Advice | None:
 
 
 def _nothing_on_the_graph(evidence: Evidence) -> Advice | None:
-    if any(survey.data.get("nodes") for part in evidence for survey in part.of("interface")):
+    if any(part.had_node for part in evidence):
         return None
     if any(
         part.of("log") or part.of("request") or part.of("goal") or part.of("message") for part in evidence
     ):
-        return None
-    # It may be gone before the graph tells of its node.
-    if any(part.logged_and_ended for part in evidence):
         return None
     return Advice(
         "No node of yours appeared on the graph.",

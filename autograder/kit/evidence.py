@@ -19,7 +19,8 @@ class Event:
     Attributes:
         t: Seconds of wall time since the part began.
         kind: ``message``, ``sent``, ``request``, ``response``, ``goal``, ``feedback``, ``cancel``,
-            ``result_request``, ``result``, ``log``, ``output``, ``subject``, ``mismatch``, ``interface``, ``looked``.
+            ``result_request``, ``result``, ``log``, ``output``, ``subject``, ``mismatch``, ``interface``, ``looked``,
+            ``announced``.
         name: The topic, service or action; the stream of an output line; what happened to the subject.
         data: The rest, as JSON-able values.
         sim: Simulated seconds where the judge stepped the clock, else None.
@@ -67,10 +68,9 @@ class Part:
         return found
 
     @property
-    def logged_and_ended(self) -> bool:
-        """Whether it ended by itself after a line that its terminal shows as a logger's, and not ROS's own."""
-        lines = [event for event in self.of("output") if _logger_of(event)]
-        return self.ending is not None and any(spoken_by(line) is not None for line in lines)
+    def had_node(self) -> bool:
+        """Whether a node of the subject's was there, for however short a time."""
+        return bool(self.of("announced")) or any(survey.data.get("nodes") for survey in self.of("interface"))
 
     @property
     def ending(self) -> Event | None:
@@ -152,30 +152,18 @@ def spoken_by(event: Event) -> str | None:
     """What the subject said with an event, without what its terminal puts before it; None where it said nothing."""
     if event.kind in ("log", "output"):
         text = str(event.data["text"])
-        logger = _logger_of(event)
+        prefix = _PREFIX.match(text) if text.startswith("[") else None
+        logger = event.name if event.kind == "log" else prefix["logger"] if prefix else ""
         if (
             text.startswith((*REPORTS, _ROS2_RUN))
             or (logger and _is_a_library(logger))
             or _is_the_middlewares(text)
         ):
             return None
-        prefix = _prefix_of(text)
         return text[prefix.end() :] if prefix else text
     if event.kind == "subject" and event.name == "returned" and event.data.get("value") is not None:
         return str(event.data["value"])
     return None
-
-
-def _logger_of(event: Event) -> str:
-    """Who logged a line; empty where it was only printed."""
-    if event.kind == "log":
-        return event.name
-    prefix = _prefix_of(str(event.data["text"])) if event.kind == "output" else None
-    return prefix["logger"] if prefix else ""
-
-
-def _prefix_of(text: str) -> Any:
-    return _PREFIX.match(text) if text.startswith("[") else None
 
 
 @functools.lru_cache(maxsize=256)

@@ -134,7 +134,7 @@ class Bench(Protocol):
         ...
 
     def await_node(self) -> bool:
-        """Wait until a node of the subject's is on the graph; gives up when the subject has ended."""
+        """Wait until a node of the subject's is on the graph; whether there is one, or was in a subject that ended."""
         ...
 
     def await_sign_of_life(self, within: float) -> bool:

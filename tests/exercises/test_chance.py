@@ -76,25 +76,28 @@ def test_a_talker_that_spoke_for_a_while_did_not_publish_all_at_once_whatever_wa
 
 
 NODE_ONLY = Event(0.2, "interface", "graph", {"nodes": ["/node"]})
+ANNOUNCED = Event(0.5, "announced", "a node")
+READY = Event(0.3, "output", "stdout", {"text": "Ready."})
 
 
-@pytest.mark.parametrize("seen", [[], [NODE_ONLY], [NODE_ONLY, _interface("service")]])
-def test_a_node_that_logs_and_ends_is_told_the_same_whatever_the_graph_showed_of_it(
-    seen: list[Event],
+@pytest.mark.parametrize("said", [[], [READY]])
+@pytest.mark.parametrize("seen", [[ANNOUNCED], [NODE_ONLY], [_interface("service")]])
+def test_a_node_that_ends_at_once_is_told_the_same_whatever_the_graph_showed_of_it(
+    seen: list[Event], said: list[Event]
 ) -> None:
-    logged = Event(0.3, "output", "stderr", {"text": "[INFO] [1732200000.123456789] [server]: Ready."})
-    ended = Event(0.4, "subject", "exited", {"code": 0})
-    evidence = Evidence([Part("serving", {}, [*seen, logged, ended])], Reference("lab_1_3.server", {}))
-    first = next(mistake.key for mistake in common.NOTHING_THERE if mistake.recognise(evidence))
-    assert first == "ended_too_early"
+    assert _told([*seen, *said]) == "ended_too_early"
 
 
-def test_a_program_that_only_prints_and_ends_has_no_node() -> None:
-    printed = Event(0.3, "output", "stdout", {"text": "Ready."})
+@pytest.mark.parametrize(("said", "told"), [([], "main_guard"), ([READY], "nothing_on_the_graph")])
+def test_a_program_that_ends_without_a_node_is_told_so(said: list[Event], told: str) -> None:
+    assert _told(said) == told
+
+
+def _told(seen: list[Event]) -> str:
+    """What is told of a program that has come to its end."""
     ended = Event(0.4, "subject", "exited", {"code": 0})
-    evidence = Evidence([Part("serving", {}, [printed, ended])], Reference("lab_1_3.server", {}))
-    first = next(mistake.key for mistake in common.NOTHING_THERE if mistake.recognise(evidence))
-    assert first == "nothing_on_the_graph"
+    evidence = Evidence([Part("serving", {}, [*seen, ended])], Reference("lab_1_3.server", {}))
+    return next(mistake.key for mistake in common.NOTHING_THERE if mistake.recognise(evidence))
 
 
 @pytest.mark.parametrize("heard", [[], [_message(1)]])

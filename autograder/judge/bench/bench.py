@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from autograder.judge.bench import graph, node_clock, own_endpoints, type_hashes
 from autograder.judge.bench.action_client import RecordedActionClient
 from autograder.judge.bench.action_server import ScriptedActionServer
+from autograder.judge.bench.announcements import Announcements, process_of
 from autograder.judge.bench.decoy_nodes import DecoyNodes
 from autograder.judge.bench.interfaces import service_fields
 from autograder.judge.bench.presence import GRAPH_POLL, MATCH, Presence
@@ -67,6 +68,9 @@ class TestBench:
         self._recorder = Recorder()
         self._wire: Wire | None = None
         self._decoys: DecoyNodes | None = None
+        # Nobody can tell one run from the next by its process where all are in the notebook's.
+        self._announcements = None if subject.shares_participant else Announcements(domain_id)
+        self._older_processes: set[bytes] = set()
         self._open = contextlib.ExitStack()
         self._on_graph: Presence | None = None
         self._time_of_part: SubjectTime | None = None
@@ -89,7 +93,9 @@ class TestBench:
             self._log = LogReader(self._wire, self._recorder)
             self._subject.renew()
             self._recorder.take_in = partial(self._wire.take_in, lambda: self._recorder.count)
-        self._on_graph = Presence(self._wire.node, self._recorder, self._subject, SETTLED[self.pace])
+        self._on_graph = Presence(
+            self._wire.node, self._recorder, self._subject, SETTLED[self.pace], self._has_announced_itself
+        )
         self._time_of_part = SubjectTime(
             self._wire, self._recorder, self._subject, self._on_graph, self._open, self.pace, self.doubt
         )
@@ -117,6 +123,7 @@ class TestBench:
         self._presence.note_interface()
         self._presence.note_how_it_leaves()
         self._presence.note_whom_it_met()
+        self._presence.note_short_life()
         # What Ctrl-C has ended may be on the graph for a while; a new participant never hears of it.
         self._clean = self._subject.ended and not self._recorder.part().of("subject", INTERRUPTED)
         self.parts.append(usable(self._recorder.part()))
@@ -134,6 +141,8 @@ class TestBench:
             self.stop()
         finally:
             self._close_wire()
+            if self._announcements is not None:
+                self._announcements.close()
 
     def _close_wire(self) -> None:
         if self._wire is not None and self._decoys is not None:
@@ -169,7 +178,13 @@ class TestBench:
         """Start the subject, once its participant knows which servers of the judge's there are, and which are gone."""
         if (self._there or self._gone) and not self._subject.knows(there=self._there, gone=self._gone):
             raise JudgeFailed("the news of which services there are did not arrive; is the machine too busy?")
+        if self._announcements is not None:
+            self._older_processes = {process_of(self.wire.node), *self._announcements.heard()}
         self._subject.start(self._recorder, arguments, options)
+
+    def _has_announced_itself(self) -> bool:
+        """Whether a process that was not there before the subject's start has made a node."""
+        return self._announcements is not None and bool(self._announcements.heard() - self._older_processes)
 
     def release(self) -> None:
         """Let a held subject spin."""
@@ -197,7 +212,7 @@ class TestBench:
         return self._presence.await_endpoint(role, name)
 
     def await_node(self) -> bool:
-        """Wait until a node of the subject's is on the graph; gives up when the subject has ended."""
+        """Wait until a node of the subject's is on the graph; a subject that ends may have had one before."""
         return self._presence.await_node()
 
     def await_sign_of_life(self, within: float) -> bool:

@@ -46,15 +46,24 @@ class Presence:
         recorder: Where what is seen is written down.
         subject: Whose presence it is.
         settled: Seconds without a change of the graph after which a command is taken to have made all that it makes.
+        announced: Whether a process of the subject's has made a node, as far as anybody can hear that.
     """
 
-    def __init__(self, node: Node, recorder: Recorder, subject: Subject, settled: float) -> None:
+    def __init__(
+        self,
+        node: Node,
+        recorder: Recorder,
+        subject: Subject,
+        settled: float,
+        announced: Callable[[], bool],
+    ) -> None:
         self.subscriptions: dict[str, RecordedSubscription] = {}
         self.publishers: dict[str, RecordedPublisher] = {}
         self._node = node
         self._recorder = recorder
         self._subject = subject
         self._settled = settled
+        self._announced = announced
         self._again = AT_WORK
 
     def survey(self) -> graph.Interface:
@@ -100,7 +109,7 @@ class Presence:
         )
 
     def await_node(self) -> bool:
-        """Wait until a node of the subject's is on the graph; gives up when the subject has ended."""
+        """Wait until a node of the subject's is on the graph; a subject that ends may have had one before."""
         nodes: list[graph.NodeName] = []
 
         def there() -> bool:
@@ -109,7 +118,7 @@ class Presence:
 
         self._await_appearance(lambda: there() or self._subject.ended)
         self.note_interface()
-        return bool(nodes)
+        return bool(nodes) or self.note_short_life()
 
     def await_sign_of_life(self, within: float) -> bool:
         """Wait until the subject has said something or has a node on the graph; gives up when the subject has ended."""
@@ -194,6 +203,19 @@ class Presence:
         had_endpoints = [any(survey.data[role] for role in graph.ROLES) for survey in surveys]
         if not self._subject.shares_participant and any(had_endpoints) and not had_endpoints[-1]:
             self._recorder.wait(lambda: self._subject.ended, MATCH)
+
+    def note_short_life(self) -> bool:
+        """Write down that a subject that has ended had made a node, where the graph never told of it.
+
+        Returns:
+            Whether it had made one. How quick the graph is must not decide about that.
+        """
+        if not self._subject.ended or not self._announced():
+            return False
+        part = self._recorder.part()
+        if not part.had_node:
+            self._recorder.record("announced", "a node")
+        return True
 
     def note_whom_it_met(self) -> None:
         """Write down endpoints that met the judge's: they were there, also if the graph never told of them."""

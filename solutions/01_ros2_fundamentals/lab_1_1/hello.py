@@ -25,7 +25,7 @@ hello.asks("line", 4, "Says the line", recipe.says_the_line)
 )
 def wrong_text(seen: Ran, _: Ran) -> bool:
     """Its node says something else."""
-    return bool(seen.nodes and seen.words) and not seen.says_it
+    return seen.has_node and bool(seen.words) and not seen.says_it
 
 
 @hello.mistake(
@@ -36,7 +36,7 @@ def wrong_text(seen: Ran, _: Ran) -> bool:
 )
 def not_logged(seen: Ran, _: Ran) -> bool:
     """Its node says nothing."""
-    return bool(seen.nodes) and not seen.words and not seen.says_it
+    return seen.has_node and not seen.words and not seen.says_it
 
 
 @hello.mistake(
@@ -48,7 +48,7 @@ def not_logged(seen: Ran, _: Ran) -> bool:
 )
 def no_node(seen: Ran, _: Ran) -> bool:
     """It says the line, and no node says it."""
-    return seen.says_it and not seen.nodes
+    return seen.says_it and not seen.has_node
 
 
 EXERCISE = hello.exercise(limit=400.0, runner=recipe.runner)

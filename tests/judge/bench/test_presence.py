@@ -43,7 +43,9 @@ def test_a_publisher_that_comes_with_the_sign_that_all_is_made_is_seen(
     monkeypatch.setattr(graph, "topic_ends", lambda *_: [])
     recorder = Recorder()
     recorder.begin("a part", {})
-    presence = Presence(cast("Any", None), recorder, cast("Subject", _ASubject()), settled=1.0)
+    presence = Presence(
+        cast("Any", None), recorder, cast("Subject", _ASubject()), settled=1.0, announced=lambda: False
+    )
     assert presence.await_endpoint("publisher", TOPIC)
     assert recorder.part().endpoints("publisher") == {TOPIC: TYPE}
 
@@ -85,6 +87,38 @@ def test_who_goes_on_starting_processes_is_waited_for(
     monkeypatch.setattr(graph, "topic_ends", lambda *_: [])
     recorder = Recorder()
     recorder.begin("a part", {})
-    presence = Presence(cast("Any", None), recorder, cast("Subject", subject), settled=1.0)
+    presence = Presence(
+        cast("Any", None), recorder, cast("Subject", subject), settled=1.0, announced=lambda: False
+    )
     assert presence.await_endpoint("publisher", TOPIC) is appears
     assert (subject.asked + 1) // 2 == spans
+
+
+class _AProgram:
+    """One that has ended."""
+
+    shares_participant, keeper, marker, ended = False, "", None, True
+
+
+@pytest.mark.parametrize(
+    ("announced", "shown", "events"),
+    [
+        pytest.param(True, [], ["interface", "announced"], id="the graph never told of it"),
+        pytest.param(True, [graph.NodeName("talker", "/")], ["interface"], id="the graph told of it"),
+        pytest.param(False, [], ["interface"], id="it never made a node"),
+    ],
+)
+def test_a_node_that_was_there_for_a_moment_is_written_down(
+    monkeypatch: pytest.MonkeyPatch, announced: bool, shown: list[graph.NodeName], events: list[str]
+) -> None:
+    monkeypatch.setattr(graph, "survey", lambda _: {role: {} for role in graph.ROLES})
+    monkeypatch.setattr(graph, "subject_nodes", lambda *_: shown)
+    monkeypatch.setattr(graph, "topic_ends", lambda *_: [])
+    recorder = Recorder()
+    recorder.begin("a part", {})
+    presence = Presence(
+        cast("Any", None), recorder, cast("Subject", _AProgram()), settled=1.0, announced=lambda: announced
+    )
+    assert presence.await_node() is announced
+    presence.note_short_life()
+    assert [event.kind for event in recorder.part().events] == events

@@ -1,0 +1,119 @@
+"""Which processes have made a node: heard also of a program that is gone before the graph tells of it.
+
+A participant of DDS announces itself when it is made, and rmw_fastrtps makes it with the first node of a process. What
+the graph shows needs several messages to and fro after that, for which a program that ends at once may not live long
+enough. The announcement has left it in any case, and waits in the sockets that are opened here.
+
+It goes to a multicast group or, where discovery keeps to this machine, to the ports of the first participants on it
+(DDSI-RTPS 2.5, 9.6.1).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import selectors
+import socket
+import threading
+from typing import TYPE_CHECKING
+
+from autograder.ros_domain import GROUP_OFFSET, PARTICIPANT_OFFSET, port
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rclpy.node import Node
+
+_GROUP = "239.255.0.1"
+_PLACE = 31
+"""The place of a participant that is taken here: Fast DDS announces to those from 0 to 31 (rmw_fastrtps,
+participant.cpp), and who makes a participant takes the lowest that is free."""
+_RTPS = b"RTPS"
+_PREFIX = slice(8, 16)
+"""What a message's header tells of the process that it comes from (DDSI-RTPS 2.5, 8.3.3.1; the rest of the identifier
+counts the participants of a process)."""
+_LARGEST = 65_536
+_MOST = 1_000
+"""Processes that are told apart: a flood of messages must not fill the memory."""
+
+
+class Announcements:
+    """Listens on a domain until it is closed. Where a socket cannot be had, nothing is heard by it.
+
+    Args:
+        domain_id: The domain.
+    """
+
+    def __init__(self, domain_id: int) -> None:
+        self._heard: set[bytes] = set()
+        self._lock = threading.Lock()
+        self._selector = selectors.DefaultSelector()
+        self._ended, self._end = socket.socketpair()
+        self._selector.register(self._ended, selectors.EVENT_READ)
+        self._sockets = [_multicast_socket(domain_id), _place_of_a_participant(domain_id)]
+        for listening in filter(None, self._sockets):
+            listening.setblocking(False)
+            self._selector.register(listening, selectors.EVENT_READ)
+        self._thread = threading.Thread(target=self._listen, name="announcements", daemon=True)
+        self._thread.start()
+
+    def heard(self) -> frozenset[bytes]:
+        """The processes that have announced a participant by now."""
+        with self._lock:
+            self._take()
+            return frozenset(self._heard)
+
+    def close(self) -> None:
+        """Hear nothing more."""
+        self._end.close()
+        self._thread.join()
+        self._selector.close()
+        for opened in (self._ended, *filter(None, self._sockets)):
+            opened.close()
+
+    def _listen(self) -> None:
+        """Take what comes before the sockets are full, whether or not anybody asks."""
+        while not any(key.fileobj is self._ended for key, _ in self._selector.select()):
+            with self._lock:
+                self._take()
+
+    def _take(self) -> None:
+        for listening in filter(None, self._sockets):
+            for message in _waiting(listening):
+                if message.startswith(_RTPS) and len(self._heard) < _MOST:
+                    self._heard.add(message[_PREFIX])
+
+
+def process_of(node: Node) -> bytes:
+    """What :class:`Announcements` hears of a node's process; empty where the node does not listen to ``/rosout``."""
+    infos = node.get_subscriptions_info_by_topic("/rosout")
+    own = (bytes(info.endpoint_gid) for info in infos if info.node_name == node.get_name())
+    return next((identifier[: _PREFIX.stop - _PREFIX.start] for identifier in own), b"")
+
+
+def _waiting(listening: socket.socket) -> Iterator[bytes]:
+    with contextlib.suppress(OSError):
+        while True:
+            yield listening.recv(_LARGEST)
+
+
+def _multicast_socket(domain_id: int) -> socket.socket | None:
+    listening = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    try:
+        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listening.bind(("", port(domain_id, GROUP_OFFSET)))
+        member = socket.inet_aton(_GROUP) + socket.inet_aton("127.0.0.1")
+        listening.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
+    except OSError:
+        listening.close()
+        return None
+    return listening
+
+
+def _place_of_a_participant(domain_id: int) -> socket.socket | None:
+    listening = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    try:
+        listening.bind(("127.0.0.1", port(domain_id, PARTICIPANT_OFFSET + 2 * _PLACE)))
+    except OSError:
+        listening.close()
+        return None
+    return listening

@@ -1,0 +1,58 @@
+"""A program that has made a node was heard, however soon it was gone."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.judge.bench.announcements import Announcements, process_of
+from autograder.judge.bench.recorder import Recorder
+from autograder.judge.bench.topics import LogReader
+from autograder.judge.bench.wire import Wire
+from autograder.judge.serving import domain
+from autograder.judge.settings import subject_environment
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+pytestmark = pytest.mark.ros
+
+LOGS = "import rclpy\nfrom rclpy.logging import get_logger\nrclpy.init()\nget_logger('simple_node').info('Hello')\n"
+MAKES_A_NODE = "import os, rclpy\nrclpy.init()\nrclpy.create_node('simple_node')\nos._exit(0)\n"
+
+
+@pytest.fixture
+def domain_id() -> Iterator[int]:
+    with domain.lease() as leased:
+        yield leased
+
+
+@pytest.mark.parametrize("boxed", [False, True])
+@pytest.mark.parametrize(("program", "processes"), [(MAKES_A_NODE, 1), (LOGS, 0)])
+def test_who_made_a_node_was_heard(domain_id: int, boxed: bool, program: str, processes: int) -> None:
+    with contextlib.closing(Announcements(domain_id)) as announcements:
+        run(program, subject_environment(domain_id, boxed=boxed))
+        assert len(announcements.heard()) == processes
+
+
+def test_the_judge_s_own_node_is_known_from_a_subject_s(domain_id: int) -> None:
+    recorder = Recorder()
+    recorder.begin("a part", {})
+    with contextlib.closing(Announcements(domain_id)) as announcements, Wire(domain_id) as wire:
+        LogReader(wire, recorder)
+        run(MAKES_A_NODE, subject_environment(domain_id))
+        own = process_of(wire.node)
+        assert own[4:6] == os.getpid().to_bytes(4, "little")[:2]
+        assert len(announcements.heard() - {own}) == 1
+
+
+def run(program: str, environment: dict[str, str]) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
