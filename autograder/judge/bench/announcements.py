@@ -32,8 +32,9 @@ _PREFIX = slice(8, 16)
 """What a message's header tells of the process that it comes from (DDSI-RTPS 2.5, 8.3.3.1; the rest of the identifier
 counts the participants of a process)."""
 _LARGEST = 65_536
-_MOST = 1_000
-"""Processes that are told apart: a flood of messages must not fill the memory."""
+MOST = 1_000
+"""Processes that are told apart, and messages that are taken at once: a flood must neither fill the memory nor keep the
+judge from anything else."""
 
 
 class Announcements:
@@ -79,7 +80,7 @@ class Announcements:
     def _take(self) -> None:
         for listening in filter(None, self._sockets):
             for message in _waiting(listening):
-                if message.startswith(_RTPS) and len(self._heard) < _MOST:
+                if message.startswith(_RTPS) and len(self._heard) < MOST:
                     self._heard.add(message[_PREFIX])
 
 
@@ -92,7 +93,7 @@ def process_of(node: Node) -> bytes:
 
 def _waiting(listening: socket.socket) -> Iterator[bytes]:
     with contextlib.suppress(OSError):
-        while True:
+        for _ in range(MOST):
             yield listening.recv(_LARGEST)
 
 

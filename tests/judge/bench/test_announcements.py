@@ -6,11 +6,11 @@ import contextlib
 import os
 import subprocess
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import pytest
 
-from autograder.judge.bench.announcements import Announcements, process_of
+from autograder.judge.bench.announcements import MOST, Announcements, _waiting, process_of
 from autograder.judge.bench.recorder import Recorder
 from autograder.judge.bench.topics import LogReader
 from autograder.judge.bench.wire import Wire
@@ -49,6 +49,17 @@ def test_the_judge_s_own_node_is_known_from_a_subject_s(domain_id: int) -> None:
         own = process_of(wire.node)
         assert own[4:6] == os.getpid().to_bytes(4, "little")[:2]
         assert len(announcements.heard() - {own}) == 1
+
+
+class _Flooded:
+    """A socket at which there is always one more message."""
+
+    def recv(self, _: int) -> bytes:
+        return b"RTPS"
+
+
+def test_a_flood_does_not_hold_the_judge_up() -> None:
+    assert len(list(_waiting(cast("Any", _Flooded())))) == MOST
 
 
 def run(program: str, environment: dict[str, str]) -> None:
