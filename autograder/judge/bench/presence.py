@@ -26,7 +26,7 @@ APPEAR = 12.0
 """Seconds of patience in which a subject that runs must show up on the graph at all. Generous: starting slowly is
 not wrong, and a program needs a quarter of a second."""
 AT_WORK = 2
-"""How often, in one look, a subject gets that patience anew because it went on starting processes: a command may build
+"""How often, in one run, a subject gets that patience anew because it went on starting processes: a command may build
 its package before it runs the program. It is a limit, since others start processes for ever."""
 MATCH = 5.0
 """Seconds in which two endpoints that fit must have met."""
