@@ -81,8 +81,10 @@ def _sockets(domain: int, tables: Iterable[str]) -> dict[int, int] | None:
         seen = True
         for line in lines:
             columns = line.split()
-            if (port := int(columns[1].rpartition(":")[2], 16)) in wanted:
-                found[int(columns[9])] = port
+            address, _, port = columns[1].rpartition(":")
+            # A participant listens on all addresses. Who listens on one, as the judge does for announcements, is none.
+            if int(address, 16) == 0 and int(port, 16) in wanted:
+                found[int(columns[9])] = int(port, 16)
     return found if seen else None
 
 

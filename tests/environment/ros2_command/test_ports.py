@@ -19,16 +19,20 @@ if TYPE_CHECKING:
 HEAD = "  sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode\n"
 
 
-def line(port: int, inode: int) -> str:
-    return f"  1: 00000000:{port:04X} 00000000:0000 07 0:0 00:0 0 1000 0 {inode} 2 0 0\n"
+def line(port: int, inode: int, address: str = "00000000") -> str:
+    return f"  1: {address}:{port:04X} 00000000:0000 07 0:0 00:0 0 1000 0 {inode} 2 0 0\n"
 
 
 @pytest.fixture
 def tables(tmp_path: Path) -> list[str]:
-    """Domain 42 begins at 17900; its participants take 17910, 17912, …; 17911 is the first one's other port."""
+    """Domain 42 begins at 17900; its participants take 17910, 17912, …; 17911 is the first one's other port.
+
+    Who holds 17972 listens on 127.0.0.1 only, as no participant does.
+    """
     table = tmp_path / "udp"
     held = (17910, 17911, 17912, 17914, 7410, 18160)
-    table.write_text(HEAD + "".join(line(port, 1000 + at) for at, port in enumerate(held)))
+    listener = line(17972, 2000, "0100007F")
+    table.write_text(HEAD + "".join(line(port, 1000 + at) for at, port in enumerate(held)) + listener)
     return [str(table), str(tmp_path / "missing")]
 
 
@@ -60,9 +64,7 @@ def test_without_tables_nobody_knows(tmp_path: Path) -> None:
 
 def test_a_process_that_is_stopped_is_not_counted(other_domain: str) -> None:
     port = 7400 + 250 * int(other_domain) + 10
-    program = (
-        f"import socket; s = socket.socket(2, 2); s.bind(('127.0.0.1', {port})); print(flush=True); input()"
-    )
+    program = f"import socket; s = socket.socket(2, 2); s.bind(('', {port})); print(flush=True); input()"
     command = [sys.executable, "-c", program]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as holder:
         assert holder.stdout
