@@ -30,12 +30,13 @@ SERVED = (LATE, REFUSED, ABORTED)
 FEEDBACKS = 14
 """Feedback messages of the goal that succeeds: enough for a client that goes deaf after a while to be found out."""
 NO_GOAL = "no goal"
-NOT_AWAITED = "it ended before its goal was answered"
+NOT_AWAITED = "it ended without taking in the answer to its goal"
 MANY_REQUESTS = 3
 """Requests for one result that may have a reason; what asks more often goes on asking."""
 
-AT_ONCE = 1.0
-"""Seconds after an answer in which a client ends that never meant to take it in; a process takes time to end."""
+AT_ONCE = 5.0
+"""Seconds after an answer in which a client ends that never meant to take it in. A process takes a tenth of a second to
+end, and more than one on a crowded machine; who stays in order to take something in shows that in these seconds."""
 _TRACEBACK = "Traceback (most recent call last)"
 _SLIPS = ("AttributeError", "TypeError", "NameError", "UnboundLocalError", "KeyError", "IndexError")
 """Exceptions that nobody raises in order to say something."""

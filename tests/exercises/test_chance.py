@@ -149,6 +149,7 @@ ANSWERED = Event(0.8, "goal_answered", "/fibonacci")
         ([*_printed(TRACEBACK), ANSWERED, EXITED], True),
         ([EXITED, ANSWERED], True),
         ([ANSWERED, Event(1.5, "subject", "exited")], True),
+        ([ANSWERED, Event(3.5, "subject", "exited")], True),
         ([ANSWERED, *_printed(TRACEBACK, 1.0), Event(1.5, "subject", "exited")], False),
         ([ANSWERED, EXITED], False),
         ([ANSWERED], False),
