@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from autograder import exercises
+from autograder.judge import shared_memory
 from autograder.judge.bench.wire import JudgeFailed
 from autograder.judge.serving import domain
 from autograder.judge.subjects.path_subject import PathSubject
@@ -102,6 +103,7 @@ def _tell(lines: Lines, message: Message) -> None:
 def _report(
     exercise: Exercise, subject: RemoteSubject | PathSubject, seed: str, recording: bool
 ) -> tuple[Report, Checked | None]:
+    shared_memory.remove_abandoned()
     try:
         with domain.lease() as domain_id:
             if not recording:

@@ -132,7 +132,7 @@ def checked_here(
     exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None, box: Box | None = None
 ) -> tuple[Verdict, Checked | None]:
     """Like :func:`judged_here`, with the evidence; without it where the judge itself had trouble."""
-    from autograder.judge import settings
+    from autograder.judge import settings, shared_memory
 
     settings.prepare_judge(boxed=box is not None)
     if box is not None:
@@ -142,6 +142,7 @@ def checked_here(
     from autograder.judge.subjects.command_subject import CommandSubject
     from autograder.judge.verdicts import reference, trial
 
+    shared_memory.remove_abandoned()
     try:
         expected = reference.load(exercise.id)
         with domain.lease() as domain_id:

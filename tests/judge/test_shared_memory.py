@@ -1,0 +1,86 @@
+"""What killed programs have left in shared memory is removed; what a living one uses stays."""
+
+from __future__ import annotations
+
+import fcntl
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from autograder.judge import shared_memory
+from autograder.judge.serving import domain
+from autograder.judge.settings import subject_environment
+
+SEGMENT = "fastrtps_0123456789abcdef"
+MAKES_A_NODE = (
+    "import rclpy\nrclpy.init()\nnode = rclpy.create_node('simple_node')\nprint(flush=True)\ninput()\n"
+)
+
+
+@pytest.fixture
+def segment(tmp_path: Path) -> Path:
+    for name in (SEGMENT, f"{SEGMENT}_el"):
+        (tmp_path / name).write_bytes(b"")
+    return tmp_path / SEGMENT
+
+
+def test_a_segment_without_an_owner_is_removed(segment: Path) -> None:
+    other = segment.with_name("lttng-ust-wait-6")
+    other.write_bytes(b"")
+    shared_memory.remove_abandoned(segment.parent, age=0.0)
+    assert list(segment.parent.iterdir()) == [other]
+
+
+def test_a_young_one_stays(segment: Path) -> None:
+    shared_memory.remove_abandoned(segment.parent)
+    assert segment.exists()
+
+
+def test_one_whose_owner_lives_stays(segment: Path) -> None:
+    with segment.with_name(f"{SEGMENT}_el").open("rb") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        shared_memory.remove_abandoned(segment.parent, age=0.0)
+    assert segment.exists()
+
+
+def test_a_lock_that_leads_elsewhere_is_left_alone(segment: Path, tmp_path: Path) -> None:
+    lock = segment.with_name(f"{SEGMENT}_el")
+    lock.unlink()
+    lock.symlink_to(tmp_path / "elsewhere")
+    shared_memory.remove_abandoned(segment.parent, age=0.0)
+    assert segment.exists()
+
+
+def test_without_shared_memory_there_is_nothing_to_do(tmp_path: Path) -> None:
+    shared_memory.remove_abandoned(tmp_path / "missing")
+
+
+@pytest.mark.ros
+def test_a_program_that_is_killed_leaves_what_is_then_removed() -> None:
+    with domain.lease() as domain_id:
+        program = [sys.executable, "-c", MAKES_A_NODE]
+        environment = subject_environment(domain_id)
+        with subprocess.Popen(
+            program, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE
+        ) as process:
+            assert process.stdout
+            process.stdout.readline()
+            segment = _segment_of(process.pid)
+            lock = segment.with_name(f"{segment.name}_el")
+            with pytest.raises(BlockingIOError):
+                shared_memory.remove_if_abandoned(lock, time.time() + 1.0)
+            process.kill()
+        assert segment.exists()
+        shared_memory.remove_if_abandoned(lock, time.time() + 1.0)
+        assert not segment.exists()
+        assert not lock.exists()
+
+
+def _segment_of(process: int) -> Path:
+    lines = Path(f"/proc/{process}/maps").read_text(encoding="ascii").splitlines()
+    mapped = {Path(line.split()[-1]) for line in lines if f"{shared_memory.FOLDER}/fastrtps_" in line}
+    (segment,) = (path for path in mapped if not path.name.startswith("fastrtps_port"))
+    return segment
