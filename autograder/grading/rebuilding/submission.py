@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import gc
 import json
 import os
 import stat
@@ -12,6 +11,7 @@ from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING, Any
 
 from autograder.boxes.execution import CellType
+from autograder.grading.collector import without_collector
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -191,10 +191,10 @@ def _decoded(data: bytes) -> Any:
             f"The file is not a notebook: it is not UTF-8 text (byte {error.start}). "
             "Save the notebook in JupyterLab and hand in that file."
         ) from None
-    collects = gc.isenabled()
-    gc.disable()  # nothing that is made here can be freed, but the collector would look for it again and again
     try:
-        return json.loads(text)
+        # Nothing that is made here can be freed, but the collector would look for it again and again.
+        with without_collector():
+            return json.loads(text)
     except (RecursionError, MemoryError):
         raise UnreadableSubmission("The file is not a notebook: its JSON is nested too deeply.") from None
     except ValueError as error:
@@ -202,9 +202,6 @@ def _decoded(data: bytes) -> Any:
             f"The file is not a notebook: it is not JSON ({error}). "
             "Save the notebook in JupyterLab and hand in that file."
         ) from None
-    finally:
-        if collects:
-            gc.enable()
 
 
 def _raw_cells(notebook: Mapping[str, Any]) -> list[Any]:

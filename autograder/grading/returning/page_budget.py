@@ -9,17 +9,16 @@ alike.
 
 from __future__ import annotations
 
-import contextlib
-import gc
 import time
 from typing import TYPE_CHECKING
 
 from autograder.boxes.execution import Cell, CellType
+from autograder.grading.collector import without_collector
 from autograder.grading.returning.page_limits import HARMLESS_LENGTH
 from autograder.judge.verdicts.deciding import Undecided, limited
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Sequence
 
 SECONDS = 0.5
 """Of processor time for a notebook; what students usually write takes a few hundredths."""
@@ -37,7 +36,7 @@ def too_costly(cells: Sequence[Cell], seconds: float = SECONDS) -> tuple[int, ..
     own = [(place, cell) for place, cell in enumerate(cells) if cell.own and cell.source]
     if sum(len(cell.source) for _, cell in own) <= HARMLESS_LENGTH:
         return ()
-    with _without_collector():
+    with without_collector():  # this notebook must not pay for what earlier ones have left
         return _beyond(seconds, own)
 
 
@@ -58,18 +57,6 @@ def _beyond(seconds: float, cells: Sequence[tuple[int, Cell]]) -> tuple[int, ...
             left = 0.0
         left -= time.thread_time() - began
     return tuple(found)
-
-
-@contextlib.contextmanager
-def _without_collector() -> Iterator[None]:
-    """Collects no garbage: it would go through what earlier notebooks have left, and this one would pay for it."""
-    collects = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if collects:
-            gc.enable()
 
 
 def _renderer() -> Callable[[Cell], object]:

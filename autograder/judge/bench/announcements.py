@@ -23,7 +23,13 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
-_GROUP = "239.255.0.1"
+_GROUP, _LOOPBACK = "239.255.0.1", "127.0.0.1"
+_SHARED = (socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+_JOINED = (
+    socket.IPPROTO_IP,
+    socket.IP_ADD_MEMBERSHIP,
+    socket.inet_aton(_GROUP) + socket.inet_aton(_LOOPBACK),
+)
 _PLACE = 31
 """The place of a participant that is taken here: Fast DDS announces to those from 0 to 31 (rmw_fastrtps,
 participant.cpp), and who makes a participant takes the lowest that is free."""
@@ -50,9 +56,10 @@ class Announcements:
         self._selector = selectors.DefaultSelector()
         self._ended, self._end = socket.socketpair()
         self._selector.register(self._ended, selectors.EVENT_READ)
-        self._sockets = [_multicast_socket(domain_id), _place_of_a_participant(domain_id)]
-        for listening in filter(None, self._sockets):
-            listening.setblocking(False)
+        group = _listening("", port(domain_id, GROUP_OFFSET), _SHARED, _JOINED)
+        place = _listening(_LOOPBACK, port(domain_id, PARTICIPANT_OFFSET + 2 * _PLACE))
+        self._sockets = [listening for listening in (group, place) if listening is not None]
+        for listening in self._sockets:
             self._selector.register(listening, selectors.EVENT_READ)
         self._thread = threading.Thread(target=self._listen, name="announcements", daemon=True)
         self._thread.start()
@@ -68,7 +75,7 @@ class Announcements:
         self._end.close()
         self._thread.join()
         self._selector.close()
-        for opened in (self._ended, *filter(None, self._sockets)):
+        for opened in (self._ended, *self._sockets):
             opened.close()
 
     def _listen(self) -> None:
@@ -78,7 +85,7 @@ class Announcements:
                 self._take()
 
     def _take(self) -> None:
-        for listening in filter(None, self._sockets):
+        for listening in self._sockets:
             for message in _waiting(listening):
                 if message.startswith(_RTPS) and len(self._heard) < MOST:
                     self._heard.add(message[_PREFIX])
@@ -97,24 +104,15 @@ def _waiting(listening: socket.socket) -> Iterator[bytes]:
             yield listening.recv(_LARGEST)
 
 
-def _multicast_socket(domain_id: int) -> socket.socket | None:
+def _listening(address: str, udp_port: int, *options: tuple[int, int, int | bytes]) -> socket.socket | None:
+    """A socket that listens there; None where it cannot be had."""
     listening = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
-        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listening.bind(("", port(domain_id, GROUP_OFFSET)))
-        member = socket.inet_aton(_GROUP) + socket.inet_aton("127.0.0.1")
-        listening.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
+        for option in options:
+            listening.setsockopt(*option)
+        listening.bind((address, udp_port))
     except OSError:
         listening.close()
         return None
-    return listening
-
-
-def _place_of_a_participant(domain_id: int) -> socket.socket | None:
-    listening = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    try:
-        listening.bind(("127.0.0.1", port(domain_id, PARTICIPANT_OFFSET + 2 * _PLACE)))
-    except OSError:
-        listening.close()
-        return None
+    listening.setblocking(False)
     return listening

@@ -12,9 +12,33 @@ from autograder.judge.bench.presence import AT_WORK, Presence
 from autograder.judge.bench.recorder import Recorder
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from autograder.judge.subjects.subject import Subject
 
 TOPIC, TYPE = "/chatter", "std_msgs/msg/String"
+
+
+def _interface(*, publishes: bool = False) -> graph.Interface:
+    return {role: {TOPIC: TYPE} if publishes and role == "publisher" else {} for role in graph.ROLES}
+
+
+def _presence(
+    monkeypatch: pytest.MonkeyPatch,
+    subject: object,
+    survey: Callable[[Any], graph.Interface],
+    *,
+    nodes: Sequence[graph.NodeName] = (),
+    announced: bool = False,
+) -> tuple[Presence, Recorder]:
+    """A subject's presence on a graph that shows this, and where it is written down."""
+    monkeypatch.setattr(graph, "survey", survey)
+    monkeypatch.setattr(graph, "subject_nodes", lambda *_: nodes)
+    monkeypatch.setattr(graph, "topic_ends", lambda *_: [])
+    recorder = Recorder()
+    recorder.begin("a part", {})
+    seen = cast("Subject", subject)
+    return Presence(cast("Any", None), recorder, seen, settled=1.0, announced=lambda: announced), recorder
 
 
 class _ASubject:
@@ -34,18 +58,10 @@ def test_a_publisher_that_comes_with_the_sign_that_all_is_made_is_seen(
         return True
 
     def survey(_: Any) -> graph.Interface:
-        empty: graph.Interface = {role: {} for role in graph.ROLES}
-        return {**empty, "publisher": {TOPIC: TYPE}} if announced else empty
+        return _interface(publishes=bool(announced))
 
     monkeypatch.setattr(graph, "shows", shows)
-    monkeypatch.setattr(graph, "survey", survey)
-    monkeypatch.setattr(graph, "subject_nodes", lambda *_: [])
-    monkeypatch.setattr(graph, "topic_ends", lambda *_: [])
-    recorder = Recorder()
-    recorder.begin("a part", {})
-    presence = Presence(
-        cast("Any", None), recorder, cast("Subject", _ASubject()), settled=1.0, announced=lambda: False
-    )
+    presence, recorder = _presence(monkeypatch, _ASubject(), survey)
     assert presence.await_endpoint("publisher", TOPIC)
     assert recorder.part().endpoints("publisher") == {TOPIC: TYPE}
 
@@ -78,18 +94,10 @@ def test_who_goes_on_starting_processes_is_waited_for(
     subject = _ACommand(works_for)
 
     def survey(_: Any) -> graph.Interface:
-        empty: graph.Interface = {role: {} for role in graph.ROLES}
-        return {**empty, "publisher": {TOPIC: TYPE}} if subject.asked >= 2 * publishes_after else empty
+        return _interface(publishes=subject.asked >= 2 * publishes_after)
 
     monkeypatch.setattr(presence_module, "APPEAR", 0.2)
-    monkeypatch.setattr(graph, "survey", survey)
-    monkeypatch.setattr(graph, "subject_nodes", lambda *_: [])
-    monkeypatch.setattr(graph, "topic_ends", lambda *_: [])
-    recorder = Recorder()
-    recorder.begin("a part", {})
-    presence = Presence(
-        cast("Any", None), recorder, cast("Subject", subject), settled=1.0, announced=lambda: False
-    )
+    presence, _ = _presence(monkeypatch, subject, survey)
     assert presence.await_endpoint("publisher", TOPIC) is appears
     assert (subject.asked + 1) // 2 == spans
 
@@ -111,13 +119,8 @@ class _AProgram:
 def test_a_node_that_was_there_for_a_moment_is_written_down(
     monkeypatch: pytest.MonkeyPatch, announced: bool, shown: list[graph.NodeName], events: list[str]
 ) -> None:
-    monkeypatch.setattr(graph, "survey", lambda _: {role: {} for role in graph.ROLES})
-    monkeypatch.setattr(graph, "subject_nodes", lambda *_: shown)
-    monkeypatch.setattr(graph, "topic_ends", lambda *_: [])
-    recorder = Recorder()
-    recorder.begin("a part", {})
-    presence = Presence(
-        cast("Any", None), recorder, cast("Subject", _AProgram()), settled=1.0, announced=lambda: announced
+    presence, recorder = _presence(
+        monkeypatch, _AProgram(), lambda _: _interface(), nodes=shown, announced=announced
     )
     assert presence.await_node() is announced
     presence.note_short_life()
