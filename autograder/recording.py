@@ -89,6 +89,10 @@ def recording(exercise_id: str) -> str:
                 report = judge.close_report()
         except JudgeDied as error:
             raise CannotRecord(f"{exercise.id}: {error}") from error
+        except subprocess.TimeoutExpired as error:
+            raise CannotRecord(
+                f"{exercise.id}: the reference solution was not seen to its end in {RUN_LIMIT:g} s"
+            ) from error
     if report.reference is None or report.verdict is None:
         raise CannotRecord(
             f"{exercise.id}: {report.trouble or 'the solution never asked to be checked'}\n{output}".strip()

@@ -77,8 +77,13 @@ class _Spent:
 
 
 def seconds(costs: Costs, submissions: int, cores: int) -> float:
-    """How long a class takes: the workers' work over their cores, or the one writer's, whichever is longer."""
-    return max(submissions * costs.worker / (BUSY * cores), submissions * costs.grader)
+    """How long a class takes: the workers' work over their cores, or that of the slowest single process."""
+    return submissions * max(costs.worker / (BUSY * cores), _alone(costs))
+
+
+def _alone(costs: Costs) -> float:
+    """CPU seconds a notebook of what there is one of: the grader or the scheduler, whichever takes longer."""
+    return max(costs.grader, costs.scheduler)
 
 
 def markdown(costs: Costs) -> str:
@@ -92,12 +97,12 @@ def markdown(costs: Costs) -> str:
         "| --- | --- |",
         f"| on a worker: box, kernel, student's code, judge | {costs.worker:.2f} CPU seconds |",
         f"| in the grader: rebuilding, sending, gradebook, feedback page | {costs.grader:.3f} CPU seconds |",
-        f"| in Dask's scheduler | {costs.scheduler:.4f} CPU seconds |",
+        f"| in Dask's scheduler | {costs.scheduler:.3f} CPU seconds |",
         f"| on the network | {costs.sent / 1e3:.0f} kB to the worker, {costs.received / 1e3:.0f} kB back |",
         "",
         "So, with *S* submissions of one notebook and *P* cores on workers, a class takes",
         "",
-        f"    max( S × {costs.worker:.2f} s / ({BUSY:g} × P),  S × {costs.grader:.3f} s )",
+        f"    S × max( {costs.worker:.2f} s / ({BUSY:g} × P),  {costs.grader:.3f} s,  {costs.scheduler:.3f} s )",
         "",
         "| submissions | CPU time on workers | " + " | ".join(f"{cores:,} cores" for cores in CORES) + " |",
         "| ---: | ---: |" + " ---: |" * len(CORES),
@@ -108,13 +113,13 @@ def markdown(costs: Costs) -> str:
         + " |"
         for submissions in SUBMISSIONS
     ]
-    most = costs.worker / (BUSY * costs.grader)
+    most = costs.worker / (BUSY * _alone(costs))
     lines += [
         "",
-        "The first term is the workers', the second one that of the grader, which is one process and writes alone: "
-        f"beyond about {_rounded(most)} cores more of them do not help. Add a few seconds for starting, and for what "
-        "runs longest. The model takes for granted that workers have enough notebooks at once (`--jobs`) to keep their "
-        "cores busy while some of them wait.",
+        "The first term is the workers', the second one the grader's, the third one the scheduler's. These two are one "
+        f"process each, so beyond about {_rounded(most)} cores more of them do not help. Add a few seconds for "
+        "starting, and for what runs longest. The model takes for granted that workers have enough notebooks at once "
+        "(`--jobs`) to keep their cores busy while some of them wait.",
     ]
     return "\n".join(lines) + "\n"
 

@@ -23,17 +23,21 @@ _KEPT_PREFIXES = (
     "FASTDDS_",
     "_ROS_WHEELS_",
 )
+_NO_THREADS = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+"""numpy's libraries start threads when they are loaded. A fork has none of them, and in a program that ROS has import
+numpy they wait in a loop for work that never comes."""
 
 
 def base_environment(given: Mapping[str, str] | None = None) -> dict[str, str]:
-    """What a fork server starts with: what Python and ROS need of an environment, nothing else.
+    """What a fork server and every box start with: what Python and ROS need of an environment, nothing else.
 
     Args:
         given: The environment; this process's where None.
     """
     found = (os.environ if given is None else given).items()
     kept = {name: value for name, value in found if name in _KEPT or name.startswith(_KEPT_PREFIXES)}
-    return {**kept, "HOME": "/nonexistent", "PYTHONNOUSERSITE": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+    own = {"HOME": "/nonexistent", "PYTHONNOUSERSITE": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+    return {**kept, **_NO_THREADS, **own}
 
 
 def box_environment(

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 SUPERVISOR_MODULE = "autograder.boxes.supervisor"
 KERNEL_MODULE = "autograder.boxes.kernel_process"
-_NO_THREADS = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
-"""numpy's libraries start threads when they are loaded, and a fork has none of them."""
 _GOODBYE_SECONDS = 3.0
 
 
@@ -66,7 +64,6 @@ class ForkServer:
                 stderr=subprocess.DEVNULL if log is None else log,
                 env={
                     **base_environment(),
-                    **_NO_THREADS,
                     "PYDEVD_DISABLE_FILE_VALIDATION": "1",
                     **(extra or {}),
                 },

@@ -15,10 +15,10 @@ PROFILE = Path(__file__).with_name("fastdds_profile.xml")
 
 
 def ros_environment() -> dict[str, str]:
-    """Variables that both sides of a check share: loopback only, plain logs, no shared memory.
+    """Variables that both sides of a check share: loopback only, plain logs, messages over UDP.
 
-    Shared memory is left out because it is lost between sandboxes, and because a killed subject would leave its
-    segments behind.
+    Messages do not go through shared memory, which two boxes do not have in common. With discovery on this machine
+    only, rmw_fastrtps makes segments of it all the same (:mod:`autograder.judge.shared_memory`).
     """
     return {
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",

@@ -9,7 +9,6 @@ from autograder.kit.giving_up import gave_up, patience_not_kept
 from autograder.kit.goal_reports import (
     ABORTED,
     ABSENT,
-    AT_ONCE,
     LATE,
     MANY_REQUESTS,
     NO_GOAL,
@@ -20,6 +19,7 @@ from autograder.kit.goal_reports import (
     asked_for,
     given_up,
     goals_as_seen,
+    left_at_once,
     miscalled,
     raised_on_purpose,
     refused_as_seen,
@@ -175,9 +175,7 @@ def ended_before_its_answers(evidence: Evidence) -> Advice | None:
         return None
     events = list(part.events)
     took = part.first("feedback") is not None and len(unshown_feedback(part)) < len(part.of("feedback"))
-    if answered is None or (
-        not took and ending.t - answered.t < AT_ONCE and part.first("result_request") is None
-    ):
+    if answered is None or (not took and left_at_once(part)):
         missing = "it could make anything of the answer"
     elif part.first("result_request") and (result is None or events.index(ending) < events.index(result)):
         missing = "the result that it had asked for was there"

@@ -20,7 +20,8 @@ class Check(Message, frozen=True):
 
     Attributes:
         exercise: The exercise's id.
-        kind: ``"class"`` for a Node class, ``"function"`` for everything else.
+        kind: ``"class"`` for a Node class, ``"path"`` for a workspace or a launch file,
+            ``"function"`` for everything else.
     """
 
     exercise: str

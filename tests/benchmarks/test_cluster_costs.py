@@ -23,12 +23,14 @@ def test_the_page_quotes_what_is_kept() -> None:
     assert markdown(kept) in cluster.PAGE.read_text(encoding="utf-8"), "run: python -m benchmarks.cluster"
 
 
-def test_time_follows_from_cores_until_the_grader_is_the_limit() -> None:
+def test_time_follows_from_cores_until_the_grader_or_the_scheduler_is_the_limit() -> None:
     assert seconds(COSTS, 100, 2) == pytest.approx(100)
     assert seconds(COSTS, 100, 4) == pytest.approx(50)
     assert seconds(COSTS, 100, 1_000) == pytest.approx(5)
     assert "beyond about 40 cores" in markdown(COSTS)
-    assert "beyond about 4000 cores" in markdown(replace(COSTS, grader=0.0005))
+    assert "beyond about 4000 cores" in markdown(replace(COSTS, grader=0.0005, scheduler=0.0))
+    assert seconds(replace(COSTS, scheduler=0.1), 100, 1_000) == pytest.approx(10)
+    assert "beyond about 20 cores" in markdown(replace(COSTS, scheduler=0.1))
 
 
 @pytest.mark.parametrize(

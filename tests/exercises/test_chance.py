@@ -8,6 +8,7 @@ from lab_1_4 import client as action_client
 
 from autograder.kit import common_mistakes as common
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.goal_mistakes import ended_before_its_answers, result_not_requested
 from autograder.kit.goal_reports import LATE, left_at_once
 from autograder.kit.texts_said import has_much_of
 
@@ -150,6 +151,7 @@ ANSWERED = Event(0.8, "goal_answered", "/fibonacci")
         ([EXITED, ANSWERED], True),
         ([ANSWERED, Event(1.5, "subject", "exited")], True),
         ([ANSWERED, Event(3.5, "subject", "exited")], True),
+        pytest.param([ANSWERED, Event(5.4, "subject", "exited")], False, id="it spun for five seconds"),
         ([ANSWERED, *_printed(TRACEBACK, 1.0), Event(1.5, "subject", "exited")], False),
         ([ANSWERED, EXITED], False),
         ([ANSWERED], False),
@@ -163,3 +165,12 @@ def test_who_ends_at_once_has_not_shown_a_goal(events: list[Event], early: bool)
     criteria = {c.name: c for c in action_client.EXERCISE.criteria}
     evidence = Evidence([part], Reference("lab_1_4.client", {"action_client": {}}, [part]))
     assert criteria["late"].judge(evidence).passed is not early
+
+
+def test_who_says_something_of_the_answer_and_then_ends_never_asked_for_the_result() -> None:
+    goal = Event(0.3, "goal", "/fibonacci", {"fields": {"order": 20}})
+    said = Event(0.9, "output", "stdout", {"text": "Goal accepted"})
+    part = Part(LATE, {"order": 20}, [goal, ANSWERED, said, Event(3.8, "subject", "exited")])
+    evidence = Evidence([part], Reference("lab_1_4.client", {"action_client": {}}, [part]))
+    assert ended_before_its_answers(evidence) is None
+    assert result_not_requested(evidence) is not None

@@ -74,7 +74,7 @@ class NewClass:
 
     Attributes:
         path: Where it is.
-        assignments: Its assignments; what to hand out is in ``release/``.
+        assignments: Its assignments; ``release/`` has their notebooks as students get them.
     """
 
     path: Path
@@ -85,7 +85,7 @@ class NewClass:
         return "\n".join(
             (
                 f"{self.path} is a class with these assignments: {', '.join(self.assignments)}.",
-                f"Hand out       {self.path / 'release'}",
+                "Hand out       what ./course hand-out FOLDER makes: the notebooks with all that they need",
                 f"Put work into  {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
                 f"Then           ./course grade {self.path}",
             )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
 
 from rich import box
 from rich.console import Console
@@ -14,7 +15,7 @@ from autograder.grading.task import UNREADABLE
 from autograder.verdict import State
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from autograder.grading.reporting.report import GradeReport, Row
@@ -82,14 +83,19 @@ def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterato
         console: Where it has to fit.
         diagnoses: Also what is wrong where points are missing; takes about 130 columns for four exercises.
     """
-    left = list(columns(rows))
+    grid = _Grid.of(rows, diagnoses=diagnoses)
+    left = list(grid.names)
+    # Each column is measured once: a class has many rows, and rich looks at every cell.
+    without_total, with_total = _needs(grid.table([]), console), _needs(grid.table([], is_last=True), console)
+    widths = {key: _needs(grid.table([key]), console) - without_total for key in left}
+
+    def fits(count: int) -> bool:
+        bare = with_total if count == len(left) else without_total
+        return bare + sum(widths[key] for key in left[:count]) <= console.width
+
     while left:
-        here = len(left)
-        shown = _table(rows, left, diagnoses=diagnoses, is_last=True)
-        while here > 1 and _needs(shown, console) > console.width:
-            here -= 1
-            shown = _table(rows, left[:here], diagnoses=diagnoses, is_last=False)
-        yield shown
+        here = next((count for count in range(len(left), 1, -1) if fits(count)), 1)
+        yield grid.table(left[:here], is_last=here == len(left))
         left = left[here:]
 
 
@@ -98,29 +104,52 @@ def _needs(shown: Table, console: Console) -> int:
     return console.measure(shown, options=console.options.update(width=_ANY_WIDTH)).maximum
 
 
-def _table(rows: Sequence[Row], keys: Sequence[tuple[str, str]], *, diagnoses: bool, is_last: bool) -> Table:
-    names = columns(rows)
-    late = any(row.exercise == LATE for row in rows)
-    results = {(row.student, row.assignment, row.exercise): row for row in rows}
-    shown = Table(header_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
-    shown.add_column("student", overflow="fold", max_width=_NAME)
-    for key in keys:
-        # In two lines, so that four exercises fit a terminal of 80 columns.
-        shown.add_column(names[key].replace(".", "\n."), no_wrap=True)
-    if is_last and late:
-        shown.add_column("late", justify="right", no_wrap=True)
-    if is_last:
-        shown.add_column("total", justify="right", no_wrap=True)
-    for student in dict.fromkeys(row.student for row in rows):
-        own = [row for row in rows if row.student == student]
-        cells = [_cell(results.get((student, *key)), diagnoses) for key in keys]
-        if is_last and late:
-            cells.append(_taken_off(own))
-        total, most = sum(row.score for row in own), sum(row.max_score for row in own)
-        sums = [Text(f"{total:g}/{most:g}")] if is_last else []
-        name = f"{student}\n{own[0].name}" if own[0].name else student
-        shown.add_row(Text("\n".join(map(printable, name.split("\n")))), *cells, *sums)
-    return shown
+@dataclass(frozen=True)
+class _Grid:
+    """What is in the cells.
+
+    Attributes:
+        names: The heading of each column, by assignment and exercise.
+        students: The rows of each student.
+        results: The row of each cell, by student, assignment and exercise.
+        diagnoses: Whether cells say what is wrong.
+    """
+
+    names: Mapping[tuple[str, str], str]
+    students: Mapping[str, Sequence[Row]]
+    results: Mapping[tuple[str, str, str], Row]
+    diagnoses: bool
+
+    @classmethod
+    def of(cls, rows: Sequence[Row], *, diagnoses: bool) -> Self:
+        students: dict[str, list[Row]] = {}
+        for row in rows:
+            students.setdefault(row.student, []).append(row)
+        results = {(row.student, row.assignment, row.exercise): row for row in rows}
+        return cls(columns(rows), students, results, diagnoses)
+
+    def table(self, keys: Sequence[tuple[str, str]], *, is_last: bool = False) -> Table:
+        """A table of these columns; the last one has what being late costs and the total, too."""
+        late = is_last and any(exercise == LATE for _, _, exercise in self.results)
+        shown = Table(header_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
+        shown.add_column("student", overflow="fold", max_width=_NAME)
+        for key in keys:
+            # In two lines, so that four exercises fit a terminal of 80 columns.
+            shown.add_column(self.names[key].replace(".", "\n."), no_wrap=True)
+        if late:
+            shown.add_column("late", justify="right", no_wrap=True)
+        if is_last:
+            shown.add_column("total", justify="right", no_wrap=True)
+        for student, own in self.students.items():
+            cells = [_cell(self.results.get((student, *key)), self.diagnoses) for key in keys]
+            if late:
+                cells.append(_taken_off(own))
+            if is_last:
+                total, most = sum(row.score for row in own), sum(row.max_score for row in own)
+                cells.append(Text(f"{total:g}/{most:g}"))
+            name = f"{student}\n{own[0].name}" if own[0].name else student
+            shown.add_row(Text("\n".join(map(printable, name.split("\n")))), *cells)
+        return shown
 
 
 def _taken_off(rows: Sequence[Row]) -> Text:

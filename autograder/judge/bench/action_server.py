@@ -68,6 +68,7 @@ class ScriptedActionServer:
         self._client_is_gone = client_is_gone
         self._goal_id: Any = None
         self._status = GoalStatus.STATUS_UNKNOWN
+        self._feedback_sent = 0
         self._lock = threading.Lock()
         self._result: Any = None
         node, parts = wire.node, self._type.Impl
@@ -122,7 +123,10 @@ class ScriptedActionServer:
         return self._await("result_request", within)
 
     def send_feedback(self, **fields: Any) -> None:
-        """Send one feedback message for the current goal."""
+        """Send one feedback message for the current goal; before the second one, the goal's status."""
+        self._feedback_sent += 1
+        if self._feedback_sent == 2:
+            self._say_status()
         message = self._type.Impl.FeedbackMessage()
         message.goal_id = self._goal_id
         filled(message.feedback, fields)
@@ -164,6 +168,7 @@ class ScriptedActionServer:
         if self._accept_goal:
             self._goal_id = request.goal_id
             self._result = None
+            self._feedback_sent = 0
             self._status = GoalStatus.STATUS_EXECUTING
         self._recorder.record("goal", self._name, fields=to_data(request.goal))
         return response
@@ -211,10 +216,11 @@ class ScriptedActionServer:
         self._say_status()
 
     def _say_status(self) -> None:
-        """Tell the goal's status: when it changes later on, and when its client asks for the result.
+        """Tell the goal's status: when it runs for a while, when it changes, and when its client asks for the result.
 
-        Not together with the answer to the goal. The status in a handle that has just come is UNKNOWN, which is 0, and
-        a client that reads it to learn whether its goal was accepted must not be right by chance.
+        Not together with the answer to the goal, nor with the feedback right behind that. The status in a handle that
+        has just come is UNKNOWN, which is 0, and a client that reads it to learn whether its goal was accepted must not
+        be right by chance.
         """
         line = GoalStatus(goal_info=GoalInfo(goal_id=self._goal_id), status=self._status)
         self._statuses.publish(GoalStatusArray(status_list=[line]))

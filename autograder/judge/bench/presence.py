@@ -32,6 +32,8 @@ MATCH = 5.0
 """Seconds in which two endpoints that fit must have met."""
 GRAPH_POLL = 0.004
 """Seconds between two queries of the graph, which has no event to wait for."""
+START_POLL = 0.02
+"""The same while a process starts, or a build runs, and nobody has announced a node yet."""
 
 
 class Presence:
@@ -130,7 +132,7 @@ class Presence:
             alive = bool(seen.of("output") or seen.of("log") or self.nodes())
             return alive
 
-        self._recorder.wait(lambda: there() or self._subject.ended, within, poll=GRAPH_POLL)
+        self._wait_on_graph(lambda: there() or self._subject.ended, within)
         return alive
 
     def await_interface(self, there: Callable[[graph.Interface], bool]) -> graph.Interface:
@@ -177,7 +179,21 @@ class Presence:
             earlier = None
             return False
 
-        self._recorder.wait(lambda: condition() or overdue(), (AT_WORK + 2) * APPEAR, poll=GRAPH_POLL)
+        self._wait_on_graph(lambda: condition() or overdue(), (AT_WORK + 2) * APPEAR)
+
+    def _wait_on_graph(self, condition: Callable[[], bool], within: float) -> None:
+        """Ask again and again, and often only once a process of the subject's has made a node, if that can be heard."""
+        held = False
+
+        def over() -> bool:
+            nonlocal held
+            held = condition()
+            return held
+
+        if not self._subject.shares_participant:
+            self._recorder.wait(lambda: over() or self._announced(), within, poll=START_POLL)
+        if not held:
+            self._recorder.wait(over, within, poll=GRAPH_POLL)
 
     # --- writing down --------------------------------------------------------------------------------------
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from autograder import exercises
-from autograder.judge import shared_memory
 from autograder.judge.bench.wire import JudgeFailed
 from autograder.judge.serving import domain
 from autograder.judge.subjects.path_subject import PathSubject
@@ -79,7 +78,8 @@ def converse(
         # Whatever the notebook calls its subject: here only sources count.
         subject = PathSubject(lines, exercise.id, workspaces)
     else:
-        subject = RemoteSubject(lines, is_class=first.kind == "class")
+        own_process = first.kind == "path" and exercise.runner is not None
+        subject = RemoteSubject(lines, is_class=first.kind == "class", own_process=own_process)
     report, checked = _report(exercise, subject, own_seed(seed, exercise.id), recording)
     _tell(lines, Judged(_shown(exercise, report)))
     # Its notebook has its verdict already: nobody waits while the evidence is packed.
@@ -103,7 +103,6 @@ def _tell(lines: Lines, message: Message) -> None:
 def _report(
     exercise: Exercise, subject: RemoteSubject | PathSubject, seed: str, recording: bool
 ) -> tuple[Report, Checked | None]:
-    shared_memory.remove_abandoned()
     try:
         with domain.lease() as domain_id:
             if not recording:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 from typing import TYPE_CHECKING
 
+from autograder.judge import shared_memory
 from autograder.ros_domain import NoFreeDomainError, claim_free_domain
 
 if TYPE_CHECKING:
@@ -17,9 +18,12 @@ __all__ = ["NoFreeDomainError", "lease"]
 def lease() -> Iterator[int]:
     """Hold a free domain id for as long as the block runs; the claim dies with the process, however it ends.
 
+    What killed programs of earlier checks have left in shared memory is removed first.
+
     Raises:
         NoFreeDomainError: None was free.
     """
+    shared_memory.remove_abandoned()
     claim = claim_free_domain()
     try:
         yield claim.domain

@@ -31,6 +31,10 @@ class CommandNotFound(LookupError):
 
 LAUNCH_FILES = (".py", ".xml", ".yaml", ".yml")
 """How a launch file's name ends."""
+BUILDING = 150.0
+"""Seconds that a check of a command may take longer than its exercise says, because the command builds its package
+first: in each of two looks it is waited for twice as long again (`autograder/judge/bench/presence.py`), and up to three
+times as long on a crowded machine."""
 SPARE = 10.0
 """Seconds beyond an exercise's own limit before its judge is taken to have died."""
 
@@ -85,7 +89,7 @@ def check_and_keep(
         verdict, checked = checked_here(exercise, command, chosen, cwd, box)
         return msgspec.json.encode(Report(verdict, evidence=_packed(checked)))
 
-    outcome = Child(report, exercise.limit + SPARE).result()
+    outcome = Child(report, exercise.limit + BUILDING + SPARE).result()
     if outcome.data is None:
         advice = "Run `autograder doctor`."
         return not_checked(exercise.id, exercise.title, exercise.points, outcome.trouble, advice), b""
@@ -132,7 +136,7 @@ def checked_here(
     exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None, box: Box | None = None
 ) -> tuple[Verdict, Checked | None]:
     """Like :func:`judged_here`, with the evidence; without it where the judge itself had trouble."""
-    from autograder.judge import settings, shared_memory
+    from autograder.judge import settings
 
     settings.prepare_judge(boxed=box is not None)
     if box is not None:
@@ -142,7 +146,6 @@ def checked_here(
     from autograder.judge.subjects.command_subject import CommandSubject
     from autograder.judge.verdicts import reference, trial
 
-    shared_memory.remove_abandoned()
     try:
         expected = reference.load(exercise.id)
         with domain.lease() as domain_id:

@@ -1,4 +1,8 @@
-"""A node class or a function in a notebook as a subject: the kernel runs it, at the judge's word."""
+"""What a notebook gives to a check as a subject: the kernel runs it, at the judge's word.
+
+A Node class or a function lives in the kernel, in one participant for all of its runs. A workspace or a launch file is
+started by the kernel as a process of its own each time.
+"""
 
 from __future__ import annotations
 
@@ -37,15 +41,15 @@ STOP_LIMIT = 3.0
 class RemoteSubject:
     """Implements :class:`autograder.judge.subjects.subject.Subject` over a notebook's conversation."""
 
-    shares_participant = True
-
-    def __init__(self, lines: Lines, *, is_class: bool = False) -> None:
+    def __init__(self, lines: Lines, *, is_class: bool = False, own_process: bool = False) -> None:
         """Take over a conversation.
 
         Args:
             lines: The notebook's end.
             is_class: The subject is a class, whose constructor must come to its end before anything else.
+            own_process: Each run is a process of its own, which the kernel starts.
         """
+        self.shares_participant = not own_process
         # Drawn for each check, so that nobody who writes a node can have its name in it.
         self.keeper = f"_check_keeper_{secrets.token_hex(8)}"
         self._lines = lines
@@ -76,7 +80,9 @@ class RemoteSubject:
         self._fresh = True
 
     def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
-        """Ask the notebook, which looks with its own participant."""
+        """Ask the notebook, which looks with its own participant; a process of its own has met nobody yet."""
+        if not self.shares_participant:
+            return True
         self._answered.clear()
         self._seen_as_told = False
         fresh, self._fresh = self._fresh, False

@@ -6,6 +6,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from autograder.judge.bench.bench import TestBench
+from autograder.judge.bench.patience import Patience
 from autograder.judge.verdicts.trial import is_certain, judge, look
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.launch_report import processes
@@ -32,7 +33,7 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
 
     As with any subject, a fast look that fails proves nothing unless the mistake is certain: on a busy machine a goal
     may be over before it is canceled, or the first message lost before the judge could hear it. So it is looked at
-    again.
+    again, as long as the time that a check may take is not over.
 
     Returns:
         The recording. Where the solution was right in none of the looks, it is the last one, by which it is not.
@@ -46,6 +47,7 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
         raise NotRecordable(f"{exercise.id}: the reference solution showed no {' or '.join(exercise.roles)}")
     bare = Reference(exercise.id, interface)
     wrong: Reference | None = None
+    patience = Patience(exercise.limit)
     for _ in range(LOOKS):
         seen = look(exercise, subject, bare, Pace.FAST, seed=SEED, domain_id=domain_id)
         if seen.doubtful:
@@ -55,7 +57,7 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
         if judge(exercise, evidence, SEED).passed:
             return recorded
         wrong = recorded
-        if is_certain(exercise, evidence):
+        if is_certain(exercise, evidence) or patience.left <= 0:
             break
     if wrong is not None:
         return wrong

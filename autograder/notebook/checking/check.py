@@ -89,7 +89,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: Place) -> Verdi
     Raises:
         JudgeUnreachable: The judge is gone, or the link was closed.
     """
-    link.say(messages.Check(exercise, kind="class" if inspect.isclass(subject) else "function"))
+    link.say(messages.Check(exercise, kind=_kind(subject)))
     bundle.prepare()  # while the judge makes its node
     first = link.hear()
     if isinstance(first, messages.Collect):
@@ -118,7 +118,8 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: Place) -> Verdi
                         place.ensure(fresh=order.fresh)
                         link.say(messages.Met(place.sees(order.there, order.gone, order.within)))
                     case messages.Start():
-                        place.ensure(fresh=order.fresh)
+                        if not is_path(subject):  # else what is started has a participant of its own
+                            place.ensure(fresh=order.fresh)
                         number = order.run
                         card.doing(f"run {number} of your code")
                         run = (
@@ -146,6 +147,12 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: Place) -> Verdi
         finally:
             if run is not None:
                 run.stop()
+
+
+def _kind(subject: Any) -> str:
+    if inspect.isclass(subject):
+        return "class"
+    return "path" if is_path(subject) else "function"
 
 
 def _last_words(exercise: str, words: messages.FromJudge) -> Verdict:

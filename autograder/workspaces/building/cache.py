@@ -193,7 +193,8 @@ def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[st
 
 
 def _remove(base: Path, folder: Path) -> bool:
-    with (base / f"{folder.name}.lock").open("w") as lock:
+    # Opened so that nothing in it is lost: a builder that has the lock has written into it who it is.
+    with (base / f"{folder.name}.lock").open("a") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 import functools
 import hashlib
 import os
@@ -169,8 +170,12 @@ def _tools() -> tuple[str, ...]:
 
     Asked at each start of a program in a workspace: to import importlib.metadata costs five times as much.
     """
-    folders = [Path(folder) for folder in sys.path if folder]
-    entries = {entry.name for folder in folders if folder.is_dir() for entry in folder.iterdir()}
+    entries: set[str] = set()
+    for folder in filter(None, sys.path):
+        with contextlib.suppress(
+            OSError
+        ):  # not there, no folder, or not to be read: Python passes over it, too
+            entries.update(entry.name for entry in Path(folder).iterdir())
     return tuple(sorted(e for e in entries if e.startswith(_TOOLS) and e.endswith(("dist-info", "egg-info"))))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 import pytest
@@ -70,16 +71,21 @@ def test_a_blurred_look_is_followed_by_another(
     assert look.taken == looks
 
 
+def test_no_look_follows_when_the_time_of_a_check_is_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    _record(monkeypatch, look := _Looks(2, 2, 2), replace(EXERCISE, limit=0.0))
+    assert look.taken == 1
+
+
 def test_what_was_doubtful_each_time_is_not_recorded(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(record.NotRecordable, match="is the machine busy"):
         _record(monkeypatch, _Looks(*(None,) * record.LOOKS))
 
 
-def _record(monkeypatch: pytest.MonkeyPatch, look: _Looks) -> Reference:
+def _record(monkeypatch: pytest.MonkeyPatch, look: _Looks, exercise: Exercise = EXERCISE) -> Reference:
     class Subject:
         def begin(self, _: int) -> None:
             pass
 
     monkeypatch.setattr(record, "look", look)
     monkeypatch.setattr(record, "_interface", lambda *_: {})
-    return record.record(EXERCISE, cast("Any", Subject()), domain_id=1)
+    return record.record(exercise, cast("Any", Subject()), domain_id=1)
