@@ -39,6 +39,10 @@ class ActionCounterpart(Protocol):
         """Send one feedback message for the current goal."""
         ...
 
+    def say_status(self) -> None:
+        """Say the current goal's status on the action's topic, as a server does when it begins to execute a goal."""
+        ...
+
     def await_cancel(self, within: float) -> bool:
         """Wait until somebody asked to cancel the current goal; False where nobody did."""
         ...

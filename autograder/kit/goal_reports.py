@@ -34,10 +34,10 @@ NOT_AWAITED = "it ended without taking in the answer to its goal"
 MANY_REQUESTS = 3
 """Requests for one result that may have a reason; what asks more often goes on asking."""
 
-AT_ONCE = 4.3
+AT_ONCE = 4.0
 """Seconds after an answer in which a client ends that never meant to take it in. A process takes a tenth of a second to
-end, and more than one on a crowded machine. One that spins for 5 seconds, as many do, ends later than this, though its
-answer was held back for half a second; one that spins for 3 ends well before."""
+end, and more than one on a crowded machine. A client that spins for 5 seconds, as many do, ends half a second later
+than this, though its answer was held back; one that spins for 3 ends a second before."""
 _TRACEBACK = "Traceback (most recent call last)"
 _SLIPS = ("AttributeError", "TypeError", "NameError", "UnboundLocalError", "KeyError", "IndexError")
 """Exceptions that nobody raises in order to say something."""

@@ -88,7 +88,7 @@ class Bench(Protocol):
     random: Random
     reference: Any
     in_a_cell: bool
-    """Whether the subject is a notebook's, so that somebody may be waiting beside the check cell."""
+    """Whether the subject runs in a notebook's kernel, so that somebody may be waiting beside the check cell."""
 
     def part(self, name: str, **inputs: Any) -> None:
         """Begin a part: a fresh run of the subject; ``inputs`` are written into the transcript."""
@@ -342,7 +342,8 @@ class Exercise:
         roles: The endpoints that make up the subject's public face, such as ``("publisher",)``; `record`
             waits
             for one of them.
-        limit: Seconds of wall time after which the judge gives up on a check, all looks together.
+        limit: Seconds of wall time after which the judge gives up on a check, all looks together. A command, which may
+            build first, has more (`autograder/judge/subjects/command.py`).
         arguments: What a command is called with, in words; empty where it takes none.
         sample_arguments: Arguments with which ``record`` looks at the reference solution's interface.
         second_look: Whether what fails fast is looked at again in real time.

@@ -29,7 +29,7 @@ class Check(Message, frozen=True):
 
 
 class Ready(Message, frozen=True):
-    """The notebook has a ROS context on the check's domain."""
+    """The notebook has heard on which domain the check is."""
 
 
 class Met(Message, frozen=True):
@@ -142,11 +142,11 @@ FromNotebook = Check | Ready | Met | Source | Sources | RunMessage
 
 
 class Begin(Message, frozen=True):
-    """Open a ROS context on this domain.
+    """Be on this ROS domain.
 
     Attributes:
         domain: The ROS domain of this check alone.
-        keeper: The name of the node that stays in that context between runs.
+        keeper: The name of the node that stays, between runs, in the context in which a class or a function lives.
     """
 
     domain: int
@@ -174,7 +174,7 @@ class Meet(Message, frozen=True):
 
 
 class Start(Message, frozen=True):
-    """Make the node, or call the function.
+    """Make the node, call the function, or start the process.
 
     Attributes:
         run: The number of this run.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import errno
 import io
+import shutil
 from typing import TYPE_CHECKING, Any
 
 import nbformat
@@ -81,6 +82,20 @@ def test_an_unchanged_submission_is_not_run_again(tiny: TinyClass, fake_engine: 
     report = tiny.grade()
     assert fake_engine.ran == ["ben"]
     assert tiny.scores("ben")[TALKER] == 3
+
+
+def test_a_copy_of_a_class_is_graded_elsewhere_and_nothing_is_run_again(
+    tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path
+) -> None:
+    tiny.submit("ada", 10, 4)
+    tiny.grade()
+    copied = TinyClass(shutil.copytree(tiny.path, tmp_path / "other-computer" / "robotics"))
+    shutil.rmtree(tiny.path)
+    fake_engine.ran.clear()
+    report = copied.grade()
+    assert fake_engine.ran == []
+    assert (report.executed, row(report, "ada", "lab_1_2.listener").score) == (0, 4)
+    assert copied.scores("ada") == {TALKER: 10, LISTENER: 4}
 
 
 def test_what_a_killed_batch_left_goes_also_where_nothing_is_executed(

@@ -68,7 +68,6 @@ class ScriptedActionServer:
         self._client_is_gone = client_is_gone
         self._goal_id: Any = None
         self._status = GoalStatus.STATUS_UNKNOWN
-        self._feedback_sent = 0
         self._lock = threading.Lock()
         self._result: Any = None
         node, parts = wire.node, self._type.Impl
@@ -123,10 +122,7 @@ class ScriptedActionServer:
         return self._await("result_request", within)
 
     def send_feedback(self, **fields: Any) -> None:
-        """Send one feedback message for the current goal; before the second one, the goal's status."""
-        self._feedback_sent += 1
-        if self._feedback_sent == 2:
-            self._say_status()
+        """Send one feedback message for the current goal."""
         message = self._type.Impl.FeedbackMessage()
         message.goal_id = self._goal_id
         filled(message.feedback, fields)
@@ -168,7 +164,6 @@ class ScriptedActionServer:
         if self._accept_goal:
             self._goal_id = request.goal_id
             self._result = None
-            self._feedback_sent = 0
             self._status = GoalStatus.STATUS_EXECUTING
         self._recorder.record("goal", self._name, fields=to_data(request.goal))
         return response
@@ -200,7 +195,7 @@ class ScriptedActionServer:
         known = self._goal_id is not None and goal_text(request.goal_id) == goal_text(self._goal_id)
         self._recorder.record("result_request", self._name, known=known)
         if known:
-            self._say_status()
+            self.say_status()
         response.status = GoalStatus.STATUS_UNKNOWN
         return None if known else response
 
@@ -213,14 +208,14 @@ class ScriptedActionServer:
 
     def _set_status(self, status: int) -> None:
         self._status = status
-        self._say_status()
+        self.say_status()
 
-    def _say_status(self) -> None:
-        """Tell the goal's status: when it runs for a while, when it changes, and when its client asks for the result.
+    def say_status(self) -> None:
+        """Say the goal's status on its topic: when it changes, and when its client asks for the result.
 
-        Not together with the answer to the goal, nor with the feedback right behind that. The status in a handle that
-        has just come is UNKNOWN, which is 0, and a client that reads it to learn whether its goal was accepted must not
-        be right by chance.
+        By itself not together with the answer to the goal, nor with the feedback right behind that. The status in a
+        handle that has just come is UNKNOWN, which is 0, and a client that reads it to learn whether its goal was
+        accepted must not be right by chance. A scenario says it when that time is over.
         """
         line = GoalStatus(goal_info=GoalInfo(goal_id=self._goal_id), status=self._status)
         self._statuses.publish(GoalStatusArray(status_list=[line]))

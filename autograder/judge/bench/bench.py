@@ -40,7 +40,7 @@ class TestBench:
     """Implements :class:`autograder.kit.model.Bench` on real ROS.
 
     Attributes:
-        in_a_cell: The subject is a notebook's.
+        in_a_cell: The subject runs in a notebook's kernel.
         parts: The finished parts.
         doubtful: Something in a fast look must be confirmed in real time.
     """

@@ -183,6 +183,7 @@ class Presence:
 
     def _wait_on_graph(self, condition: Callable[[], bool], within: float) -> None:
         """Ask again and again, and often only once a process of the subject's has made a node, if that can be heard."""
+        patience = Patience(within)
         held = False
 
         def over() -> bool:
@@ -192,8 +193,8 @@ class Presence:
 
         if not self._subject.shares_participant:
             self._recorder.wait(lambda: over() or self._announced(), within, poll=START_POLL)
-        if not held:
-            self._recorder.wait(over, within, poll=GRAPH_POLL)
+        if not held and (left := patience.left) > 0:
+            self._recorder.wait(over, left, poll=GRAPH_POLL)
 
     # --- writing down --------------------------------------------------------------------------------------
 

@@ -31,10 +31,10 @@ class CommandNotFound(LookupError):
 
 LAUNCH_FILES = (".py", ".xml", ".yaml", ".yml")
 """How a launch file's name ends."""
-BUILDING = 150.0
+FOR_BUILDS = 150.0
 """Seconds that a check of a command may take longer than its exercise says, because the command builds its package
-first: in each of two looks it is waited for twice as long again (`autograder/judge/bench/presence.py`), and up to three
-times as long on a crowded machine."""
+first: in the first part of each of two looks it is waited for twice as long again, and up to three times as long on a
+crowded machine (`autograder/judge/bench/presence.py`)."""
 SPARE = 10.0
 """Seconds beyond an exercise's own limit before its judge is taken to have died."""
 
@@ -89,7 +89,7 @@ def check_and_keep(
         verdict, checked = checked_here(exercise, command, chosen, cwd, box)
         return msgspec.json.encode(Report(verdict, evidence=_packed(checked)))
 
-    outcome = Child(report, exercise.limit + BUILDING + SPARE).result()
+    outcome = Child(report, exercise.limit + FOR_BUILDS + SPARE).result()
     if outcome.data is None:
         advice = "Run `autograder doctor`."
         return not_checked(exercise.id, exercise.title, exercise.points, outcome.trouble, advice), b""

@@ -122,7 +122,7 @@ class RemoteSubject:
         return self._ended or self._gone.is_set()
 
     def processes(self) -> frozenset[int]:
-        """Nobody can tell: it runs in the notebook's kernel, beside whatever else that has started."""
+        """Nobody can tell: the notebook's kernel runs it, beside whatever else that has started."""
         return frozenset()
 
     @property

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import time
 from random import Random
 from typing import TYPE_CHECKING
 
 from autograder.judge.bench.bench import TestBench
-from autograder.judge.bench.patience import Patience
 from autograder.judge.verdicts.trial import is_certain, judge, look
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.launch_report import processes
@@ -33,7 +33,7 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
 
     As with any subject, a fast look that fails proves nothing unless the mistake is certain: on a busy machine a goal
     may be over before it is canceled, or the first message lost before the judge could hear it. So it is looked at
-    again, as long as the time that a check may take is not over.
+    again, but not once the recording has taken as long as a check may.
 
     Returns:
         The recording. Where the solution was right in none of the looks, it is the last one, by which it is not.
@@ -41,14 +41,16 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
     Raises:
         NotRecordable: It never had an endpoint of the exercise's roles, or each look was doubtful.
     """
+    deadline = time.monotonic() + exercise.limit
     subject.begin(domain_id)
     interface = _interface(exercise, subject, domain_id)
     if exercise.roles and not any(interface.get(role) for role in exercise.roles):
         raise NotRecordable(f"{exercise.id}: the reference solution showed no {' or '.join(exercise.roles)}")
     bare = Reference(exercise.id, interface)
     wrong: Reference | None = None
-    patience = Patience(exercise.limit)
-    for _ in range(LOOKS):
+    for number in range(LOOKS):
+        if number and time.monotonic() > deadline:
+            break
         seen = look(exercise, subject, bare, Pace.FAST, seed=SEED, domain_id=domain_id)
         if seen.doubtful:
             continue
@@ -57,7 +59,7 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
         if judge(exercise, evidence, SEED).passed:
             return recorded
         wrong = recorded
-        if is_certain(exercise, evidence) or patience.left <= 0:
+        if is_certain(exercise, evidence):
             break
     if wrong is not None:
         return wrong

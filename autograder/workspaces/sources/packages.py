@@ -172,9 +172,8 @@ def _tools() -> tuple[str, ...]:
     """
     entries: set[str] = set()
     for folder in filter(None, sys.path):
-        with contextlib.suppress(
-            OSError
-        ):  # not there, no folder, or not to be read: Python passes over it, too
+        # One that is not there, is no folder or may not be read: Python passes over it, too.
+        with contextlib.suppress(OSError):
             entries.update(entry.name for entry in Path(folder).iterdir())
     return tuple(sorted(e for e in entries if e.startswith(_TOOLS) and e.endswith(("dist-info", "egg-info"))))
 

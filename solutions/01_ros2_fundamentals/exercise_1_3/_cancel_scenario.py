@@ -40,6 +40,8 @@ AT_A_TIME = 3
 LAB_TIME = 1.5
 """Seconds of its own time in which a client must not ask once more; the lab's server takes less to end the goal."""
 
+FIRST_STATUS = 2
+"""Before this feedback message the goal's status is said: a while after its acceptance, before anybody may cancel."""
 FEEDBACK_GAP = {Pace.FAST: 0.03, Pace.REAL_TIME: 0.5}
 """Seconds between two feedback messages outside the window in which a cancel is expected."""
 LATE_GAP = 0.2
@@ -159,6 +161,8 @@ def send_feedback_until_cancelled(
 ) -> bool:
     """Send feedback until somebody asks to cancel, as much as there is; whether somebody did."""
     for count in range(WITHOUT_CANCEL + 1):
+        if count == FIRST_STATUS:
+            say_that_it_runs(bench, server)
         if count:
             send_next(server, sequence)
         if bench.pace is Pace.FAST:
@@ -179,6 +183,15 @@ def send_feedback_until_cancelled(
             bench.doubt()
             return True
     return False
+
+
+def say_that_it_runs(bench: Bench, server: ActionCounterpart) -> None:
+    """Say that the goal is executing, and let its client take that in before the next feedback comes."""
+    server.say_status()
+    if bench.pace is Pace.FAST:
+        bench.settle()
+    else:
+        bench.run_time(LATE_GAP)
 
 
 def send_late_feedback(bench: Bench, server: ActionCounterpart, sequence: list[int], *, watch: bool) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from autograder.judge.bench import graph
 from autograder.judge.bench import presence as presence_module
-from autograder.judge.bench.presence import AT_WORK, Presence
+from autograder.judge.bench.presence import AT_WORK, GRAPH_POLL, START_POLL, Presence
 from autograder.judge.bench.recorder import Recorder
 
 if TYPE_CHECKING:
@@ -125,3 +125,29 @@ def test_a_node_that_was_there_for_a_moment_is_written_down(
     assert presence.await_node() is announced
     presence.note_short_life()
     assert [event.kind for event in recorder.part().events] == events
+
+
+@pytest.mark.parametrize(
+    ("announced", "polls"),
+    [
+        pytest.param(False, [START_POLL], id="nobody announced a node: one limit, looks that are rare"),
+        pytest.param(
+            True, [START_POLL, GRAPH_POLL], id="a node is about to be seen: frequent looks, in the same limit"
+        ),
+    ],
+)
+def test_the_graph_is_asked_often_once_a_node_is_announced_and_no_longer_than_was_said(
+    monkeypatch: pytest.MonkeyPatch, announced: bool, polls: list[float]
+) -> None:
+    waits: list[tuple[float, float]] = []
+    presence, recorder = _presence(monkeypatch, _ACommand(0), lambda _: _interface(), announced=announced)
+    wait = recorder.wait
+
+    def noted(condition: Callable[[], bool], within: float, *, poll: float) -> bool:
+        waits.append((within, poll))
+        return wait(condition, within, poll=poll)
+
+    monkeypatch.setattr(recorder, "wait", noted)
+    assert not presence.await_sign_of_life(0.1)
+    assert [poll for _, poll in waits] == polls
+    assert all(within <= 0.1 for within, _ in waits)
