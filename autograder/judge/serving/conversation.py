@@ -12,7 +12,7 @@ from autograder import exercises
 from autograder.judge.bench.wire import JudgeFailed
 from autograder.judge.serving import domain
 from autograder.judge.subjects.path_subject import PathSubject
-from autograder.judge.subjects.remote_subject import RemoteSubject
+from autograder.judge.subjects.remote_subject import RemotePath, RemoteSubject
 from autograder.judge.verdicts import keeping, record, reference, trial
 from autograder.messages.checks import Check, Judged, Refused
 from autograder.messages.lines import Hangup, Lines, NotUnderstood
@@ -77,9 +77,10 @@ def converse(
     if workspaces and exercise.runner:
         # Whatever the notebook calls its subject: here only sources count.
         subject = PathSubject(lines, exercise.id, workspaces)
+    elif exercise.runner and first.kind == "path":
+        subject = RemotePath(lines)
     else:
-        own_process = first.kind == "path" and exercise.runner is not None
-        subject = RemoteSubject(lines, is_class=first.kind == "class", own_process=own_process)
+        subject = RemoteSubject(lines, is_class=first.kind == "class")
     report, checked = _report(exercise, subject, own_seed(seed, exercise.id), recording)
     _tell(lines, Judged(_shown(exercise, report)))
     # Its notebook has its verdict already: nobody waits while the evidence is packed.

@@ -12,6 +12,7 @@ import threading
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from autograder.judge.subjects.subject import InOwnProcesses
 from autograder.messages import checks
 from autograder.messages.lines import Hangup, Lines, NotUnderstood
 from autograder.messages.workspaces import Source
@@ -41,15 +42,15 @@ STOP_LIMIT = 3.0
 class RemoteSubject:
     """Implements :class:`autograder.judge.subjects.subject.Subject` over a notebook's conversation."""
 
-    def __init__(self, lines: Lines, *, is_class: bool = False, own_process: bool = False) -> None:
+    shares_participant = True
+
+    def __init__(self, lines: Lines, *, is_class: bool = False) -> None:
         """Take over a conversation.
 
         Args:
             lines: The notebook's end.
             is_class: The subject is a class, whose constructor must come to its end before anything else.
-            own_process: Each run is a process of its own, which the kernel starts.
         """
-        self.shares_participant = not own_process
         # Drawn for each check, so that nobody who writes a node can have its name in it.
         self.keeper = f"_check_keeper_{secrets.token_hex(8)}"
         self._lines = lines
@@ -80,9 +81,7 @@ class RemoteSubject:
         self._fresh = True
 
     def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
-        """Ask the notebook, which looks with its own participant; a process of its own has met nobody yet."""
-        if not self.shares_participant:
-            return True
+        """Ask the notebook, which looks with its own participant."""
         self._answered.clear()
         self._seen_as_told = False
         fresh, self._fresh = self._fresh, False
@@ -122,7 +121,7 @@ class RemoteSubject:
         return self._ended or self._gone.is_set()
 
     def processes(self) -> frozenset[int]:
-        """Nobody can tell: the notebook's kernel runs it, beside whatever else that has started."""
+        """Nobody can tell: it runs in the notebook's kernel, beside whatever else that has started."""
         return frozenset()
 
     @property
@@ -208,6 +207,15 @@ class RemoteSubject:
     def _note_end(self, run: int) -> None:
         if run == self._run:
             self._ended = True
+
+
+class RemotePath(InOwnProcesses, RemoteSubject):
+    """A workspace or a launch file: the notebook's kernel starts what is in it."""
+
+    def __init__(self, lines: Lines) -> None:
+        """Take over a conversation."""
+        super().__init__(lines)
+        self.keeper = InOwnProcesses.keeper
 
 
 def _bounded(seconds: float) -> float:
