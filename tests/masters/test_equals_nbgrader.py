@@ -13,15 +13,15 @@ from nbgrader.apps import NbGraderAPI
 from traitlets.config import Config
 
 from autograder.masters.layout import chapter_path, lab_name, masters
-from autograder.masters.release import release_preprocessors
+from autograder.masters.release_steps import ReleaseSteps
 from autograder.masters.source import source_notebook
 
 ROOT = Path(__file__).resolve().parents[2]
 MASTERS = masters(ROOT)
 CONFIG = """\
 c = get_config()
-from autograder.masters.release import release_preprocessors
-c.GenerateAssignment.preprocessors = release_preprocessors()
+from autograder.masters.release_steps import ReleaseSteps
+c.GenerateAssignment.preprocessors = ReleaseSteps()
 """
 
 
@@ -57,7 +57,7 @@ def test_the_formgrader_gives_the_same_bytes(nbgrader_class: Path) -> None:
     config = Config()
     config.CourseDirectory.root = str(nbgrader_class)
     config.CourseDirectory.db_url = f"sqlite:///{nbgrader_class / 'gradebook.db'}"
-    config.GenerateAssignment.preprocessors = release_preprocessors()
+    config.GenerateAssignment.preprocessors = ReleaseSteps()
     api = NbGraderAPI(config=config)
     for master in MASTERS:
         result = api.generate_assignment(lab_name(master))

@@ -6,7 +6,6 @@ import contextlib
 import functools
 import hashlib
 import os
-import re  # noqa: TID251  (an instructor's configuration)
 import stat
 import tempfile
 import unicodedata
@@ -31,7 +30,6 @@ CONFIG_NAME = "nbgrader_config.py"
 STATE_NAME = ".autograder"
 SUFFIX = ".ipynb"
 _LONGEST_NAME = 100
-_MAY_NAME_GRADEBOOK = re.compile(rb"db_url|subconfig|exec|update|merge|import_module")
 
 
 @dataclass(frozen=True)
@@ -89,10 +87,9 @@ class ClassDirectory:
     @property
     def gradebook_url(self) -> str:
         """What SQLAlchemy opens the gradebook by."""
-        usual = f"sqlite:///{self.path / 'gradebook.db'}"
-        if not _MAY_NAME_GRADEBOOK.search((self.path / CONFIG_NAME).read_bytes()):
-            return usual  # the configuration is a program that takes a second
-        return str(self.config.CourseDirectory.get("db_url") or usual)
+        return str(
+            self._as_written.CourseDirectory.get("db_url") or f"sqlite:///{self.path / 'gradebook.db'}"
+        )
 
     @functools.cached_property
     def config(self) -> Config:
@@ -101,12 +98,7 @@ class ClassDirectory:
         Raises:
             ClassIncomplete: The configuration is no Python, or not one that grades with the judge.
         """
-        try:
-            config = PyFileConfigLoader(CONFIG_NAME, path=str(self.path)).load_config()
-        except Exception as error:  # it is a program: it may raise anything
-            raise ClassIncomplete(
-                f"{self.path / CONFIG_NAME} cannot be read: {type(error).__name__}: {error}"
-            ) from error
+        config = self._as_written
         steps = [str(step) for step in config.Autograde.get("autograde_preprocessors", ())]
         if not any("WireExecute" in step for step in steps):
             raise ClassIncomplete(
@@ -122,6 +114,15 @@ class ClassDirectory:
             )
         config.CourseDirectory.root = str(self.path)
         return config
+
+    @functools.cached_property
+    def _as_written(self) -> Config:
+        try:
+            return PyFileConfigLoader(CONFIG_NAME, path=str(self.path)).load_config()
+        except Exception as error:  # it is a program: it may raise anything
+            raise ClassIncomplete(
+                f"{self.path / CONFIG_NAME} cannot be read: {type(error).__name__}: {error}"
+            ) from error
 
     @functools.cached_property
     def secret(self) -> bytes:

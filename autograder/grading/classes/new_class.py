@@ -34,13 +34,13 @@ CONFIG = '''\
 
 import os
 
-from autograder.masters.release import release_preprocessors
+from autograder.masters.release_steps import ReleaseSteps
 
 c = get_config()  # noqa: F821  (nbgrader defines it)
 c.CourseDirectory.root = os.path.dirname(os.path.abspath(__file__))
 
 # What students get: each solution replaced by its TODO comment, given cells locked.
-c.GenerateAssignment.preprocessors = release_preprocessors()
+c.GenerateAssignment.preprocessors = ReleaseSteps()
 
 # How a submission is graded: the judge watches each check cell on the wire, whether it is `./course grade`,
 # `nbgrader autograde` or formgrader's button that starts it. Without the first line, the second one refuses to grade.

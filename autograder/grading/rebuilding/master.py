@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from nbgrader.converters import GenerateAssignment
 from nbgrader.preprocessors import SaveCells
+from traitlets.config import Config
 
 from autograder import exercises
 from autograder.boxes.execution import Check
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from nbformat import NotebookNode
-    from traitlets.config import Config
 
 
 def read_master(source: Path, config: Config) -> NotebookNode:
@@ -132,7 +132,9 @@ def _check_cells(source: Path, notebook: NotebookNode) -> None:
 
 def _steps(config: Config) -> tuple[str, ...]:
     """What happens to a source notebook before it is entered into the gradebook."""
-    configured = config.GenerateAssignment.get("preprocessors") or GenerateAssignment().preprocessors
+    configured = GenerateAssignment(
+        config=Config({"GenerateAssignment": config.GenerateAssignment})
+    ).preprocessors
     names = [
         step if isinstance(step, str) else f"{step.__module__}.{step.__qualname__}" for step in configured
     ]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from typing import TYPE_CHECKING
 
 import pytest
@@ -19,6 +21,8 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
 OF_AN_EARLIER_CLASS = """
+from autograder.masters.release import release_preprocessors
+c.GenerateAssignment.preprocessors = release_preprocessors()
 c.Autograde.exporter_class = "autograder.grading.exporter.SubmissionExporter"
 c.Autograde.pre_convert_hook = "autograder.grading.hooks.before_autograde"
 c.Autograde.sanitize_preprocessors = ["nbgrader.preprocessors.CheckCellMetadata"]
@@ -35,6 +39,16 @@ c.OverwriteCells.add_missing_cells = True
 
 def test_what_new_class_writes_is_honoured(tiny: TinyClass) -> None:
     check_configuration(ClassDirectory(tiny.path))
+
+
+def test_who_reads_it_waits_for_no_import_of_nbgrader(tiny: TinyClass) -> None:
+    asked = (
+        "import pathlib, sys; from autograder.grading.classes.class_directory import ClassDirectory; "
+        "ClassDirectory(pathlib.Path(sys.argv[1])).config; print(*{'nbgrader', 'nbconvert'} & set(sys.modules))"
+    )
+    command = [sys.executable, "-c", asked, str(tiny.path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == []
 
 
 def test_a_class_that_was_made_before_is_graded_as_ever(tiny: TinyClass, fake_engine: FakeEngine) -> None:
