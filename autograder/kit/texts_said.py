@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 from collections import Counter
+from dataclasses import dataclass
 from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
 
@@ -16,18 +18,21 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part
 
 _QUOTED = re2.compile(r"[\"“«].*[\pL\pN_].*[\"”»]")
+_OPENING, _CLOSING = tuple("\"'“‘«`"), tuple("\"'”’»`")
+_A_TALKERS = re2.compile(r"\W*[Hh]ello,? [Ww]orld!?\W*\d+\W*")
+"""What the talkers of this course and of the official tutorials say."""
 _BYTE = ("\\x00", "\0")
 """A zero byte, as Python shows it or as it is. A serialized text has them before and behind it."""
 MUCH = 5
 """Characters in a row of a text that a line has in it only if it was made of that text."""
 OFTEN = 3
-"""Times that a text is said before that alone is too often."""
+"""Times that the last text is said before that alone is too often."""
 
 
 def tells(line: str, text: str) -> bool:
     """Whether a line says a text: as it came, and not among the bytes of a serialized message."""
-    before, found, after = line.partition(text)
-    return bool(found) and not before.endswith(_BYTE) and not after.startswith(_BYTE)
+    found = _frame(line, text)
+    return found is not None and not found.before.endswith(_BYTE) and not found.after.startswith(_BYTE)
 
 
 def is_said(text: str, part: Part, *, after: Event | None = None) -> bool:
@@ -43,6 +48,50 @@ def has_much_of(line: str, text: str) -> bool:
     return found.size >= MUCH
 
 
+@dataclass(frozen=True)
+class Frame:
+    """The words in which a program says a text.
+
+    Attributes:
+        before: What stands before the text in its line.
+        after: What stands behind it.
+    """
+
+    before: str
+    after: str
+
+    def content(self, line: str) -> str | None:
+        """What stands in a line in the place of the text; None where the line has other words."""
+        long_enough = len(line) >= len(self.before) + len(self.after)
+        if not (long_enough and line.startswith(self.before) and line.endswith(self.after)):
+            return None
+        return line[len(self.before) : len(line) - len(self.after)]
+
+    @property
+    def is_telling(self) -> bool:
+        """Whether it is too long for other lines to have it by chance."""
+        return len(self.before.strip()) > 3
+
+    @property
+    def has_quotes(self) -> bool:
+        """Whether the text stands in quotation marks."""
+        return self.before.endswith(_OPENING) and self.after.startswith(_CLOSING)
+
+    @property
+    def quotes(self) -> bool:
+        """Whether the marks are there for the text alone, and not for each line, as in JSON or in ``msg="…"``."""
+        rest = self.before[:-1]
+        return self.has_quotes and not rest.endswith("=") and not any(mark in rest for mark in _OPENING)
+
+    def is_claim(self, content: str) -> bool:
+        """Whether a line with this content claims to tell of a text.
+
+        Many programs have their name at the front of each line, also of one that tells what they wait for. So what is
+        not quoted is a claim only where it is what a talker says.
+        """
+        return self.quotes or (self.has_quotes and not content) or _A_TALKERS.fullmatch(content) is not None
+
+
 def invented(part: Part, sent: Sequence[str]) -> list[str]:
     """What it claims to have heard although nobody sent it.
 
@@ -50,17 +99,42 @@ def invented(part: Part, sent: Sequence[str]) -> list[str]:
     A line with the same frame and another text in it was invented. Where it said none of the texts, a line with a
     quoted text is taken for such a claim.
     """
-    spoken = part.said()
-    lines = [line for line in spoken if not any(text in line for text in sent)]
-    frames = {_frame(line, text) for text in sent if (line := _claim(spoken, text)) is not None}
-    if not frames:
-        return [] if part.traceback else [line for line in lines if _QUOTED.search(line)]
+    found = _frames(part, sent)
+    if not found:
+        return [] if part.traceback else [line for line in _others(part, sent) if _QUOTED.search(line)]
+    return [line for line, frame, content in _in_frames(part, sent, found) if frame.is_claim(content)]
+
+
+def changed(part: Part, sent: Sequence[str], text: str) -> list[str]:
+    """The lines in which it said something else in the place of a text that was sent."""
+    found = _frames(part, sent)
+    if not found:
+        # Which texts a change touches depends on the texts: with the first one changed, none is said.
+        return [line for line in _others(part, sent) if has_much_of(line, text)]
     return [
         line
-        for line in lines
-        for before, after in frames
-        if len(before.strip()) > 3 and line.startswith(before) and line.endswith(after)
+        for line, frame, content in _in_frames(part, sent, found)
+        if frame.quotes or (content and (content in text or has_much_of(content, text)))
     ]
+
+
+def _frames(part: Part, sent: Sequence[str]) -> set[Frame]:
+    spoken = part.said()
+    found = (_frame(line, text) for text in sent if (line := _claim(spoken, text)) is not None)
+    return {frame for frame in found if frame is not None}
+
+
+def _others(part: Part, sent: Sequence[str]) -> list[str]:
+    """The lines in which no text is."""
+    return [line for line in part.said() if not any(_frame(line, text) for text in sent)]
+
+
+def _in_frames(part: Part, sent: Sequence[str], frames: set[Frame]) -> Iterator[tuple[str, Frame, str]]:
+    for line in _others(part, sent):
+        for frame in frames:
+            content = frame.content(line)
+            if content is not None and frame.is_telling:
+                yield line, frame, content
 
 
 def repeated(part: Part, sent: Sequence[str]) -> dict[str, int]:
@@ -72,14 +146,13 @@ def repeated(part: Part, sent: Sequence[str]) -> dict[str, int]:
     channels: dict[tuple[str, ...], Counter[str]] = {}
     for channel, line in _by_channel(part):
         channels.setdefault(channel, Counter())[line] += 1
-    often: dict[str, int] = {}
-    for text in sent:
-        first = _claim(part.said(), text)
-        if first is not None:
-            often[text] = max(lines[first] for lines in channels.values())
-    many = {text: times for text, times in often.items() if times > 1}
-    # A single line may come twice by chance, as where a program says what it has just said once more at its end.
-    return many if len(many) > 1 or max(many.values(), default=0) >= OFTEN else {}
+    spoken = part.said()
+    claims = {text: claim for text in sent if (claim := _claim(spoken, text)) is not None}
+    often = {text: max(lines[claim] for lines in channels.values()) for text, claim in claims.items()}
+    many = {text: times for text, times in often.items() if times > 1 and sent.count(text) == 1}
+    # A program may say at its end once more what it said last.
+    only_the_last = many.keys() == {next(reversed(claims), None)}
+    return {} if only_the_last and max(many.values()) < OFTEN else many
 
 
 def _claim(lines: Sequence[str], text: str) -> str | None:
@@ -95,6 +168,15 @@ def _by_channel(part: Part) -> Iterator[tuple[tuple[str, ...], str]]:
             yield (event.kind, event.name, str(event.data.get("level", "")), str(logged)), line
 
 
-def _frame(line: str, text: str) -> tuple[str, str]:
-    before, _, after = line.partition(text)
-    return before, after
+def _frame(line: str, text: str) -> Frame | None:
+    for form in _forms(text):
+        before, found, after = line.partition(form)
+        if found:
+            return Frame(before, after)
+    return None
+
+
+@functools.lru_cache(maxsize=256)
+def _forms(text: str) -> tuple[str, ...]:
+    """A text as it is, with its letters escaped as JSON and YAML may do it, and as its bytes are shown."""
+    return (text,) if text.isascii() else (text, ascii(text)[1:-1], repr(text.encode())[2:-1])

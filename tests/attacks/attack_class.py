@@ -138,7 +138,7 @@ class Graded:
 
 def _listeners_texts() -> str:
     """Python that draws the texts which the judge sends to a listener: the course is public, its boxes are not."""
-    known = ("SINGLY", "AT_PACE", "TRIES", "SIMULATED", "GREETING", "_WORDS")
+    known = ("SINGLY", "AT_PACE", "TRIES", "KINDS", "GREETING", "_WORDS", "_ELSEWHERE")
     lines = [f"{name} = {getattr(subscriber, name)!r}" for name in known]
     return "\n".join(["from random import Random", *lines, inspect.getsource(subscriber.random_texts)])
 

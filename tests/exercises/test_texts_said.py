@@ -53,10 +53,42 @@ def test_a_log_line_and_a_print_are_no_repetition(seen: object) -> None:
     assert repeated(Part("p", {}, [*events, *events]), SENT) == dict.fromkeys(SENT, 2)
 
 
-def test_one_text_twice_may_be_chance_and_thrice_is_not() -> None:
-    line = _log("I heard: amber birch 1234")
-    assert not repeated(Part("p", {}, [line] * 2), SENT)
-    assert repeated(Part("p", {}, [line] * 3), SENT) == {SENT[0]: 3}
+def test_the_last_text_may_be_said_once_more_at_the_end() -> None:
+    first, last = (_log(f"I heard: {text}") for text in SENT)
+    assert not repeated(Part("p", {}, [first, last, last]), SENT)
+    assert repeated(Part("p", {}, [first, last, last, last]), SENT) == {SENT[1]: 3}
+    assert repeated(Part("p", {}, [first, first, last]), SENT) == {SENT[0]: 2}
+
+
+def test_a_text_that_was_sent_twice_is_said_twice() -> None:
+    first, last = (_log(f"I heard: {text}") for text in SENT)
+    assert not repeated(Part("p", {}, [first, first, last]), (SENT[0], *SENT))
+
+
+@pytest.mark.parametrize(
+    ("frame", "other"),
+    [
+        ("[listener] {}", "[listener] ready, waiting for messages"),
+        ("Heard {}", "Heard 5 messages so far"),
+        ("I heard: {}", "I heard: nothing yet"),
+        ("Heard: {}.", "Heard: 5 texts."),
+        ('{{"node": "listener", "text": "{}"}}', '{"node": "listener", "text": "ready"}'),
+        ('level=info msg="{}"', 'level=info msg="subscribed"'),
+    ],
+)
+def test_a_line_that_begins_as_each_line_does_is_no_claim(frame: str, other: str) -> None:
+    heard = _log(frame.format(SENT[0]))
+    assert not invented(Part("p", {}, [_log(other), heard, _log(other)]), SENT)
+    fake = frame.format("Hello, world! 3")
+    assert invented(Part("p", {}, [heard, _log(fake)]), SENT) == [fake]
+
+
+@pytest.mark.parametrize(
+    "escaped", ["řeka  {fjord} 1234", "\\u0159eka  {fjord} 1234", "\\xc5\\x99eka  {fjord} 1234"]
+)
+def test_letters_may_be_escaped_and_may_not_be_missing(escaped: str) -> None:
+    assert tells(f'{{"text": "{escaped}"}}', "řeka  {fjord} 1234")
+    assert not tells(f'{{"text": "{escaped.replace("  ", " ")}"}}', "řeka  {fjord} 1234")
 
 
 def test_lines_in_other_words_and_of_other_loggers_are_free() -> None:

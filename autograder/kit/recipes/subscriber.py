@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from functools import partial
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from autograder.kit import common_mistakes as common
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.hangs import HANGS
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
-from autograder.kit.texts_said import has_much_of, invented, is_said, repeated
+from autograder.kit.texts_said import changed, invented, is_said, repeated
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,11 +35,15 @@ AFTERMATH = 2.5
 """Seconds (likewise) after the last text, in which nothing may be made up or said again."""
 GREETING = "Hello, world!"
 """The beginning of what many talkers say: some of the texts have it in them."""
+KINDS = 5
+"""Kinds of texts in each row that are more than two words and a number; one more text comes twice."""
 
 _WORDS = (
     "amber", "birch", "cedar", "delta", "ember", "fjord", "grove", "harbour", "islet", "juniper", "kelp", "lagoon",
     "meadow", "north", "orchard", "pebble", "quarry", "river", "summit", "tundra",
 )  # fmt: skip
+_ELSEWHERE = ("mgła", "łąka", "řeka", "erdő", "tűz")
+"""Words of other languages. Their letters have one number that JSON, YAML and Python write in the same way."""
 
 
 class Speaks:
@@ -73,12 +78,20 @@ class Speaks:
 
     def _all_are_said(self, bench: Bench, speaker: Speaker, texts: Sequence[str]) -> bool:
         if not _is_answered(bench, speaker, texts[0]):
+            self._ask_once_more(bench, speaker, texts[1])
             return False
         if bench.wait_until(_is_simulated, 0.0):
             return self._are_said_at_pace(bench, speaker, texts[1:SIMULATED])
         kept = any(self._are_said_at_pace(bench, speaker, row) for row in _rows(texts))
         # Where it missed some at that pace, two more tell whether it says what it is given time for.
         return all(_is_answered(bench, speaker, text) for text in texts[-SINGLY:][: None if kept else 2])
+
+    def _ask_once_more(self, bench: Bench, speaker: Speaker, text: str) -> None:
+        """Send one more text to who has said nothing: it may say the one before."""
+        first = bench.seen().first("sent")
+        if not bench.seen().said(after=first):
+            speaker.send(data=text)
+            bench.wait_until(lambda evidence: bool(evidence.main.said(after=first)), PATIENCE[Pace.FAST])
 
     def _are_said_at_pace(self, bench: Bench, speaker: Speaker, texts: Sequence[str]) -> bool:
         for text in texts:
@@ -125,6 +138,8 @@ class Speaks:
         singly = [event for event in _sent(evidence) if _text(event) in texts[-SINGLY:]]
         if _is_simulated(evidence) or not singly or not missing or any(event in singly for event in missing):
             return None
+        if all(is_said(_text(event), evidence.main) for event in missing):
+            return None  # only texts that came once more are missing
         return Advice(
             f"At the pace of {self._paced_by}, a text every {self._pace:g} s, your listener misses some, such as "
             f"“{_text(missing[0])}”; when it is given more time, it says all.",
@@ -160,22 +175,34 @@ def _is_simulated(evidence: Evidence) -> bool:
 
 
 def random_texts(random: Random) -> list[str]:
-    """Texts of words and a number; none is part of another. Some have the greeting of many talkers in them."""
+    """Texts of words and a number; none is part of another, and in each row one comes twice, one after the other.
+
+    In each row some are of other kinds: with the greeting of many talkers before or behind, long and in capitals, with
+    braces and a percent sign, with letters beyond ASCII and two blanks.
+    """
     count = 1 + TRIES * AT_PACE + SINGLY
     words = [f"{random.choice(_WORDS)} {random.choice(_WORDS)}" for _ in range(count)]
     texts = [
         f"{two} {number}" for two, number in zip(words, random.sample(range(1000, 10000), count), strict=True)
     ]
-    for row in (range(1, 1 + AT_PACE), range(1 + AT_PACE, SIMULATED), range(count - SINGLY, count)):
-        first, second, third = random.sample(row, 3)
-        texts[first] = f"{GREETING} {texts[first].rpartition(' ')[2]}"
-        texts[second] = f"{texts[second]} {GREETING}"
-        texts[third] = f"{random.choice(_WORDS).upper()} {' '.join(random.sample(_WORDS, 4))} {texts[third]}"
+    at_pace = [range(1 + AT_PACE * i, 1 + AT_PACE * (i + 1)) for i in range(TRIES)]
+    for row in (*at_pace, range(count - SINGLY, count)):
+        twice = random.choice(row[:-1])
+        rest = [place for place in row if place not in (twice, twice + 1)]
+        greets, greeted, long, marks, far = random.sample(rest, KINDS)
+        texts[twice + 1] = texts[twice]
+        texts[greets] = f"{GREETING} {texts[greets].rpartition(' ')[2]}"
+        texts[greeted] = f"{texts[greeted]} {GREETING}"
+        texts[long] = f"{random.choice(_WORDS).upper()} {' '.join(random.sample(_WORDS, 4))} {texts[long]}"
+        texts[marks] = f"{{{random.choice(_WORDS)}}} {random.randrange(10, 100)}% {texts[marks]}"
+        texts[far] = f"{random.choice(_ELSEWHERE)}  {texts[far]}"
     return texts
 
 
 def _says(texts: Sequence[str], evidence: Evidence) -> bool:
-    return all(is_said(text, evidence.main) for text in texts)
+    """Whether each of these texts was said after it was sent, and after it was sent once more."""
+    awaited = [event for event in _sent(evidence) if _text(event) in texts]
+    return all(is_said(_text(event), evidence.main, after=event) for event in awaited)
 
 
 def _sent(evidence: Evidence) -> list[Event]:
@@ -266,6 +293,12 @@ def _said_again(evidence: Evidence) -> Advice | None:
     if not again:
         return None
     text, times = max(again.items(), key=lambda item: item[1])
+    if len(again) > 2 and all(b > a for a, b in pairwise(again.values())):
+        return Advice(
+            f"Each text was sent once, and your program says each more often than the one before, “{text}” {times} "
+            "times: with each message there is one more subscription.",
+            "Call create_subscription once, in __init__, and not in a callback.",
+        )
     if len(again) > 1 and min(again.values()) == times:
         return Advice(
             f"Each text was sent once, and your program says it {times} times, such as “{text}”.",
@@ -285,10 +318,7 @@ def _changed_text(evidence: Evidence) -> Advice | None:
         later = sent[sent.index(event) + 1 :][:1]
         then = part.said(after=event)
         lines = then[: len(then) - len(part.said(after=later[0]))] if later else then
-        made_up = [line for line in invented(part, _sent_texts(evidence)) if line in lines]
-        if not any(is_said(_text(other), part) for other in sent):
-            # Which texts a change touches depends on the texts: with the first one changed, none is said.
-            made_up = [line for line in lines if has_much_of(line, _text(event))]
+        made_up = [line for line in changed(part, _sent_texts(evidence), _text(event)) if line in lines]
         if made_up:
             return Advice(
                 f"When “{_text(event)}” was sent, your node said “{made_up[0]}”: that is not the text as it came.",
@@ -310,6 +340,17 @@ def _not_logged(evidence: Evidence) -> Advice | None:
         return Advice(
             f"Your node said “{bytes_said}”: these are the bytes of the message as they travel, not its text.",
             "Leave raw=True out of create_subscription: the callback then gets a message with its text in msg.data.",
+        )
+    if is_said(_text(silent), part):
+        return Advice(
+            f"“{_text(silent)}” was sent twice, one after the other, and your node said it once.",
+            "Log every message that the callback is given, also one with the same text as the one before.",
+        )
+    if silent is not sent[0] and len(part.said(after=sent[0])) == len(words):
+        return Advice(
+            f"When “{_text(silent)}” was sent, your node said “{words[0]}”: it says each text only when the next one "
+            "arrives.",
+            "Log the text of the message that the callback was just given, not one that you kept before.",
         )
     if silent is not sent[0]:
         return Advice(
