@@ -8,6 +8,7 @@ import pytest
 from lab_1_2 import talker
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.recipes.publisher import template
 
 TOPIC, TYPE = "/chatter", "std_msgs/msg/String"
 
@@ -168,3 +169,27 @@ def test_a_judge_that_hears_late_believes_the_publisher() -> None:
         for e, d in zip(_spaced([0.5] * 6), late, strict=True)
     ]
     assert judged("rate", _evidence(messages, real_time=True))
+
+
+def _step(events: list[Event]) -> str:
+    step = next(mistake for mistake in talker.EXERCISE.mistakes if mistake.key == "counter_step")
+    advice = step.recognise(_evidence(events))
+    return advice.text if advice else ""
+
+
+def test_a_slip_is_shown_where_it_is() -> None:
+    late = _messages([*range(13), *range(14, 21)], 0.5)
+    assert _step(late).startswith("After 12 comes 14 (…, 10, 11, 12, 14, 15, 16, …).")
+    assert _step(_messages([0, 2, 4, 6, 8, 10, 12], 0.5)).startswith(
+        "After 0 comes 2 (0, 2, 4, 6, 8, 10, …)."
+    )
+
+
+def test_a_publisher_for_each_message_is_named() -> None:
+    each = [replace(e, data={**e.data, "number": 1}) for e in _messages([1, 2, 4, 5, 8, 9], 0.5)]
+    assert "makes a new publisher again and again" in _step(each)
+
+
+@pytest.mark.parametrize(("text", "is_number"), [("0", True), ("10", True), ("00", False), ("007", False)])
+def test_a_number_has_no_zeros_in_front(text: str, is_number: bool) -> None:
+    assert (template(f"Hello, world! {text}") == "Hello, world! #") is is_number

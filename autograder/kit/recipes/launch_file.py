@@ -41,6 +41,7 @@ class Launched:
 
     Args:
         evidence: All that was seen.
+        package: Of the two programs.
         old_name: The topic's name in the code of the programs.
 
     Attributes:
@@ -49,8 +50,8 @@ class Launched:
         subscriptions: The names under which something subscribes to them.
     """
 
-    def __init__(self, evidence: Evidence, old_name: str) -> None:
-        self._part, self._old_name = evidence.main, old_name
+    def __init__(self, evidence: Evidence, package: str, old_name: str) -> None:
+        self._part, self._package, self._old_name = evidence.main, package, old_name
         self.topic, kind = evidence.reference.only("publisher")
         self.publishers, self.subscriptions = (
             {name for name, type_name in self._part.endpoints(role).items() if type_name == kind}
@@ -88,10 +89,23 @@ class Launched:
     def moved_by_rules(self) -> bool:
         """Whether all programs under the new name were given such a rule.
 
-        Where an endpoint does not tell whose it is, any process that was given a rule may have it.
+        Where an endpoint does not tell whose it is, any process that was given a rule may have it. Who else listens
+        there, such as ``ros2 topic echo``, needs no rule.
         """
-        given = self._given
-        return all(side and (side <= given or (0 in side and given)) for side in self._sides)
+        given, (talk, listen) = self._given, self._sides
+        listeners = listen & (given | self._own) or listen
+        return all(side and (side <= given or (0 in side and given)) for side in (talk, listeners))
+
+    @property
+    def own_without_a_rule(self) -> bool:
+        """Whether a program of the package is under the new name, and no rule led it there."""
+        return bool(((self._sides[0] | self._sides[1]) & self._own) - self._given)
+
+    @property
+    def has_a_talker_of_the_package(self) -> bool:
+        """Whether a program of the package publishes under the new name, or one that does not tell whose it is."""
+        talk, _ = self._sides
+        return bool(talk & self._own) or 0 in talk
 
     @property
     def is_settled(self) -> bool:
@@ -127,6 +141,15 @@ class Launched:
     @property
     def _given(self) -> set[int]:
         return {_lower(process.pid) for process in processes(self._part) if self._has_a_rule(process.argv)}
+
+    @property
+    def _own(self) -> set[int]:
+        """The processes of the package's programs; a tool may have its name among its arguments, too."""
+        return {
+            _lower(process.pid)
+            for process in processes(self._part)
+            if any(self._package in word for word in process.argv) and not _is_a_tool(process.argv)
+        }
 
     def _has_a_rule(self, argv: tuple[str, ...]) -> bool:
         return any(self._begins(old) and _leads_to(self.topic, new) for old, new in remappings(argv))
@@ -165,7 +188,7 @@ class LaunchFile:
 
     def seen(self, evidence: Evidence) -> Launched:
         """What was seen of the programs."""
-        return Launched(evidence, self._old_name)
+        return Launched(evidence, self._package, self._old_name)
 
     def expected(self, evidence: Evidence) -> Launched:
         """The same: it knows the new name, which is all that is taken from the reference output."""
@@ -242,6 +265,11 @@ def _says_its_text(part: Part) -> bool:
 def _lower(pid: int) -> int:
     """The part of a process's id that its endpoints tell."""
     return pid & 0xFFFF
+
+
+def _is_a_tool(argv: tuple[str, ...]) -> bool:
+    """Whether a command line is one of the command ``ros2``, perhaps behind its Python."""
+    return any(word.rpartition("/")[2] == "ros2" for word in argv[:2])
 
 
 def _leads_to(topic: str, target: str) -> bool:

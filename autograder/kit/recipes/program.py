@@ -60,7 +60,7 @@ class Ran:
     def says_it(self) -> bool:
         """Whether the line is in what it said."""
         line = self.line
-        return bool(line) and any(line in said for part in self._evidence for said in part.said())
+        return bool(line) and any(_says(said, line) for part in self._evidence for said in part.said())
 
     @property
     def nearest(self) -> str:
@@ -75,6 +75,16 @@ class Ran:
     def first_difference(self) -> str:
         """Where that stops being the line, in a sentence."""
         return first_difference(self.nearest, self.line)
+
+
+_COLOUR = re2.compile(r"\x1b\[[\d;]*m")
+_LETTER = re2.compile(r"[A-Za-z0-9]")
+
+
+def _says(said: str, line: str) -> bool:
+    """Whether a line is in what was said, and no letter or digit directly beside it."""
+    before, found, after = _COLOUR.sub(" ", said).partition(line)
+    return bool(found) and not _LETTER.match(before[-1:]) and not _LETTER.match(after)
 
 
 def _nodes(part: Part) -> list[str]:

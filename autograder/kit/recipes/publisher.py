@@ -31,7 +31,7 @@ SURE = 2
 """Messages that a publisher has sent that surely was there: a single one may come before anybody can hear it."""
 BURST = 0.3
 """Seconds within which a program that has ended may have published all at once, on a busy machine."""
-_NUMBER, _WHOLE = re2.compile(r"-?\d+(?:[.,]\d+|e[+-]?\d+)*"), re2.compile(r"-?\d{1,18}")
+_NUMBER, _WHOLE = re2.compile(r"-?\d+(?:[.,]\d+|e[+-]?\d+)*"), re2.compile(r"0|-?[1-9]\d{0,17}")
 
 
 @dataclass(frozen=True)
@@ -78,6 +78,11 @@ class Publisher:
         if not self.messages or not (first := counters(self.texts[:1])):
             return None
         return first[0] - (int(self.messages[0].data.get("number", 1)) - 1)
+
+    @property
+    def begun(self) -> int:
+        """How many publishers were heard from their first message on: DDS numbers each one's messages from 1."""
+        return sum(message.data.get("number") == 1 for message in self.messages)
 
     @property
     def went_on(self) -> bool:

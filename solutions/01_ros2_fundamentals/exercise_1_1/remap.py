@@ -115,7 +115,8 @@ def started_twice(seen: Launched, _: Launched) -> bool:
 )
 def renamed_in_code(seen: Launched, expected: Launched) -> bool:
     """Everything is on the topic, and no rule brought it there."""
-    return not by_the_launch(seen, expected).passed and bool(seen.heard) and seen.says_what_it_hears
+    arrived = bool(seen.heard) and seen.says_what_it_hears
+    return arrived and not by_the_launch(seen, expected).passed and not _speaks_in_its_place(seen)
 
 
 @remap.mistake("someone_stayed", certain=True)
@@ -129,9 +130,19 @@ def someone_stayed(seen: Launched, _: Launched) -> Advice | None:
     )
 
 
+def _speaks_in_its_place(seen: Launched) -> bool:
+    """Whether what speaks under the new name is no program of the package, and none of those has been renamed."""
+    return bool(seen.heard) and not seen.has_a_talker_of_the_package and not seen.own_without_a_rule
+
+
 @remap.mistake("one_node_only", late=True)
 def one_node_only(seen: Launched, _: Launched) -> Advice | None:
-    """Only one of the two programs runs."""
+    """Only one of the two programs runs, perhaps with something else in the place of the other."""
+    if _speaks_in_its_place(seen):
+        return Advice(
+            f"The talker of your package was not started: something else speaks on {seen.topic}.",
+            "Start the program talker of my_robot_pkg in the launch file, with the remapping.",
+        )
     if bool(seen.publishers) == bool(seen.subscriptions):
         return None
     there, missing = ("talker", "listener") if seen.publishers else ("listener", "talker")

@@ -12,6 +12,9 @@ from autograder.kit.model import Advice, Finding
 from autograder.kit.recipes.publisher import Hears, Publisher
 
 heard = Hears(messages=8, long_run=20)
+MANY = 3
+"""Publishers in a row that are too many to be two nodes or two timers."""
+TYPE = "std_msgs/msg/String"
 talker = Draft(
     "lab_1_2.talker",
     "Lab 1.2 · The talker",
@@ -43,7 +46,7 @@ def counter(seen: Publisher, expected: Publisher) -> Finding:
     """The numbers are the reference's, from the first message on."""
     numbers = seen.counters
     steady = len(numbers) >= seen.enough and numbers == list(range(numbers[0], numbers[0] + len(numbers)))
-    found = ", ".join(map(str, numbers)) if len(numbers) < seen.enough else row(numbers[:5])
+    found = ", ".join(map(str, numbers)) if len(numbers) < seen.enough else around(numbers, slip(numbers))
     passed = steady and seen.went_on and starts_right(seen, expected)
     return Finding(passed, row(expected.counters[:5]), found or "no whole number arrived")
 
@@ -56,9 +59,20 @@ def starts_right(seen: Publisher, expected: Publisher) -> bool:
     return seen.first_number == expected.counters[0]
 
 
+def slip(numbers: list[int]) -> int:
+    """The place of the first number that is not one more than the one before; 0 where all are."""
+    return next((place for place, (a, b) in enumerate(pairwise(numbers), 1) if b - a != 1), 0)
+
+
 def row(numbers: list[int]) -> str:
     """Numbers that go on."""
     return ", ".join(map(str, numbers)) + ", …"
+
+
+def around(numbers: list[int], place: int) -> str:
+    """The numbers on both sides of a place; the first ones where it is near the beginning."""
+    first = max(0, place - 3)
+    return "…, " * bool(first) + row(numbers[first : first + 6])
 
 
 @talker.mistake(
@@ -123,10 +137,24 @@ def counter_start(seen: Publisher, expected: Publisher) -> bool:
 @talker.mistake("counter_step", late=True)
 def counter_step(seen: Publisher, _: Publisher) -> Advice | None:
     """The numbers do not go up by one."""
-    if len(seen.counters) < 3 or all(b - a == 1 for a, b in pairwise(seen.counters)):
+    numbers = seen.counters
+    place = slip(numbers)
+    if len(numbers) < 3 or not place:
         return None
+    came = f"After {numbers[place - 1]} comes {numbers[place]} ({around(numbers, place)})."
+    if seen.begun >= MANY:
+        return Advice(
+            f"{came} Your node makes a new publisher again and again, and a new one is not connected to anybody yet.",
+            "Call create_publisher once, in __init__, keep what it returns (self.publisher = …) and publish with that.",
+        )
+    others = sorted(name for name, kind in seen.endpoints.items() if kind == TYPE)
+    if len(others) > 1:
+        return Advice(
+            f"{came} Your node publishes texts on {' and '.join(others)}. What goes elsewhere is missing here.",
+            "One publisher is enough: let it publish every message.",
+        )
     return Advice(
-        f"The numbers come as {row(seen.counters[:6])} They must go up by one with each message.",
+        f"{came} The numbers must go up by one with each message.",
         "Count once for each published message: one self.count += 1 at the end of the method, and one timer.",
     )
 
