@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections import Counter
 from dataclasses import dataclass
 from difflib import SequenceMatcher
@@ -138,7 +139,7 @@ def _in_frames(part: Part, sent: Sequence[str], frames: set[Frame]) -> Iterator[
 
 
 def repeated(part: Part, sent: Sequence[str]) -> dict[str, int]:
-    """Texts that were sent once and said more than once in the same words and in the same way, and how often.
+    """Texts that were said more often than they were sent, in the same words and in the same way: how often for each.
 
     A log line and a printed one are two ways, and so are two loggers. Only the words count in which a text is said
     first: a line of another kind may name it again.
@@ -149,7 +150,8 @@ def repeated(part: Part, sent: Sequence[str]) -> dict[str, int]:
     spoken = part.said()
     claims = {text: claim for text in sent if (claim := _claim(spoken, text)) is not None}
     often = {text: max(lines[claim] for lines in channels.values()) for text, claim in claims.items()}
-    many = {text: times for text, times in often.items() if times > 1 and sent.count(text) == 1}
+    each = {text: math.ceil(times / sent.count(text)) for text, times in often.items()}
+    many = {text: times for text, times in each.items() if times > 1}
     # A program may say at its end once more what it said last.
     only_the_last = many.keys() == {next(reversed(claims), None)}
     return {} if only_the_last and max(many.values()) < OFTEN else many

@@ -62,7 +62,9 @@ def test_the_last_text_may_be_said_once_more_at_the_end() -> None:
 
 def test_a_text_that_was_sent_twice_is_said_twice() -> None:
     first, last = (_log(f"I heard: {text}") for text in SENT)
-    assert not repeated(Part("p", {}, [first, first, last]), (SENT[0], *SENT))
+    sent = (SENT[0], *SENT)
+    assert not repeated(Part("p", {}, [first, first, last]), sent)
+    assert repeated(Part("p", {}, [first, first, first, last]), sent) == {SENT[0]: 2}
 
 
 @pytest.mark.parametrize(

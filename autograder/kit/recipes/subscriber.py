@@ -306,7 +306,7 @@ def _said_again(evidence: Evidence) -> Advice | None:
             "log line? In a notebook, an earlier run of the cell may have left a node of its own.",
         )
     return Advice(
-        f"“{text}” was sent once, and your program says it {times} times: it repeats it without a new message.",
+        f"Your program says “{text}” {times} times for one message: it repeats it without a new one.",
         "Log in the subscription's callback, once for each message; a timer cannot know whether a message came.",
     )
 
