@@ -176,8 +176,9 @@ def gives_up_in_time(evidence: Evidence) -> Finding:
     # Who ends at once whether there is a service or not has not given up. But one that looks under another name has.
     # In which other runs one asks that gives up at once is a matter of chance; where the service is late, in none.
     asked = bool(requests(evidence.part(LATE)) or giving_up.other_names(evidence, "client"))
-    # Who names the sum has not given up, but added up by itself.
-    if bool(part.inputs) and mentions(part.said(), sum(part.inputs["numbers"])):
+    numbers = part.inputs.get("numbers", ())
+    # Who names the sum has not given up, but added up by itself; a sum that is one of the numbers shows nothing.
+    if numbers and sum(numbers) not in numbers and mentions(part.said(), sum(numbers)):
         wrong = "named a sum that no service gave"
     elif part.ending is not None and not asked:
         wrong = "ends in the same way, without a call, where the service is only late"
@@ -240,10 +241,12 @@ def awaits_in_vain(evidence: Evidence) -> Advice | None:
 
 def answer_not_awaited(evidence: Evidence) -> Advice | None:
     """It ended while the answer to a call of its own was still to come."""
-    several = Client(evidence.reference).calls > 1
+    served, calls = Client(evidence).served, Client(evidence.reference).calls
+    # Who has made all its calls where an answer came just as late waits for answers, and has not liked this one.
+    waits = any(len(requests(part)) >= calls for part in served if part.of("response"))
     if not any(
-        ended_before_its_answer(part) or (several and _made_nothing_of_its_answer(part))
-        for part in Client(evidence).served
+        ended_before_its_answer(part) or (calls > 1 and not waits and _made_nothing_of_its_answer(part))
+        for part in served
     ):
         return None
     return Advice(

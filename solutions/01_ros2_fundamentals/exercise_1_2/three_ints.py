@@ -37,16 +37,16 @@ def runs(random: Random) -> tuple[Run, ...]:
     return (
         # 0 is a first answer here and a last one there, and no number that was asked for looks like the latter.
         Run(LATE, everyday(random), (0, -hidden(random))),
-        Run(BIASED, negative(random), (random.choice((-1, 1)) * hidden(random), 0), held=1),
+        # Negative in each check: an answer below zero is one like any other, too.
+        Run(BIASED, negative(random), (-hidden(random), 0), held=1),
         Run(EXTREME, extreme(random), held=2),
     )
 
 
 def everyday(random: Random) -> tuple[int, int, int]:
-    """A number of everyday size and a zero, in any order, and another number."""
-    a, c = random.sample(range(1001, 99_999), 2)
-    first, second = random.sample((a, 0), 2)
-    return first, second, c
+    """A number of everyday size and a zero, in any order, and a zero at the end: 0 is a number to be added, too."""
+    first, second = random.sample((random.randint(1001, 99_999), 0), 2)
+    return first, second, 0
 
 
 def negative(random: Random) -> tuple[int, int, int]:
@@ -66,7 +66,8 @@ def extreme(random: Random) -> tuple[int, int, int]:
 recipe = Calls(
     2,
     runs,
-    (everyday, negative, extreme),
+    # Not of the everyday kind: the sum of a number and zeros is that number, and a client may say what it will ask.
+    (negative, extreme),
     too_many=(
         "Your client called the service {count} times; two calls are enough.",
         "Call once with a and b, once with the first answer and c, and no more.",

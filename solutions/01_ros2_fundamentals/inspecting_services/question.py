@@ -6,6 +6,7 @@ One service carries a tempting name and another type, one comes late, and once t
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import re2
@@ -21,7 +22,7 @@ from autograder.kit.model import Advice, Bench, Finding, Pace
 from autograder.kit.recipes.own_scenario import OwnLadder
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from random import Random
 
     from autograder.kit.evidence import Evidence, Part
@@ -51,6 +52,7 @@ PATIENCE_IN_LATE = (4.0, 5.0)
 PATIENCE_ELSEWHERE = {Pace.FAST: (0.3, 0.6), Pace.REAL_TIME: (1.5, 2.5)}
 """The same where it is there from the start, and where there is none: nobody can tell the two apart by it."""
 
+_TYPE_OR_NUMBER = re2.compile(r"[\pL_][\pL\pN_]*/srv/[\pL\pN_]+|\d+")
 _WORDS = ("kitchen", "garage", "tower", "harbour", "meadow", "attic", "bridge", "cellar", "garden", "forge")
 
 
@@ -133,14 +135,57 @@ def _name(random: Random) -> str:
 # --- questions to the evidence -----------------------------------------------------------------------------
 
 
-def named(part: Part) -> list[str]:
-    """The services of this run that the last line with any of them names."""
+@dataclass(frozen=True)
+class Naming:
+    """A line that names services.
+
+    Attributes:
+        line: The line.
+        names: These services.
+        shape: The line without names, types and numbers, so that it can be compared with other lines.
+    """
+
+    line: str
+    names: tuple[str, ...]
+    shape: str
+
+
+def namings(part: Part) -> list[Naming]:
+    """The lines that name any service of this run, in order."""
     services = [name for name in (part.inputs.get("right"), *part.inputs.get("others", {})) if name]
-    for line in reversed(part.said()):
-        found = [name for name in services if _mentions(line, name)]
-        if found:
-            return found
-    return []
+    found = ((line, tuple(name for name in services if _mentions(line, name))) for line in part.said())
+    return [Naming(line, names, _shape(line, names)) for line, names in found if names]
+
+
+def _shape(line: str, names: Sequence[str]) -> str:
+    for name in names:
+        line = line.replace(name.lstrip("/"), "#")
+    return " ".join(_TYPE_OR_NUMBER.sub("#", line).split())
+
+
+def answers(part: Part) -> list[Naming]:
+    """The lines that tell of one service. A line with several, or several lines in the same words, are a listing."""
+    single = {(naming.shape, naming.names) for naming in namings(part) if len(naming.names) == 1}
+    shapes = [shape for shape, _ in single]
+    return [n for n in namings(part) if (n.shape, n.names) in single and shapes.count(n.shape) == 1]
+
+
+def named(part: Part) -> list[str]:
+    """What the subject names as its answer: the last service that it tells of, or the end of what it lists."""
+    everything = namings(part)
+    told = answers(part) or [naming for naming in everything if len(naming.names) == 1] or everything
+    return list(told[-1].names) if told else []
+
+
+def named_for_none(evidence: Evidence) -> list[str]:
+    """The service that it names at the end where none has the type, in the words in which it names what it found.
+
+    Who says that there is none may say what there is instead.
+    """
+    part = evidence.part(ABSENT)
+    usual = {naming.shape for name in (LATE, OTHER) for naming in answers(evidence.part(name))[-1:]}
+    last = answers(part)[-1:]
+    return [n.names[0] for n in last if n.shape in usual and n.line == part.said()[-1]]
 
 
 def _mentions(line: str, service: str) -> bool:
@@ -221,9 +266,8 @@ def says_that_there_is_none(seen: Evidence, _: Evidence) -> Finding:
     if not names_it(seen.part(LATE)) and not finds_another(seen, seen).passed:
         # What finds nothing anywhere has not shown that it looked.
         return Finding(False, expected, "found no service in the other runs")
-    said = part.said()
-    if part.ending and said and any(_mentions(said[-1], name) for name in part.inputs["others"]):
-        return Finding(False, expected, f"named {', '.join(named(part))}")
+    if part.ending and (wrong_ones := named_for_none(seen)):
+        return Finding(False, expected, f"named {', '.join(wrong_ones)}")
     wrong = giving_up.objection(part)
     it_did = "says again and again that it looks" if giving_up.goes_on_waiting(part) else "it did"
     return Finding(not wrong, expected, wrong or it_did)
@@ -246,7 +290,8 @@ def not_written(seen: Evidence, _: Evidence) -> bool:
 def wrong_service(seen: Evidence, _: Evidence) -> Advice | None:
     """It names a service of another type."""
     for part in seen:
-        others = [name for name in named(part) if name != part.inputs["right"]]
+        told = named_for_none(seen) if part.name == ABSENT else named(part)
+        others = [name for name in told if name != part.inputs["right"]]
         if others:
             return Advice(
                 f"You were asked for a service of the type {part.inputs['type']} and named {others[0]}, which is a "
