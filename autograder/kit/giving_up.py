@@ -1,6 +1,7 @@
 """Clients whose server is late or does not come: how long they wait, what they say meanwhile, and how they give up.
 
-One rule holds for every client of the course. Who ends and says why has given up well. Who says again and again that it
+One rule holds for every client of the course. Who ends and says why has given up well; what it says just as well where
+the server is there, a bare number, or an error that nobody meant say nothing. Who says again and again that it
 waits has not left its user in the dark either, and may go on: a limit is then a remark on the card. Who is silent, or
 says something once and is silent then, does neither. A function that is told how long to wait, by a parameter
 ``patience_sec``, keeps that time.
@@ -8,18 +9,19 @@ says something once and is silent then, does neither. A function that is told ho
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.kit.meant_errors import meant
 from autograder.kit.model import Advice
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Sequence
 
-    from autograder.kit.evidence import Event, Evidence, Part
+    from autograder.kit.evidence import Evidence, Part
     from autograder.kit.model import Bench
 
 PATIENCE = "patience_sec"
@@ -28,10 +30,23 @@ GIVE_UP_LIMIT = 12.0
 """Seconds in which a client must have ended when nobody serves, or have said again and again that it waits."""
 LATENESS = 1.5
 """Seconds that a late server comes after its client."""
+PATIENCES = (6.5, 6.95)
+"""Between which the seconds are drawn that a function is told to wait. No usual constant, such as 5 or 10, is taken for
+one of these: it may differ from its patience by what stands below."""
 TOO_LONG = 2.0
 """Seconds that a function may need on top of its patience: to make its node, to take it away, to be slow."""
+SLACK = 3.0
+"""The same as a multiple of a short patience; who was slower than that in a quick look is told a longer one."""
 TOO_SHORT = 0.5
-"""The share of its patience that a function must at least wait: who waits in whole seconds may leave out a part."""
+"""The share of its patience that a function must at least wait."""
+PART_OF_A_WAIT = 1.0
+"""Seconds that a function may leave out at the end of a longer patience: it may wait in whole seconds."""
+SILENT = "ended without a word"
+"""The objection to a client that says nothing of what it misses."""
+_SLIPS = ("AttributeError", "TypeError", "NameError", "UnboundLocalError", "KeyError", "IndexError")
+"""Exceptions that nobody raises in order to say something."""
+_SHUT_DOWN = "rclpy.executors.ExternalShutdownException"
+_VALUE = re2.compile(r"-?\d+(?:\.\d+)?|\b(?:None|True|False)\b")
 AGAIN_AND_AGAIN = 3
 """How often a client says that it waits, to have said it again and again."""
 MOMENT = 0.5
@@ -76,19 +91,25 @@ def await_it(bench: Bench) -> None:
 
 def says_that_it_waits(part: Part) -> bool:
     """Whether the subject says the same, but for numbers, again and again, and not only at the beginning."""
+    late = GIVE_UP_LIMIT / 2 / MOMENT
+    return any(len(times) >= AGAIN_AND_AGAIN and max(times) >= late for times in _moments(part).values())
+
+
+def _moments(part: Part) -> dict[str, set[int]]:
+    """The moments at which it said each line; lines that differ in their numbers are one."""
     moments: dict[str, set[int]] = {}
     passed = 0.0
     for event in part.events:
         if event.kind == "spared":
             passed += float(event.data["seconds"])
-        for line in _words(part, event):
-            moments.setdefault(re2.sub(r"\d+", "#", line), set()).add(int((event.t + passed) / MOMENT))
-    late = GIVE_UP_LIMIT / 2 / MOMENT
-    return any(len(times) >= AGAIN_AND_AGAIN and max(times) >= late for times in moments.values())
+        for line in filter(str.strip, replace(part, events=[event]).said()):
+            moments.setdefault(shape(line), set()).add(int((event.t + passed) / MOMENT))
+    return moments
 
 
-def _words(part: Part, event: Event) -> Iterator[str]:
-    yield from filter(str.strip, type(part)(part.name, part.inputs, [event]).said())
+def shape(line: str) -> str:
+    """A line with a place for each number or other bare value, so that it can be compared with another line."""
+    return _VALUE.sub("#", line)
 
 
 def goes_on_waiting(part: Part) -> bool:
@@ -96,30 +117,66 @@ def goes_on_waiting(part: Part) -> bool:
     return bool(part.events) and part.ending is None and patience(part) is None and says_that_it_waits(part)
 
 
-def objection(part: Part) -> str:
-    """What is wrong about how a client took it that nobody serves, in words; empty where it is right."""
+def objection(
+    part: Part, usual: Sequence[Part] = (), *, is_report: Callable[[str], bool] = lambda _: False
+) -> str:
+    """What is wrong about how a client took it that nobody serves, in words; empty where it is right.
+
+    Args:
+        part: The run without a server.
+        usual: Runs in which it met its server at once and did its work: what it says there, too, tells of no trouble.
+        is_report: Whether a line has the words in which the subject reports an answer.
+    """
     if not part.events:
         return "not reached"
     if part.ending is None:
         return "" if goes_on_waiting(part) else f"still waiting after {GIVE_UP_LIMIT:g} s"
-    if not (any(map(str.strip, part.said())) or _failed_aloud(part) or part.ending.name == "raised"):
-        return "ended without a word"
+    if value := returned_instead(part):
+        return f"returned {value}, as if that were the answer"
+    if not (_failed_aloud(part) or any(not is_report(line) for line in _telling(part, usual))):
+        return SILENT
     return broken_patience(part)
 
 
+def returned_instead(part: Part) -> str:
+    """The number or text that a function returned; empty where it returned nothing that looks like an answer."""
+    returned = part.ending is not None and part.ending.name == "returned"
+    value = str(part.ending.data.get("value")) if returned and part.ending else ""
+    return value if re2.fullmatch(r"-?\d+|['\"].*\pL.*", value) else ""
+
+
+def _telling(part: Part, usual: Sequence[Part]) -> list[str]:
+    """What it said in words, and not just so where its server was there, unless it said that again and again."""
+    said = replace(part, events=[event for event in part.events if event.kind != "subject"]).said()
+    lines = {line for line in said if re2.search(r"\pL", _VALUE.sub("", line))}
+    if len(lines) > MOST_LINES:
+        return sorted(lines)
+    known = [words for other in usual for words in _said(other)[:MOST_LINES]]
+    again = {line for line, times in _moments(part).items() if max(times) - min(times) > 1}
+    return [
+        line
+        for line in lines
+        if shape(line) in again or not any(_in_words(part, line).says_the_same_as(words) for words in known)
+    ]
+
+
 def _failed_aloud(part: Part) -> bool:
-    """Whether it has shown what went wrong.
+    """Whether it has shown what went wrong, by an exception that somebody may have meant.
 
     A thread that spins while the program calls ``rclpy.shutdown()`` shows a traceback at every end, also at a good one.
     """
     lines = part.traceback.strip().splitlines()
-    return bool(lines) and not lines[-1].startswith("rclpy.executors.ExternalShutdownException")
+    if not lines:
+        return part.ending is not None and part.ending.name == "raised"
+    return meant(part.traceback) or not lines[-1].startswith((*_SLIPS, _SHUT_DOWN))
 
 
 def broken_patience(part: Part) -> str:
     """How a function that has ended kept another time than its patience, in words; empty where it kept that."""
     limit = patience(part)
-    if limit is None or part.ending is None or limit * TOO_SHORT <= waited(part) <= limit + TOO_LONG:
+    if limit is None or part.ending is None:
+        return ""
+    if max(limit * TOO_SHORT, limit - PART_OF_A_WAIT) <= waited(part) <= limit + min(TOO_LONG, limit * SLACK):
         return ""
     return f"gave up after {waited(part):.1f} s, where {PATIENCE} was {limit:g}"
 
@@ -221,13 +278,21 @@ def _all_within(words: set[_Words], others: set[_Words]) -> bool:
 
 def _parting_words(part: Part) -> set[_Words]:
     """What it said; each line once, for a log line may come on two ways."""
-    said = filter(str.strip, [*part.said(), *part.traceback.splitlines()[-1:]])
+    last = [_in_words(part, line) for line in part.traceback.splitlines()[-1:] if line.strip()]
+    return {*_said(part), *last}
+
+
+def _said(part: Part) -> list[_Words]:
+    return [_in_words(part, line) for line in part.said() if line.strip()]
+
+
+def _in_words(part: Part, line: str) -> _Words:
+    for text in part.inputs.values():
+        if isinstance(text, str) and text:
+            line = line.replace(text, "(an input)")
     own = {_value(number) for number in _NUMBER.findall(str(list(part.inputs.values())))}
-    return {
-        _Words(_NUMBER.sub("#", line), tuple(numbers), tuple(_value(number) in own for number in numbers))
-        for line in said
-        for numbers in [_NUMBER.findall(line)]
-    }
+    numbers = _NUMBER.findall(line)
+    return _Words(_NUMBER.sub("#", line), tuple(numbers), tuple(_value(number) in own for number in numbers))
 
 
 def _value(number: str) -> Decimal:

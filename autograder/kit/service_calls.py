@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -92,11 +92,16 @@ def reports(part: Part) -> bool:
 
 
 def returns_another(part: Part) -> bool:
-    """Whether a notebook's function returned something without the last answer in it, whatever it logged."""
+    """Whether a notebook's function returned anything but the last answer, whatever it logged."""
     ending, given = part.ending, answers(part)
-    if ending is None or ending.name != "returned" or ending.data.get("value") is None:
-        return False
-    return bool(given) and not mentions([str(ending.data["value"])], given[-1])
+    return (
+        bool(given) and ending is not None and ending.name == "returned" and _value(ending) != str(given[-1])
+    )
+
+
+def _value(ending: Event) -> str:
+    """What a function returned, as Python writes it."""
+    return str(ending.data.get("value"))
 
 
 def says_otherwise(part: Part) -> bool:
@@ -183,9 +188,15 @@ def gives_up_in_time(evidence: Evidence) -> Finding:
     elif part.ending is not None and not asked:
         wrong = "ends in the same way, without a call, where the service is only late"
     else:
-        wrong = giving_up.objection(part)
+        usual = [other for other in Client(evidence).served if other.name != LATE and reports(other)]
+        reported = {giving_up.shape(line) for other in usual for line in _reporting(other)}
+        wrong = giving_up.objection(part, usual, is_report=lambda line: giving_up.shape(line) in reported)
     seen = "says again and again that it waits" if giving_up.goes_on_waiting(part) else "it did"
     return Finding(not wrong, "says so and ends by itself", wrong or seen)
+
+
+def _reporting(part: Part) -> list[str]:
+    return [line for line in new_words(part) if mentions([line], answers(part)[-1])]
 
 
 def no_limit(evidence: Evidence) -> str:
@@ -292,6 +303,24 @@ def zero_taken_for_failure(evidence: Evidence) -> Advice | None:
     )
 
 
+def not_returned(evidence: Evidence) -> Advice | None:
+    """It says the answer, and returns something else each time."""
+    served = [part for part in Client(evidence).served if part.of("response")]
+    if not served or not all(returns_another(part) and _says_the_answer(part) for part in served):
+        return None
+    ending = served[0].ending
+    return Advice(
+        f"Your function says the sum, but what it returns is {_value(ending) if ending else 'nothing'}: code that "
+        "calls it cannot go on with the sum.",
+        "End your function with `return` and the sum itself, a number: what is in the field sum of the answer.",
+    )
+
+
+def _says_the_answer(part: Part) -> bool:
+    said = replace(part, events=[event for event in part.events if event is not part.ending])
+    return mentions(said.said(after=part.of("response")[-1]), answers(part)[-1])
+
+
 def cut_short(client: Client) -> str:
     """What was seen where the judge made no more runs, because the client hung in one; empty where it made all."""
     hung = next((part for part in client.served if part.events and part.ending is None), None)
@@ -359,11 +388,17 @@ def gave_up_too_early(evidence: Evidence) -> Advice | None:
 
 
 def silent_end(evidence: Evidence) -> Advice | None:
-    """Without a service it ends, and says nothing."""
+    """Without a service it ends, and says nothing of that."""
     finding = gives_up_in_time(evidence)
-    if finding.passed or finding.seen != "ended without a word":
+    value = giving_up.returned_instead(evidence.part(ABSENT))
+    if finding.passed or not (value or finding.seen == giving_up.SILENT):
         return None
+    if value:
+        return Advice(
+            f"When the service is not there, your function returns {value}: who calls it takes that for the sum.",
+            "Raise TimeoutError instead, with a few words on what was missing.",
+        )
     return Advice(
-        "When the service is not there, your client ends without a word.",
+        "When the service is not there, your client ends and does not say so.",
         "Log an error (or raise TimeoutError) before you return, so that its user knows why there is no sum.",
     )

@@ -7,7 +7,7 @@ import pytest
 from autograder import exercises
 from autograder.judge.verdicts import reference, trial
 from autograder.kit.evidence import Event, Evidence, Part
-from autograder.kit.giving_up import gave_up, objection, remark
+from autograder.kit.giving_up import PATIENCES, broken_patience, gave_up, objection, remark
 
 ASKED = Event(0.0, "request", "/add_two_ints", {"fields": {"a": 1, "b": 2}})
 ANSWERED = Event(0.0, "response", "/add_two_ints", {"fields": {"sum": 3}})
@@ -174,6 +174,51 @@ AT_ONCE = tuple((0.1 + t / 1000, "waiting") for t in range(200))
 )
 def test_how_a_client_takes_it_that_nobody_serves(part: Part, expected: str) -> None:
     assert objection(part) == expected
+
+
+GREETING, GONE = (0.1, "asking for 1 + 2"), (5.0, "no service")
+NAMELESS = (
+    (5.0, "Traceback (most recent call last):"),
+    (5.0, '  File "/home/student/client.py", line 9, in main'),
+    (5.0, "    print(future.result().sum)"),
+    (5.0, "AttributeError: 'NoneType' object has no attribute 'sum'"),
+)
+
+
+@pytest.mark.parametrize(
+    ("part", "expected"),
+    [
+        pytest.param(_waits(GREETING, GONE, ends=5.0), "", id="greets, and says why it ends"),
+        pytest.param(_waits(GREETING, ends=5.0), "ended without a word", id="greets only"),
+        pytest.param(_waits(GREETING, (2.0, GREETING[1]), ends=5.0), "", id="says it again"),
+        pytest.param(_waits((5.0, "servers found: 0"), ends=5.0), "", id="another number, which is no input"),
+        pytest.param(_waits(GREETING, (5.0, "None"), ends=5.0), "ended without a word", id="None"),
+        pytest.param(_waits(GREETING, (5.0, "0"), ends=5.0), "ended without a word", id="a bare number"),
+        pytest.param(_waits(GREETING, *NAMELESS, ends=5.0), "ended without a word", id="a slip"),
+    ],
+)
+def test_what_a_client_says_where_its_server_is_there_too_tells_of_no_trouble(
+    part: Part, expected: str
+) -> None:
+    usual = _waits((0.1, "asking for 1 + 2"), (0.5, "servers found: 7"), (0.6, "the sum is 3"), ends=0.7)
+    assert objection(part, [usual]) == expected
+
+
+@pytest.mark.parametrize(
+    ("value", "instead"),
+    [("0", "0"), ("'no service'", "'no service'"), (None, ""), ("[]", ""), ("False", "")],
+)
+def test_what_looks_like_an_answer_is_none_where_nobody_serves(value: str | None, instead: str) -> None:
+    said = Event(0.1, "output", "stdout", {"text": "no service"})
+    part = Part("", {}, [said, Event(0.2, "subject", "returned", {"value": value})])
+    assert objection(part) == (f"returned {instead}, as if that were the answer" if instead else "")
+
+
+@pytest.mark.parametrize("seconds", [1, 2, 3, 5, 10])
+@pytest.mark.parametrize("told", PATIENCES)
+def test_no_usual_constant_is_taken_for_a_patience(told: float, seconds: float) -> None:
+    assert broken_patience(_waits((0.1, "none"), told=told, ends=seconds))
+    assert not broken_patience(_waits((0.1, "none"), told=told, ends=int(told)))
 
 
 def test_a_wait_without_a_limit_is_worth_a_remark() -> None:

@@ -145,8 +145,9 @@ def test_to_give_up_at_once_does_not_count_more_where_one_call_came_through_by_c
     ("value", "right"),
     [
         ("-4321", True),
-        ("AddTwoInts_Response(sum=-4321)", True),
-        (None, True),
+        ("AddTwoInts_Response(sum=-4321)", False),
+        ("'-4321'", False),
+        (None, False),
         ("4321", False),
         ("True", False),
     ],

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from autograder.kit import common_mistakes as common
 from autograder.kit import goal_mistakes as goals
 from autograder.kit.crashes import OTHER_SLIPS
-from autograder.kit.giving_up import GIVE_UP_LIMIT, PATIENCE, await_it
+from autograder.kit.giving_up import GIVE_UP_LIMIT, PATIENCE, PATIENCES, await_it
 from autograder.kit.goal_reports import ABORTED, ABSENT, FEEDBACKS, LATE, REFUSED, unshown_feedback
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import hold_back, meets_late_action
@@ -40,8 +40,6 @@ END_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 8.0}
 """Seconds in which a client must ask for the result, must have reported it, must have ended after a refusal."""
 AFTERMATH = 1.0
 """Seconds in which a client that has reported may end, or say more."""
-PATIENCES = (4.0, 9.0)
-"""The smallest and the largest number of seconds that a notebook's function is told to wait, whatever comes."""
 
 
 def scenario(bench: Bench) -> None:
@@ -53,7 +51,7 @@ def scenario(bench: Bench) -> None:
 
 def begin(bench: Bench, name: str) -> dict[str, Any]:
     """Begin a part; what the subject is to be started with."""
-    inputs = {"order": bench.random.randint(*ORDERS), PATIENCE: round(bench.random.uniform(*PATIENCES), 1)}
+    inputs = {"order": bench.random.randint(*ORDERS), PATIENCE: round(bench.random.uniform(*PATIENCES), 2)}
     bench.part(name, **inputs)
     return inputs
 

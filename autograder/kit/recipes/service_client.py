@@ -18,7 +18,7 @@ from autograder.kit import giving_up
 from autograder.kit import service_calls as calls_seen
 from autograder.kit.crashes import OTHER_SLIPS
 from autograder.kit.draft import OWN, OWN_LATE
-from autograder.kit.giving_up import GIVE_UP_LIMIT, LATENESS
+from autograder.kit.giving_up import GIVE_UP_LIMIT, LATENESS, PATIENCES
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import SOON, TRIES, was_patient, was_patient_with_an_answer
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
@@ -48,10 +48,6 @@ SAYS_MORE = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 """Seconds in which a client that has said something of its last answer, and not the sum, may still say it."""
 HELD = 0.5
 """Seconds for which an answer is held back: longer than anybody takes who does not really wait for it."""
-PATIENCE_IN_LATE = (4.0, 5.0)
-"""Between which the patience is drawn that a function is told to have where the service comes late."""
-PATIENCE_ELSEWHERE = {Pace.FAST: (1.2, 2.0), Pace.REAL_TIME: (2.0, 2.6)}
-"""The same for all other runs, with a service and without."""
 
 
 @dataclass(frozen=True)
@@ -93,13 +89,13 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
             hangs = not called(bench, run, calls)
 
 
-def _patience(bench: Bench, bounds: tuple[float, float]) -> float:
-    return round(bench.random.uniform(*bounds), 2)
+def _patience(bench: Bench) -> float:
+    return round(bench.random.uniform(*PATIENCES), 2)
 
 
 def called(bench: Bench, run: Run, calls: int) -> bool:
     """One run with a service; whether the subject came to an end of its work."""
-    patience = _patience(bench, PATIENCE_IN_LATE if run.name == LATE else PATIENCE_ELSEWHERE[bench.pace])
+    patience = _patience(bench)
     bench.part(run.name, numbers=list(run.numbers), patience_sec=patience)
     if run.name != LATE:
         done = meets_service(bench, run, calls, patience)
@@ -171,7 +167,7 @@ def unserved(bench: Bench, numbers: Sequence[int]) -> None:
     """One run without the service."""
     if bench.keep(ABSENT):
         return
-    patience = _patience(bench, PATIENCE_ELSEWHERE[bench.pace])
+    patience = _patience(bench)
     bench.part(ABSENT, numbers=list(numbers), patience_sec=patience)
     bench.start(*numbers, patience_sec=patience, spare=GIVE_UP_LIMIT if bench.pace is Pace.FAST else 0.0)
     service, _ = bench.reference.only("client")
@@ -270,6 +266,7 @@ class Calls:
             Mistake("too_many_calls", self._too_many_calls, certain=True),
             OWN,
             Mistake("zero_taken_for_failure", calls_seen.zero_taken_for_failure, certain=True),
+            Mistake("not_returned", calls_seen.not_returned, certain=True),
             Mistake("gave_up_too_early", calls_seen.gave_up_too_early),
             Mistake("result_read_too_early", calls_seen.answer_not_awaited),
             OWN_LATE,

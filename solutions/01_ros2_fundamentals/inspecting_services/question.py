@@ -15,7 +15,7 @@ from autograder.kit import common_mistakes as common
 from autograder.kit import giving_up
 from autograder.kit.crashes import OTHER_SLIPS
 from autograder.kit.draft import OWN, OWN_LATE, Draft
-from autograder.kit.giving_up import LATENESS
+from autograder.kit.giving_up import LATENESS, PATIENCES
 from autograder.kit.lateness import SOON, was_patient
 from autograder.kit.meant_errors import meant
 from autograder.kit.model import Advice, Bench, Finding, Pace
@@ -49,8 +49,9 @@ FIND_LIMIT = 12.0
 """Seconds of wall time in which a subject must have found a service that is there."""
 PATIENCE_IN_LATE = (4.0, 5.0)
 """Between which the patience is drawn that a function is told to have where the service comes late."""
-PATIENCE_ELSEWHERE = {Pace.FAST: (0.3, 0.6), Pace.REAL_TIME: (1.5, 2.5)}
-"""The same where it is there from the start, and where there is none: nobody can tell the two apart by it."""
+PATIENCE_ELSEWHERE = {Pace.FAST: (0.4, 0.48), Pace.REAL_TIME: PATIENCES}
+"""The same where it is there from the start, and where there is none: nobody can tell the two apart by it. No usual
+constant from 2 seconds on is taken for one of these."""
 
 _TYPE_OR_NUMBER = re2.compile(r"[\pL_][\pL\pN_]*/srv/[\pL\pN_]+|\d+")
 _WORDS = ("kitchen", "garage", "tower", "harbour", "meadow", "attic", "bridge", "cellar", "garden", "forge")
@@ -201,6 +202,14 @@ def names_it(part: Part) -> bool:
     return bool(part.inputs.get("right")) and named(part) == [part.inputs["right"]]
 
 
+def returns_it(part: Part) -> bool:
+    """Whether a notebook's function that named the right service has returned this name; a program returns nothing."""
+    ending = part.ending
+    if ending is None or ending.name != "returned":
+        return True
+    return str(ending.data.get("value")).strip("'").lstrip("/") == part.inputs["right"].lstrip("/")
+
+
 def gave_up_at_once(part: Part) -> bool:
     """Whether the subject ended without the late service, and much too early."""
     seen = part.first("interface")
@@ -212,7 +221,11 @@ def gave_up_at_once(part: Part) -> bool:
 def _found(part: Part) -> Finding:
     expected = "the one service of the type that was asked for"
     if names_it(part):
-        return Finding(True, expected, part.inputs["right"])
+        return Finding(
+            returns_it(part),
+            expected,
+            part.inputs["right"] if returns_it(part) else "named it, and did not return it",
+        )
     return Finding(False, expected, ", ".join(named(part)) or _how_it_went(part))
 
 
@@ -268,7 +281,8 @@ def says_that_there_is_none(seen: Evidence, _: Evidence) -> Finding:
         return Finding(False, expected, "found no service in the other runs")
     if part.ending and (wrong_ones := named_for_none(seen)):
         return Finding(False, expected, f"named {', '.join(wrong_ones)}")
-    wrong = giving_up.objection(part)
+    other = seen.part(OTHER)
+    wrong = giving_up.objection(part, [other] if names_it(other) else [])
     it_did = "says again and again that it looks" if giving_up.goes_on_waiting(part) else "it did"
     return Finding(not wrong, expected, wrong or it_did)
 
@@ -300,6 +314,19 @@ def wrong_service(seen: Evidence, _: Evidence) -> Advice | None:
                 "about its type.",
             )
     return None
+
+
+@question.mistake("not_returned", certain=True)
+def not_returned(seen: Evidence, _: Evidence) -> Advice | None:
+    """It names the right service, and returns something else."""
+    part = next((part for part in seen if names_it(part) and not returns_it(part)), None)
+    if part is None or part.ending is None:
+        return None
+    return Advice(
+        f"Your function found {part.inputs['right']}, but what it returns is {part.ending.data.get('value')}: code "
+        "that calls it cannot go on with the name.",
+        "End your function with `return` and the name itself, as get_service_names_and_types() gives it.",
+    )
 
 
 def _crashed(part: Part) -> bool:
@@ -346,16 +373,17 @@ def waits_forever(seen: Evidence, _: Evidence) -> bool:
     return bool(part.events) and part.ending is None and not giving_up.goes_on_waiting(part)
 
 
-@question.mistake(
-    "silent_end",
-    certain=True,
-    late=True,
-    says="When no service has the type, you end without a word.",
-    next_step="Raise TimeoutError, with a few words on what was not found.",
-)
-def silent_end(seen: Evidence, _: Evidence) -> bool:
-    """Without such a service it ends, and says nothing."""
-    return says_that_there_is_none(seen, seen).seen == "ended without a word"
+@question.mistake("silent_end", certain=True, late=True)
+def silent_end(seen: Evidence, _: Evidence) -> Advice | None:
+    """Without such a service it ends, and says nothing of that."""
+    finding, value = says_that_there_is_none(seen, seen), giving_up.returned_instead(seen.part(ABSENT))
+    if finding.passed or not (value or finding.seen == giving_up.SILENT):
+        return None
+    did = f"return {value}, which looks like a name" if value else "end and do not say so"
+    return Advice(
+        f"When no service has the type, you {did}.",
+        "Raise TimeoutError, with a few words on what was not found.",
+    )
 
 
 @question.mistake("patience_not_kept", late=True)
