@@ -169,6 +169,8 @@ def reports_the_sum(evidence: Evidence) -> Finding:
     if silent is None:
         return Finding(True, "the final sum, in each run", "the final sum, in each run")
     given = answers(silent)
+    if returns_another(silent) and silent.ending:
+        return Finding(False, f"{given[-1]} said and returned", f"it returned {_value(silent.ending)}")
     wanted = f"{given[-1]} said at the end" if given else "the final sum, in each run"
     lines = silent.said(after=silent.of("response")[-1]) if given else silent.said()
     wrong = [line for line in lines if given and not mentions([line], given[-1])] or lines
