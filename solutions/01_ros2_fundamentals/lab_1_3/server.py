@@ -1,4 +1,4 @@
-"""Lab 1.3: a server that adds two integers: of everyday size, negative, zero, and near the ends of 64 bits."""
+"""Lab 1.3: a server that adds two integers: small, everyday, equal, negative and zero, and near the ends of 64 bits."""
 
 from __future__ import annotations
 
@@ -18,11 +18,18 @@ ORDINARY = 6
 
 
 def single_calls(random: Random) -> list[Fields]:
-    """What is asked one by one: everyday numbers, negative ones, zeros, and sums just inside an int64."""
+    """What is asked one by one: everyday numbers, negative ones, zeros, and sums just inside an int64.
+
+    One request comes twice, with others in between: a server may remember nothing that changes its answer.
+    """
     wide, low = 2**63 - 1, -(2**63)
     some = random.randint(1001, 99_999)
+    everyday = [ordinary(random) for _ in range(ORDINARY)]
     return [
-        *(ordinary(random) for _ in range(ORDINARY)),
+        *everyday,
+        *small(random),
+        {"a": some, "b": some},
+        everyday[0],
         {"a": -some, "b": random.randint(1001, 99_999)},
         {"a": -random.randint(1001, 99_999), "b": -random.randint(1001, 99_999)},
         {"a": 0, "b": some},
@@ -39,6 +46,16 @@ def ordinary(random: Random) -> Fields:
     """Two numbers of everyday size."""
     a, b = random.sample(range(1001, 99_999), 2)
     return {"a": a, "b": b}
+
+
+def small(random: Random) -> list[Fields]:
+    """Numbers of one or two digits; the digits of the last two requests are the same, one after the other."""
+    one, two, three, four = random.sample(range(1, 10), 4)
+    return [
+        {"a": one, "b": four},
+        {"a": one, "b": 10 * two + three},
+        {"a": 10 * one + two, "b": three},
+    ]
 
 
 def objection(request: Fields, answer: Fields | None) -> str:
