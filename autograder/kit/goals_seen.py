@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -31,13 +32,15 @@ class Goal:
     Attributes:
         order: What was asked for; None where the goal was not sent.
         accepted: The server's answer; None where there is none.
-        feedback: The partial sequences, in order.
+        feedback: The partial sequences, in order; without those that were sent when the result had been heard.
+        sent: When each of them was sent, by their publisher's clock, in seconds of the epoch.
+        answered_at: When the server's answer to the goal was heard, by the judge's clock; None where it is not known.
+        cancel_answered_at: The same of the answer to the cancel request.
         cancel_accepted: The answer to the cancel request; None where there is none.
         cancelled_too_late: The answer to the cancel request was that the goal had ended.
         before_cancel: How many numbers the last feedback before the cancel request had.
         unread: How many feedback messages came between the cancel request and its answer.
         seconds: Wall time from the acceptance to the result; None where one of them is missing.
-        pauses: Seconds between one feedback message and the next, by their publisher's clock.
         status: The status that came with the result; None where none came.
         sequence: The result.
     """
@@ -45,12 +48,14 @@ class Goal:
     order: int | None
     accepted: bool | None
     feedback: list[list[int]]
+    sent: tuple[float, ...]
+    answered_at: float | None
+    cancel_answered_at: float | None
     cancel_accepted: bool | None
     cancelled_too_late: bool
     before_cancel: int
     unread: int
     seconds: float | None
-    pauses: tuple[float, ...]
     status: int | None
     sequence: list[int]
 
@@ -58,6 +63,15 @@ class Goal:
     def over(self) -> bool:
         """It has a result, or it was refused and gets none."""
         return self.status is not None or self.accepted is False
+
+    @property
+    def pauses(self) -> tuple[float, ...]:
+        """Seconds between one feedback message and the next."""
+        return tuple(after - before for before, after in pairwise(self.sent))
+
+    def sent_after(self, moment: float | None) -> int:
+        """How many feedback messages were surely sent after a moment; 0 where the moment is not known."""
+        return 0 if moment is None else sum(sent > moment for sent in self.sent)
 
     @property
     def was_computed(self) -> bool:
@@ -71,22 +85,24 @@ def goal(part: Part, number: int) -> Goal:
     by_kind = {event.kind: event for event in reversed(events)}
     data = {kind: event.data for kind, event in by_kind.items()}
     result = data.get("result_heard", {})
-    heard = [event for event in events if event.kind == "feedback_heard"]
+    ended_at = result.get("arrived", math.inf)
+    heard = [e for e in events if e.kind == "feedback_heard" and e.data.get("sent", 0.0) <= ended_at]
     cancel = by_kind.get("cancel_sent")
     split = events.index(cancel) if cancel else len(events)
     answered = events.index(by_kind["cancel_answer"]) if "cancel_answer" in by_kind else len(events)
     before = [event for event in heard if events.index(event) < split]
-    sent = [float(event.data["sent"]) for event in heard if "sent" in event.data]
     return Goal(
         order=data.get("goal_sent", {}).get("fields", {}).get("order"),
         accepted=data.get("goal_answer", {}).get("accepted"),
         feedback=[list(event.data["fields"]["partial_sequence"]) for event in heard],
+        sent=tuple(float(event.data["sent"]) for event in heard if "sent" in event.data),
+        answered_at=data.get("goal_answer", {}).get("arrived"),
+        cancel_answered_at=data.get("cancel_answer", {}).get("arrived"),
         cancel_accepted=data.get("cancel_answer", {}).get("accepted"),
         cancelled_too_late=data.get("cancel_answer", {}).get("return_code") == ERROR_GOAL_TERMINATED,
         before_cancel=len(before[-1].data["fields"]["partial_sequence"]) if before else 0,
         unread=sum(split < events.index(event) < answered for event in heard),
         seconds=by_kind["result_heard"].t - by_kind["goal_answer"].t if "result_heard" in by_kind else None,
-        pauses=tuple(after - before for before, after in pairwise(sent)),
         status=result.get("status"),
         sequence=list(result.get("fields", {}).get("sequence", [])),
     )

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from lab_1_4 import _server_criteria as criteria
 from lab_1_4 import server as lab_1_4_server
-from lab_1_4._goals import BAD_ORDERS, GOALS, LONG
+from lab_1_4._goals import AGAIN, ALONE, BAD_ORDERS, BESIDE, GOALS, LONG
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 
@@ -44,7 +44,7 @@ def canceled(sequence: list[int], *, status: int = 5, accepted: bool = True) -> 
     )
 
 
-RIGHT = [*goal(0, 5), *goal(1, 4), *goal(2, 3), *canceled([0, 1, 1, 2, 3])]
+RIGHT = [*goal(ALONE, 5), *goal(BESIDE, 4), *goal(AGAIN, 3), *canceled([0, 1, 1, 2, 3])]
 REFUSALS = [
     *goal(0, -3, accepted=False),
     *goal(1, 47, accepted=False),
@@ -70,9 +70,9 @@ def test_a_right_server_passes_everything() -> None:
 @pytest.mark.parametrize("others", [0.00015, 0.005])
 def test_a_server_without_a_pause_is_not_canceled_by_the_machine_s_being_busy(others: float) -> None:
     hurried = [
-        *goal(0, 5, pause=0.00015),
-        *goal(1, 4, pause=others),
-        *goal(2, 3, pause=others),
+        *goal(ALONE, 5, pause=0.00015),
+        *goal(BESIDE, 4, pause=others),
+        *goal(AGAIN, 3, pause=others),
         *canceled([0, 1, 1, 2, 3]),
     ]
     assert failed(evidence(hurried)) == {"cancel"}
@@ -108,7 +108,8 @@ def test_feedback_grows_by_one_number(feedback: list[list[int]], right: bool) ->
     ("sequence", "status", "accepted", "right"),
     [
         ([0, 1, 1, 2], 5, True, True),
-        ([0, 1, 1, 2, 3, 5, 8], 5, True, True),
+        ([0, 1, 1, 2, 3, 5], 5, True, True),
+        ([0, 1, 1, 2, 3, 5, 8], 5, True, False),
         ([], 5, True, False),
         ([0, 1, 1], 5, True, False),
         ([0, 1, 1, 2, 4], 5, True, False),
@@ -120,13 +121,20 @@ def test_a_cancel_brings_the_part_that_was_computed(
     sequence: list[int], status: int, accepted: bool, right: bool
 ) -> None:
     seen = evidence(
-        [*goal(0, 5), *goal(1, 4), *goal(2, 3), *canceled(sequence, status=status, accepted=accepted)]
+        [
+            *goal(ALONE, 5),
+            *goal(BESIDE, 4),
+            *goal(AGAIN, 3),
+            *canceled(sequence, status=status, accepted=accepted),
+        ]
     )
     assert criteria.lets_cancel(seen).passed is right
 
 
 def test_one_of_two_goals_with_the_others_numbers_is_wrong() -> None:
-    seen = evidence([*goal(0, 5), *goal(1, 4, sequence=FIBONACCI[:4]), *goal(2, 3), *canceled([0, 1, 1, 2])])
+    seen = evidence(
+        [*goal(ALONE, 5), *goal(BESIDE, 4, sequence=FIBONACCI[:4]), *goal(AGAIN, 3), *canceled([0, 1, 1, 2])]
+    )
     assert failed(seen) == {"sequence", "two"}
 
 
@@ -159,7 +167,12 @@ def test_a_goal_that_was_over_before_the_cancel_is_told_so_where_its_result_was_
     *events, _ = goal(LONG, 20, feedback=[FIBONACCI[:n] for n in (3, 4, 5)], pause=0.0002)
     events.append(Event(0.0, "cancel_answer", ACTION, {"goal": LONG, "accepted": False, "return_code": 3}))
     seen = evidence(
-        [*goal(0, 5, pause=0.0002), *goal(1, 4, pause=0.0002), *goal(2, 3, pause=0.0002), *events]
+        [
+            *goal(ALONE, 5, pause=0.0002),
+            *goal(BESIDE, 4, pause=0.0002),
+            *goal(AGAIN, 3, pause=0.0002),
+            *events,
+        ]
     )
     assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(seen)) == "done_at_once"
 
@@ -167,7 +180,38 @@ def test_a_goal_that_was_over_before_the_cancel_is_told_so_where_its_result_was_
 def test_a_server_without_a_pause_whose_last_number_was_out_when_it_agreed_to_cancel_has_not_ignored_that() -> (
     None
 ):
-    quick = [*goal(0, 5, pause=0.001), *goal(1, 4, pause=0.001), *goal(2, 3, pause=0.001)]
+    quick = [*goal(ALONE, 5, pause=0.001), *goal(BESIDE, 4, pause=0.001), *goal(AGAIN, 3, pause=0.001)]
     last = goal(LONG, 20, feedback=[FIBONACCI[:n] for n in (3, 4, 5)], pause=0.001, cancel=True, status=4)
     seen = evidence([*quick, *last])
     assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(seen)) == "done_at_once"
+
+
+def test_feedback_that_was_sent_long_after_the_cancel_was_answered_shows_that_the_server_worked_on() -> None:
+    def seen(rounds: int) -> Evidence:
+        feedback = [FIBONACCI[:n] for n in (3, 4, 5, 6)]
+        events = goal(LONG, 20, feedback=feedback, pause=1.0, cancel=True, status=5, sequence=FIBONACCI)
+        answer = next(event for event in events if event.kind == "cancel_answer")
+        events[events.index(answer)] = Event(
+            0.0, answer.kind, ACTION, {**answer.data, "arrived": 3.5 - rounds}
+        )
+        return evidence([*RIGHT[: -len(canceled([]))], *events])
+
+    # One number of the round that it was in, and one of the next one, where it had looked already.
+    assert criteria.lets_cancel(seen(2)).passed
+    assert not criteria.lets_cancel(seen(3)).passed
+    assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(seen(3))) == "cancel_ignored"
+
+
+def test_feedback_that_was_sent_when_the_result_had_been_heard_does_not_count() -> None:
+    *events, result = goal(ALONE, 5, pause=1.0)
+    for arrived, right in ((3.5, True), (2.5, True), (1.5, False)):
+        ended = Event(0.0, result.kind, ACTION, {**result.data, "arrived": arrived})
+        seen = evidence([*events, ended, *RIGHT[len(events) + 1 :]])
+        assert criteria.gives_feedback(seen).passed is right
+
+
+def test_a_busy_thread_that_reads_no_second_goal_costs_the_points_of_two_at_once_only() -> None:
+    *events, _ = canceled([])
+    unread = [event for event in events if event.kind != "cancel_answer"]
+    seen = evidence([*goal(ALONE, 5), *unread, *goal(BESIDE, 4)[:1]])
+    assert failed(seen) == {"two", "cancel"}

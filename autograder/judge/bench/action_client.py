@@ -6,6 +6,7 @@ each answer is seen as it was sent, a refused cancel request among them.
 
 from __future__ import annotations
 
+import time
 import uuid
 from typing import TYPE_CHECKING, Any
 
@@ -97,7 +98,7 @@ class RecordedActionClient:
         self._recorder.record("servers", self._name, count=count)
 
     def _take_answer(self, number: int, response: Any) -> None:
-        self._recorder.record("goal_answer", self._name, goal=number, accepted=bool(response.accepted))
+        self._note("goal_answer", number, accepted=bool(response.accepted))
         if response.accepted:
             request = self._parts.GetResultService.Request(goal_id=self._goals[number])
             future = self._result.call_async(request)
@@ -106,15 +107,17 @@ class RecordedActionClient:
     def _take_result(self, number: int, response: Any) -> None:
         self._note_servers()
         fields = to_data(response.result)
-        self._recorder.record(
-            "result_heard", self._name, goal=number, status=int(response.status), fields=fields
-        )
+        self._note("result_heard", number, status=int(response.status), fields=fields)
 
     def _take_cancel_answer(self, number: int, response: Any) -> None:
         named = {goal_text(info.goal_id) for info in response.goals_canceling}
         accepted = goal_text(self._goals[number]) in named
         code = int(response.return_code)
-        self._recorder.record("cancel_answer", self._name, goal=number, accepted=accepted, return_code=code)
+        self._note("cancel_answer", number, accepted=accepted, return_code=code)
+
+    def _note(self, kind: str, goal: int, **data: Any) -> None:
+        """Write down what the server answered; what has a later time of sending was surely sent after it."""
+        self._recorder.record(kind, self._name, goal=goal, arrived=time.time(), **data)
 
     def _hear(self, message: Any, info: Any) -> None:
         known = [goal_text(goal) for goal in self._goals]

@@ -98,7 +98,8 @@ class SendsGoals:
     def _cancel_refused(self, evidence: Evidence) -> Advice | None:
         """The cancel request was answered with no."""
         long = self.canceled(evidence)
-        if long.cancel_accepted is not False or long.unread >= MANY or is_quick(long):
+        unread = long.cancelled_too_late and long.unread >= MANY
+        if long.cancel_accepted is not False or unread or is_quick(long):
             return None
         return Advice(
             "Your server refuses to cancel: without a cancel_callback, rclpy rejects every cancel request.",
@@ -115,6 +116,8 @@ class SendsGoals:
         long = self.canceled(evidence)
         if long.cancel_accepted or long.unread < MANY or is_quick(long):
             return None
+        if any(seen.accepted and not seen.over for seen in self._good(evidence)):
+            return None  # a thread is stuck in that goal
         return Advice(
             "Your server works on and does not even read the cancel request: the one thread that spins the node is "
             "busy with the execute callback.",

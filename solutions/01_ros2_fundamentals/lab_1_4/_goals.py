@@ -14,29 +14,38 @@ if TYPE_CHECKING:
 
 GOALS = "goals"
 BAD_ORDERS = "bad orders"
-ORDERS = (5, 4, 3)
-"""Orders of the goal alone and of the smaller one of two at once; the seed decides."""
-LONGER = 14
-"""The order of the larger one of two at once: more numbers than a server would have that stops after a while."""
+ORDERS = (5, 4)
+"""Orders of the goal alone, which is sent again after the cancel; the seed decides. Either has enough numbers to show
+feedback that leaves some out."""
+LARGE_ORDER = 25
+"""The order of the goal that goes on beside the others: its last number does not fit into 16 bits."""
 SMALLEST = ((1, 0, 1), (0, 1, 1, 1), (1, 0, 1))
 """Orders that take no time, in batches: the edge of what there is, and enough goals for a server that dies of many."""
 SINGLE = 0
 """The order of a single number. A server may also answer it with both numbers that it begins with."""
 LAST_ORDER = 2
-"""The order of the goal after the bad ones."""
-NO_TIME = 0.005
-"""Seconds between two feedback messages that no pause makes: the shortest that a person would write is twice as long,
-and in a notebook none is made shorter than that."""
-HURRIED = 0.25
-"""The share of such short intervals from which on a server is taken not to pause."""
+"""The order of the two goals after the bad ones."""
+NO_TIME = 0.009
+"""Seconds between two feedback messages that no pause makes: the shortest that a person would write is longer, and in a
+notebook none is made shorter than that. Two goals that never pause take turns of Python's 0.005 s."""
+HURRIED, HURRIED_ALONE = 0.25, 0.5
+"""The share of such short intervals from which on a server is taken not to pause: of all, and of the few of those goals
+that do not compete with another one where none takes time."""
+LONG_SILENCE, BURST = 1.0, 0.1
+"""Seconds of work without feedback, and the share of them in which all feedback comes where it is sent at the end."""
+ROUNDS_LEFT = 2
+"""Numbers that a server may still compute when it has agreed to cancel: of the round that it is in, and of the next one
+where it looked already."""
 FIRST_TOO_LARGE = 47
 """The first order whose last number does not fit into an int32."""
-ALONE, FIRST_OF_TWO, SECOND_OF_TWO = range(3)
-TINY = range(3, 3 + sum(map(len, SMALLEST)))
-LONG = TINY.stop
-"""The goals of the first part by their numbers. In the second part the last one is good, those before it are bad."""
+ALONE = 0
+TINY = range(1, 1 + sum(map(len, SMALLEST)))
+LONG, BESIDE, AGAIN = range(TINY.stop, TINY.stop + 3)
+"""The goals of the first part by their numbers. In the second part the last two are good, those before them are bad."""
 LONG_ORDER = 46
 """The order of the goal that is canceled: the largest that there is."""
+PACED = (ALONE, BESIDE, AGAIN)
+"""The goals that take time and are to succeed."""
 
 
 def takes_no_time(part: Part) -> bool:
@@ -47,12 +56,26 @@ def takes_no_time(part: Part) -> bool:
     numbers can send two of them at once. So it is the short intervals that tell, however few they are; a pause that
     makes up for an earlier one (a rate's) is allowed for.
     """
-    pauses = sorted(pause for number in (*PACED, LONG) for pause in goal(part, number).pauses)
-    return bool(pauses) and pauses[int(len(pauses) * HURRIED)] < NO_TIME
+    shares = ((HURRIED, (*PACED, LONG)), (HURRIED_ALONE, (ALONE, AGAIN)))
+    return any(_hurries(part, *share) for share in shares) and not tells_at_the_end(part)
 
 
-PACED = (ALONE, FIRST_OF_TWO, SECOND_OF_TWO)
-"""The goals that take time and are to succeed."""
+def _hurries(part: Part, share: float, numbers: Sequence[int]) -> bool:
+    pauses = sorted(pause for number in numbers for pause in goal(part, number).pauses)
+    return bool(pauses) and pauses[int(len(pauses) * share)] < NO_TIME
+
+
+def tells_at_the_end(part: Part) -> bool:
+    """Whether the server works in silence, and sends all feedback at once when it is done."""
+    return all(_silence(goal(part, number)) >= LONG_SILENCE for number in (ALONE, BESIDE))
+
+
+def _silence(seen: Goal) -> float:
+    """Seconds from the answer to a goal to its feedback, where that came all at once; else 0."""
+    if not seen.pauses or seen.answered_at is None:
+        return 0.0
+    silent = seen.sent[0] - seen.answered_at
+    return silent if sum(seen.pauses) < BURST * silent else 0.0
 
 
 def paced_goals(evidence: Evidence) -> list[Goal]:
@@ -66,8 +89,15 @@ def good_goals(evidence: Evidence) -> list[Goal]:
 
 
 def _sent(evidence: Evidence, numbers: Sequence[int]) -> list[Goal]:
-    known = [goal(evidence.part(GOALS), number) for number in numbers]
-    return [seen for seen in known if seen.order is not None]
+    part = evidence.part(GOALS)
+    busy = goal(part, LONG).accepted and not goal(part, LONG).over
+    known = {number: goal(part, number) for number in numbers}
+    # Whether a server takes a goal while it works on another one is a question of its own.
+    return [
+        seen
+        for number, seen in known.items()
+        if seen.order is not None and not (number == BESIDE and busy and seen.accepted is None)
+    ]
 
 
 def expected_sequence(evidence: Evidence, order: int) -> list[int]:

@@ -6,15 +6,16 @@ import functools
 from typing import TYPE_CHECKING
 
 from lab_1_4._goals import (
+    AGAIN,
     ALONE,
     BAD_ORDERS,
-    FIRST_OF_TWO,
+    BESIDE,
     FIRST_TOO_LARGE,
     GOALS,
     LAST_ORDER,
     LONG,
     ORDERS,
-    SECOND_OF_TWO,
+    ROUNDS_LEFT,
     expected_sequence,
     feedback_objection,
     first_two,
@@ -23,6 +24,7 @@ from lab_1_4._goals import (
     objection,
     paced_goals,
     takes_no_time,
+    tells_at_the_end,
 )
 
 from autograder.kit.goals_seen import CANCELED, Goal, all_goals, goal, servers, status_text
@@ -82,8 +84,10 @@ def counts(evidence: Evidence) -> Finding:
 
 @of_one_server
 def gives_feedback(evidence: Evidence) -> Finding:
-    """The feedback of every good goal grows by one number."""
+    """The feedback of every good goal grows by one number, while the server works."""
     wrong = [text for seen in paced_goals(evidence) if (text := feedback_objection(evidence, seen))]
+    if tells_at_the_end(evidence.part(GOALS)):
+        wrong.append("all of it came at once, when the work was done")
     asked = bool(paced_goals(evidence))
     seen = wrong[0] if wrong else "it does" if asked else "no goal was sent"
     return Finding(asked and not wrong, "one more number in each feedback message", seen)
@@ -91,8 +95,8 @@ def gives_feedback(evidence: Evidence) -> Finding:
 
 @of_one_server
 def serves_two_at_once(evidence: Evidence) -> Finding:
-    """Both of two goals at once are right."""
-    two = [goal(evidence.part(GOALS), number) for number in (FIRST_OF_TWO, SECOND_OF_TWO)]
+    """A goal beside the one that is canceled is right, and so is one beside that."""
+    two = [goal(evidence.part(GOALS), number) for number in (BESIDE, AGAIN)]
     wrong = [text for seen in two if seen.order is not None and (text := objection(evidence, seen))]
     asked = all(seen.order is not None for seen in two)
     seen = wrong[0] if wrong else "both are right" if asked else "not reached"
@@ -119,6 +123,9 @@ def _cancel_objection(evidence: Evidence, long: Goal) -> str:
         return f"the cancel request was not accepted; status {status_text(long.status)}"
     if long.status != CANCELED:
         return f"the cancel was accepted, then: status {status_text(long.status)}"
+    if worked_on(evidence, long):
+        late = long.sent_after(long.cancel_answered_at)
+        return f"CANCELED with {len(long.sequence)} numbers, {late} feedback messages after the cancel"
     if not is_the_part(evidence, long):
         return f"CANCELED with {long.sequence}"
     return (
@@ -129,17 +136,27 @@ def _cancel_objection(evidence: Evidence, long: Goal) -> str:
 
 
 def is_the_part(evidence: Evidence, long: Goal) -> bool:
-    """Whether a canceled goal came back with what had been computed, and no more."""
-    extra = len(expected_sequence(evidence, min(ORDERS))) - min(ORDERS)
-    least = max(2, long.before_cancel)
-    return least <= len(long.sequence) < int(long.order or 0) + extra and is_beginning(
+    """Whether a canceled goal came back with what had been computed."""
+    return len(long.sequence) >= max(2, long.before_cancel) and is_beginning(
         long.sequence, first_two(evidence)
+    )
+
+
+def worked_on(evidence: Evidence, long: Goal) -> bool:
+    """Whether the server went on with a goal for more than a round after it had agreed to cancel it."""
+    extra = len(expected_sequence(evidence, min(ORDERS))) - min(ORDERS)
+    told = max(map(len, long.feedback), default=0)
+    tells = told > 0 and gives_feedback(evidence).passed
+    return (
+        long.sent_after(long.cancel_answered_at) > ROUNDS_LEFT
+        or len(long.sequence) >= int(long.order or 0) + extra
+        or (tells and len(long.sequence) > told + ROUNDS_LEFT)
     )
 
 
 @of_one_server
 def refuses_bad_orders(evidence: Evidence) -> Finding:
-    """Negative and too large orders are refused, and a good goal after them succeeds."""
+    """Negative and too large orders are refused, and two good goals after them succeed."""
     part, expected = (
         evidence.part(BAD_ORDERS),
         f"rejects negative orders and {FIRST_TOO_LARGE} or more, and lives on",
@@ -152,5 +169,5 @@ def refuses_bad_orders(evidence: Evidence) -> Finding:
         return Finding(False, expected, f"order {taken[0].order} was {how}")
     if not last:
         return Finding(False, expected, "not reached")
-    wrong = objection(evidence, last[0])
+    wrong = next((text for seen in last if (text := objection(evidence, seen))), "")
     return Finding(not wrong, expected, f"after the rejected goals, {wrong}" if wrong else "it does")

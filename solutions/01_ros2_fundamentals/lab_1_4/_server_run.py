@@ -6,14 +6,16 @@ from typing import TYPE_CHECKING
 
 from lab_1_4._goals import (
     BAD_ORDERS,
+    BESIDE,
     FIRST_TOO_LARGE,
     GOALS,
+    LARGE_ORDER,
     LAST_ORDER,
     LONG,
     LONG_ORDER,
-    LONGER,
     ORDERS,
     PACED,
+    ROUNDS_LEFT,
     SMALLEST,
 )
 
@@ -24,10 +26,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from autograder.kit.counterparts import ActionCaller
-    from autograder.kit.evidence import Part
+    from autograder.kit.evidence import Evidence
 
-CANCEL_AFTER = 2
-"""Feedback messages after which the cancel is asked for."""
+CANCEL_AFTER = 10
+"""Feedback messages after which the cancel is asked for: three rounds or more before a server looks again that does so
+with every fifth or tenth number only."""
 THREADS = 4
 """Threads that spin a notebook's class: with one, no cancel is read while a goal is executed."""
 
@@ -38,10 +41,15 @@ SERVER_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
 """Seconds in which a server that is on the graph must be matched with the judge's client."""
 QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 8.0}
 """Seconds without any event after which something is taken not to come."""
-GOAL_LIMIT = 60.0
+SILENCE = {Pace.FAST: 3.0, Pace.REAL_TIME: 16.0}
+"""The same while a server may be busy with a goal of the large order, and tell nothing of it."""
+GOAL_LIMIT = 75.0
 """Seconds in which a goal must have ended, however much happens."""
 CANCEL_LIMIT = {Pace.FAST: 4.0, Pace.REAL_TIME: 8.0}
 """Seconds in which a cancel must have been honoured; a server looks once for each number."""
+
+LEAST, GREATEST = -(2**31), 2**31 - 1
+"""The smallest and the largest order that fits into the goal."""
 
 AFTERMATH = 0.5
 """Seconds in which a server that has died of the cancel must have said so."""
@@ -70,28 +78,61 @@ def run(bench: Bench, name: str, goals: Callable[[Bench, ActionCaller], bool]) -
 
 
 def send_good_goals(bench: Bench, caller: ActionCaller) -> bool:
-    """A goal alone, two at once, many small ones, one that is canceled; False as soon as one does not end."""
-    alone, smaller = bench.random.sample(ORDERS, 2)
+    """A goal alone, many small ones, one that is canceled beside a younger one; False as soon as one does not end.
+
+    There are never more than two goals at once that take time: a server may have no threads for a third one.
+    """
+    order = bench.random.choice(ORDERS)
     if not all(
-        ended(bench, *[caller.send_goal(order=order) for order in batch])
-        for batch in ((alone,), bench.random.sample((smaller, LONGER), 2), *SMALLEST)
+        ended(bench, *[caller.send_goal(order=order) for order in batch]) for batch in ((order,), *SMALLEST)
     ):
         return False
     caller.send_goal(order=LONG_ORDER)
-    bench.wait_until(lambda e: _may_cancel(e.main), QUIET[bench.pace])
+    _await_feedback(bench, LONG, 1)
+    caller.send_goal(order=LARGE_ORDER)
+    _await_feedback(bench, LONG, CANCEL_AFTER)
     caller.cancel(LONG)
-    if not bench.wait_until(lambda e: _cancel_is_over(goal(e.main, LONG)), CANCEL_LIMIT[bench.pace]):
-        # A MultiThreadedExecutor raises what a callback of its raised only when it has something else to do.
-        bench.settle()
-        bench.await_end(AFTERMATH)
+    honoured = _await_cancel(bench)
+    if goal(bench.seen(), BESIDE).accepted is None:
+        return True  # one thread, and it is busy: the younger goal has not been read either
+    # Its server shall have looked whether to stop before the next goal begins.
+    _await_feedback(bench, BESIDE, len(goal(bench.seen(), BESIDE).feedback) + ROUNDS_LEFT + 1)
+    caller.send_goal(order=order)
+    if not ended(bench, *PACED, quiet=SILENCE[bench.pace]):
+        return False
+    # Results may overtake feedback on their way to a busy judge.
+    bench.wait_until(lambda e: all(_tells_all(goal(e.main, n)) for n in PACED), GOAL_LIMIT, quiet=AFTERMATH)
+    if not honoured:
+        # Where two threads work on two goals, nobody reads the cancel before one of them is done.
+        _await_cancel(bench)
     return True
 
 
-def _may_cancel(part: Part) -> bool:
-    seen = goal(part, LONG)
-    # A server that has left out feedback may send none now, and the goal would be over before that is known.
-    said_all = all(len(goal(part, n).feedback) >= int(goal(part, n).order or 0) - 2 for n in PACED)
-    return len(seen.feedback) >= CANCEL_AFTER or seen.over or (bool(seen.accepted) and not said_all)
+def _await_feedback(bench: Bench, number: int, messages: int) -> None:
+    """Wait until a goal has so much feedback, or there is no use in waiting for it."""
+
+    def has_told(evidence: Evidence) -> bool:
+        seen, others = goal(evidence.main, number), [goal(evidence.main, other) for other in PACED]
+        # A server that has left out feedback may send none now, and the goal would be over before that is known.
+        left_out = any(one.over and not _tells_all(one) for one in others)
+        return len(seen.feedback) >= messages or seen.over or (bool(seen.accepted) and left_out)
+
+    bench.wait_until(has_told, GOAL_LIMIT, quiet=QUIET[bench.pace])
+
+
+def _tells_all(seen: Goal) -> bool:
+    """Whether there is feedback for each number but the first two and the last."""
+    return len(seen.feedback) >= int(seen.order or 0) - 2
+
+
+def _await_cancel(bench: Bench) -> bool:
+    """Wait until the cancel was honoured or refused, but not for ever; whether it was."""
+    if bench.wait_until(lambda e: _cancel_is_over(goal(e.main, LONG)), CANCEL_LIMIT[bench.pace]):
+        return True
+    # A MultiThreadedExecutor raises what a callback of its raised only when it has something else to do.
+    bench.settle()
+    bench.await_end(AFTERMATH)
+    return False
 
 
 def _cancel_is_over(seen: Goal) -> bool:
@@ -99,19 +140,24 @@ def _cancel_is_over(seen: Goal) -> bool:
 
 
 def send_bad_goals(bench: Bench, caller: ActionCaller) -> bool:
-    """Orders that must be refused, up to the first that is not; then a good one."""
-    orders = (-1, -bench.random.randint(2, 99), FIRST_TOO_LARGE, bench.random.randint(60, 999))
+    """Orders that must be refused, up to the first that is not; then a good one, twice at once."""
+    orders = (
+        *(-1, -bench.random.randint(2, 99), LEAST),
+        *(FIRST_TOO_LARGE, bench.random.randint(60, 999), GREATEST),
+    )
     for number, order in enumerate(orders):
         caller.send_goal(order=order)
         if not bench.wait_until(lambda e, n=number: goal(e.main, n).accepted is not None, QUIET[bench.pace]):  # type: ignore[misc]
             return False
         if bench.wait_until(lambda e, n=number: bool(goal(e.main, n).accepted), 0.0):  # type: ignore[misc]
             return True
-    return ended(bench, caller.send_goal(order=LAST_ORDER))
+    return ended(bench, *[caller.send_goal(order=LAST_ORDER) for _ in range(2)])
 
 
-def ended(bench: Bench, *numbers: int) -> bool:
-    """Wait until goals have ended."""
+def ended(bench: Bench, *numbers: int, quiet: float | None = None) -> bool:
+    """Wait until goals have ended, as long as anything happens in ``quiet`` seconds."""
     return bench.wait_until(
-        lambda e: all(goal(e.main, number).over for number in numbers), GOAL_LIMIT, quiet=QUIET[bench.pace]
+        lambda e: all(goal(e.main, number).over for number in numbers),
+        GOAL_LIMIT,
+        quiet=quiet or QUIET[bench.pace],
     )

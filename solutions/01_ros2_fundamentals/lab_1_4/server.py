@@ -1,8 +1,9 @@
 """Lab 1.4: an action server that counts Fibonacci numbers, with feedback, cancel and refusal.
 
-The judge is the client. In one run of the server it sends a goal alone, two goals at once, many that take no time, and
-the largest one, which it cancels; in another one orders that must be refused, and one more goal to see that the node is
-still alive. A server may pace its work as it likes, so orders are small.
+The judge is the client. In one run of the server it sends a goal alone, many that take no time, and the largest one,
+which it cancels while a younger goal goes on beside it; then the first goal again. In another run it sends orders that
+must be refused, and two good goals to see that the node is still alive. A server may pace its work as it likes, so
+orders are small where nothing else is going on.
 """
 
 from __future__ import annotations
@@ -11,14 +12,15 @@ from typing import TYPE_CHECKING
 
 from lab_1_4 import _server_criteria as criteria
 from lab_1_4._goals import (
+    AGAIN,
     ALONE,
     BAD_ORDERS,
-    FIRST_OF_TWO,
+    BESIDE,
     FIRST_TOO_LARGE,
     GOALS,
     LAST_ORDER,
     LONG,
-    SECOND_OF_TWO,
+    ROUNDS_LEFT,
     expected_sequence,
     feedback_objection,
     feedback_slip,
@@ -26,6 +28,7 @@ from lab_1_4._goals import (
     objection,
     paced_goals,
     takes_no_time,
+    tells_at_the_end,
 )
 from lab_1_4._server_run import scenario
 
@@ -62,14 +65,16 @@ def only_bad_orders(seen: Evidence, _: Evidence) -> bool | Advice | None:
 @server.mistake("goal_rejected", certain=True, before="goal_not_succeeded")
 def goal_rejected(seen: Evidence, _: Evidence) -> Advice | None:
     """A good goal is refused."""
-    good = (*good_goals(seen), sends.canceled(seen))
+    last = [one for one in all_goals(seen.part(BAD_ORDERS)) if one.order == LAST_ORDER]
+    good = (*good_goals(seen), sends.canceled(seen), *last)
     refused = [one for one in good if one.accepted is False]
     if not refused or traceback_of(seen):
         return None
     if len(refused) < sum(one.accepted is not None for one in good):
         return Advice(
             f"Your server rejected a goal of order {refused[0].order}, which is a good one, and took others.",
-            f"Look at the comparison in your goal_callback: all orders from 0 to {FIRST_TOO_LARGE - 1} can be served.",
+            f"Look at the comparison in your goal_callback: all orders from 0 to {FIRST_TOO_LARGE - 1} can be served, "
+            "whatever else is being worked on.",
         )
     return Advice(
         f"Your server rejected a goal of order {refused[0].order}, which is a good one. A goal_callback that returns "
@@ -92,16 +97,28 @@ def result_never_filled(seen: Evidence, _: Evidence) -> bool:
     return bool(good) and not any(one.sequence for one in good)
 
 
-@server.mistake("goals_mixed_up", before="cancel_not_accepted")
+@server.mistake("goals_mixed_up")
 def goals_mixed_up(seen: Evidence, _: Evidence) -> Advice | None:
     """Alone it is right, two at once are not."""
-    alone, *two = (goal(seen.part(GOALS), number) for number in (ALONE, FIRST_OF_TWO, SECOND_OF_TWO))
-    if not two[0].accepted or objection(seen, alone) or feedback_objection(seen, alone):
+    alone, beside, again = (goal(seen.part(GOALS), number) for number in (ALONE, BESIDE, AGAIN))
+    if objection(seen, alone) or feedback_objection(seen, alone):
         return None
-    ended = [one for one in two if one.status is not None]
-    wrong = [text for one in ended if (text := objection(seen, one) or feedback_slip(seen, one))]
-    if not wrong:
+    ended = [one for one in (beside, again) if one.status is not None]
+    slips = [text for one in ended if (text := feedback_slip(seen, one))]
+    wrong = slips or [text for one in ended if (text := objection(seen, one))]
+    # Where the numbers of two goals get into one list, they grow too large, and that is an exception, too.
+    if not wrong or (traceback_of(seen) and not slips):
         return None
+    again_right = again in ended and not (objection(seen, again) or feedback_slip(seen, again))
+    if again_right and beside.status == SUCCEEDED:
+        return None  # two at once are right, and large numbers are not
+    canceled_at = sends.canceled(seen).cancel_answered_at
+    if sends.canceled(seen).cancel_accepted and beside.sent_after(canceled_at) <= ROUNDS_LEFT:
+        return Advice(
+            f"When one goal was canceled, another one did not come to its end ({wrong[0]}).",
+            "Ask the goal handle of each goal: goal_handle.is_cancel_requested is True only for the goal that is to "
+            "stop. A flag in self belongs to all goals, and stays up for those that come later.",
+        )
     return Advice(
         f"One goal alone is right, but of two at once one is not ({wrong[0]}): they disturb each other.",
         "Keep the sequence in a variable of the execute callback. What is stored in self is shared by all goals, and "
@@ -139,7 +156,15 @@ def feedback_missing(seen: Evidence, _: Evidence) -> bool:
 @server.mistake("wrong_feedback", before="cancel_not_accepted")
 def wrong_feedback(seen: Evidence, _: Evidence) -> Advice | None:
     """Feedback comes, and does not grow by one number. What a goal that hangs has sent says nothing about that."""
-    told = [one for one in paced_goals(seen) if one.feedback and one.was_computed]
+    told = [one for one in paced_goals(seen) if one.was_computed]
+    if not any(one.feedback for one in told):
+        return None
+    if tells_at_the_end(seen.part(GOALS)):
+        return Advice(
+            "All feedback of a goal came at once, when its work was done: nobody could follow it.",
+            "Call goal_handle.publish_feedback(feedback) inside the loop, in each turn, right after you have appended "
+            "the number and before you sleep.",
+        )
     wrong = [text for one in told if (text := feedback_objection(seen, one))]
     if not wrong:
         return None
@@ -161,6 +186,20 @@ def done_at_once(seen: Evidence, _: Evidence) -> Advice | None:
     return Advice(
         f"A goal of order {long.order} was done at once: there was no time to cancel it.",
         "Take some time for each number, for example time.sleep(0.5): an action is for work that takes long.",
+    )
+
+
+@server.mistake("cancel_ignored", late=True)
+def worked_on(seen: Evidence, _: Evidence) -> Advice | None:
+    """Canceled, but only after more rounds."""
+    long = sends.canceled(seen)
+    if long.status != CANCELED or not criteria.worked_on(seen, long):
+        return None
+    return Advice(
+        "Your server accepted the cancel request and went on counting: the canceled goal came back with "
+        f"{len(long.sequence)} numbers, and {long.before_cancel} had been found when the client asked to cancel it.",
+        "Look at goal_handle.is_cancel_requested in each turn of the loop, leave the loop as soon as it is True, and "
+        "append nothing after that.",
     )
 
 
