@@ -42,6 +42,16 @@ def right(canceled: str, succeeded: str) -> bool:
         ("was it canceled? yes", "was it canceled? no"),
         ("is_canceled=True", "is_canceled=False"),
         ("Goal canceled: True (5)", "Goal canceled: False (4)"),
+        ("goal canceled as asked: True", "goal canceled as asked: False"),
+        ("goal canceled successfully: True", "goal canceled successfully: False"),
+        ("CANCELED; succeeded anyway: no", "SUCCEEDED; succeeded anyway: yes"),
+        ("cancel success: True (5)", "cancel success: False (4)"),
+        ("asked for it to be canceled: yes. Ended: 5", "asked for it to be canceled: yes. Ended: 4"),
+        ("[CANCELED] after 14", "[SUCCEEDED] after 14"),
+        ("status [5]", "status [4]"),
+        ("ended (5) [0, 1]", "ended (4) [0, 1]"),
+        ("Status: [ ] 4 SUCCEEDED [x] 5 CANCELED", "Status: [x] 4 SUCCEEDED [ ] 5 CANCELED"),
+        ("not canceled: False, 5", "not canceled: True, 4"),
     ],
 )
 def test_who_says_how_each_goal_ended_is_right(canceled: str, succeeded: str) -> None:
@@ -64,6 +74,8 @@ def test_who_says_how_each_goal_ended_is_right(canceled: str, succeeded: str) ->
         ("goal canceled", "goal canceled"),
         ("the goal ended as SUCCEEDED", "the goal ended as CANCELED"),
         ("done", "done"),
+        ("goal canceled as asked: True (5)", "goal canceled as asked: True (4)"),
+        ("[5, 1] done", "[4, 1] done"),
     ],
 )
 def test_a_word_that_is_true_of_the_other_goal_only_is_wrong(canceled: str, succeeded: str) -> None:
@@ -81,3 +93,23 @@ def test_who_says_the_same_of_both_goals_hears_of_the_one_for_which_it_is_false(
     words: str, ended: str
 ) -> None:
     assert false_claim(run(words), run(words)) == (words, ended)
+
+
+@pytest.mark.parametrize(
+    ("words", "false"),
+    [
+        ("Final status: CANCELED", True),
+        ("Final status: SUCCEEDED", True),
+        ("CANCELED", True),
+        ("canceled: True", True),
+        ("Final status: ABORTED", False),
+        ("status 6, canceled: False", False),
+        ("it could not be canceled, it succeeded", False),
+        ("das Ziel wurde abgebrochen", False),
+    ],
+)
+def test_that_the_server_has_agreed_to_cancel_does_not_say_how_the_goal_ended(
+    words: str, false: bool
+) -> None:
+    claim = false_claim(run("status 5"), run("status 4"), run(words))
+    assert (claim is not None) is false

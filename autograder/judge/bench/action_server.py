@@ -177,7 +177,8 @@ class ScriptedActionServer:
     def _take_cancel(self, request: Any, response: Any) -> Any:
         # An all-zero id and stamp mean "cancel every goal" (action_msgs/srv/CancelGoal).
         asked = goal_text(request.goal_info.goal_id)
-        known = self._goal_id is not None and asked in (goal_text(self._goal_id), str(uuid.UUID(int=0)))
+        every = asked == str(uuid.UUID(int=0))
+        known = self._goal_id is not None and (every or asked == goal_text(self._goal_id))
         accepted = self._accept_cancel and known and self._status in (
             GoalStatus.STATUS_EXECUTING, GoalStatus.STATUS_CANCELING)  # fmt: skip
         if accepted:
@@ -188,7 +189,7 @@ class ScriptedActionServer:
             response.return_code = (
                 CancelGoal.Response.ERROR_REJECTED if known else CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID
             )
-        self._recorder.record("cancel", self._name, accepted=accepted, known=known)
+        self._recorder.record("cancel", self._name, accepted=accepted, known=known, every=every)
         return response
 
     def _take_result_request(self, request: Any, response: Any) -> Any:

@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from autograder.kit.goal_reports import left_at_once
+from autograder.kit.goal_reports import REFUSED, asked_for, left_at_once
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part
 
 HONOURED = "the server cancels"
 CANCEL_REFUSED = "the server refuses to cancel"
+AGREED = "the server agrees to cancel, and then fails"
 
 FIRST_FEEDBACK, LAST_FEEDBACK = 3, 5
 """The cancel request must come after this many feedback messages, at the earliest and at the latest."""
@@ -77,3 +78,32 @@ def after_result(part: Part) -> list[str]:
     """What was said after the result."""
     result = part.first("result")
     return part.said(after=result) if result else []
+
+
+def aborted_run(evidence: Evidence) -> Part | None:
+    """The run in which the server agreed to cancel and the goal was aborted; None where it did not come to that."""
+    part = evidence.part(AGREED)
+    result = part.first("result")
+    return part if result is not None and result.data["status"] == "aborted" else None
+
+
+def asks_again_when_refused(evidence: Evidence) -> bool:
+    """Whether it asks once where its cancel is honoured, and more than once where it is refused."""
+    return len(evidence.main.of("cancel")) == 1 and len(evidence.part(CANCEL_REFUSED).of("cancel")) > 1
+
+
+def cancels_every_goal(evidence: Evidence) -> bool:
+    """Whether its request has no goal's id: then it asks for every goal of the server (action_msgs/srv/CancelGoal)."""
+    cancel = evidence.main.first("cancel")
+    return cancel is not None and bool(cancel.data.get("every"))
+
+
+def orders_as_seen(evidence: Evidence) -> str:
+    """What is wrong about the goals that it sent, in words; empty where there is one of the right order in each run."""
+    made = asked_for(evidence.main)
+    refused = asked_for(evidence.part(REFUSED))
+    if len(made) > 1:
+        return f"{len(made)} goals"
+    if made and made[0] != expected_order(evidence):
+        return f"order {made[0]}"
+    return f"{len(refused)} goals, as the first was rejected" if made and len(refused) > 1 else ""

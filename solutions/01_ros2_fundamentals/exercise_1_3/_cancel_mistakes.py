@@ -10,16 +10,19 @@ from exercise_1_3._cancel_evidence import (
     FIRST_FEEDBACK,
     HONOURED,
     LAST_FEEDBACK,
+    aborted_run,
     after_result,
+    asks_again_when_refused,
+    cancels_every_goal,
     expected_order,
     goals,
+    orders_as_seen,
     telling_count,
 )
 from exercise_1_3._cancel_words import false_claim, says_canceled
 
 from autograder.kit import goal_mistakes
 from autograder.kit.common_mistakes import only_if_ended
-from autograder.kit.goal_reports import asked_for
 from autograder.kit.hangs import HANGS
 from autograder.kit.meant_errors import meant
 from autograder.kit.model import Advice, Mistake
@@ -32,14 +35,13 @@ WAITS_FOR_ITSELF = ("nested_spin", "call_in_same_group")
 
 
 def wrong_order(evidence: Evidence) -> Advice | None:
-    """A goal of another order."""
-    made, wanted = asked_for(evidence.main), expected_order(evidence)
-    if made == [wanted] or not made:
+    """A goal of another order, or more than one."""
+    wrong, wanted = orders_as_seen(evidence), expected_order(evidence)
+    if not wrong:
         return None
-    seen = f"{len(made)} goals" if len(made) > 1 else f"order {made[0]}"
     return Advice(
-        f"The judge got {seen}; the task asks for one goal of order {wanted}.",
-        f"Set goal.order = {expected_order(evidence)} and send the goal once.",
+        f"The judge got {wrong}; the task asks for one goal of order {wanted}.",
+        f"Set goal.order = {wanted} and send the goal once. Where it is rejected, say so, and send no other.",
     )
 
 
@@ -99,8 +101,14 @@ def ended_on_the_way(evidence: Evidence) -> Advice | None:
 
 
 def cancel_missing(evidence: Evidence) -> Advice | None:
-    """A goal, feedback, and no cancel request."""
+    """A goal, feedback, and no request to cancel this goal."""
     part = evidence.main
+    if cancels_every_goal(evidence):
+        return Advice(
+            "The cancel request of your client has no goal's id. That asks the server to cancel all its goals, also "
+            "those of other clients.",
+            "Call goal_handle.cancel_goal_async(): it asks for this one goal to be canceled.",
+        )
     if not goals(part) or part.first("cancel") is not None:
         return None
     return Advice(
@@ -140,6 +148,13 @@ def cancel_too_late(evidence: Evidence) -> Advice | None:
 
 def cancel_repeated(evidence: Evidence) -> Advice | None:
     """More than one cancel request."""
+    if asks_again_when_refused(evidence):
+        total = len(evidence.part(CANCEL_REFUSED).of("cancel"))
+        return Advice(
+            f"The server refused to cancel the goal, and your client asked {total} times in all; the task asks for one "
+            "request.",
+            "A server may say no. Leave it at that, wait for the result, and report how the goal really ended.",
+        )
     total = len(evidence.main.of("cancel"))
     if total < 2:
         return None
@@ -174,14 +189,14 @@ def status_not_reported(evidence: Evidence) -> Advice | None:
 def status_misreported(evidence: Evidence) -> Advice | None:
     """What it says of one goal is true of the other one."""
     honoured, refused = evidence.part(HONOURED), evidence.part(CANCEL_REFUSED)
-    claim = false_claim(honoured, refused)
+    claim = false_claim(honoured, refused, aborted_run(evidence))
     if claim is None:
         return None
     words, ended = claim
     return Advice(
         f"One goal of your client {ended}, but your client said of it “{words}”.",
-        "A cancel is a request, and the server may refuse it. So look at the status of the result, and say how the "
-        "goal really ended.",
+        "A cancel is a request. The server may refuse it, or agree to it and end the goal in another way. So look at "
+        "the status of the result, and say how the goal really ended.",
     )
 
 

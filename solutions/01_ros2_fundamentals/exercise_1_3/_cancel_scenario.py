@@ -1,9 +1,10 @@
-"""What the judge does with a client that cancels its goal: the cancel is honoured, it is refused, the goal is refused.
+"""What the judge does with a client that cancels: it honours that, refuses it, agrees and fails, or takes no goal.
 
 The judge is the action server. In a first part it comes late and cancels as it is asked to; in a second one the goal
 succeeds all the same, so that a client that only claims "canceled" is told from one that looked at the status. There
 the judge refuses to cancel. Of a client that never asked for the result it accepts the request, since only the status
-on its topic tells then. In a third part the goal itself is refused.
+on its topic tells then. In a third part the judge agrees to cancel, and the goal is aborted: that the server agreed
+does not say how the goal ended. In a fourth one the goal itself is refused.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from exercise_1_3._cancel_evidence import (
+    AGREED,
     CANCEL_REFUSED,
     FIRST_FEEDBACK,
     HONOURED,
@@ -37,6 +39,8 @@ FEW_LATE = 3
 """Feedback messages after the request in the second run, which is about the end."""
 AT_A_TIME = 3
 """Late feedback messages that are sent before the client has to have taken them; its queue holds ten."""
+ENDS = {HONOURED: "canceled", CANCEL_REFUSED: "succeeded", AGREED: "aborted"}
+"""How a goal ends that somebody asked to cancel, by the name of the part; any other one succeeds."""
 LAB_TIME = 1.5
 """Seconds of its own time in which a client must not ask once more; the lab's server takes less to end the goal."""
 
@@ -65,11 +69,12 @@ AFTERMATH = 1.0
 
 
 def scenario(bench: Bench) -> None:
-    """One run in which the cancel is honoured, one in which it is refused, one in which the goal is."""
+    """One run in which the cancel is honoured, one each in which it is refused or in vain, one in which the goal is."""
     honoured = run(bench, HONOURED, accept=True)
     sends_a_goal = bool(goals(bench.seen()))
     if honoured is not None:
         cancel_is_refused(bench, honoured)
+        run(bench, AGREED, accept=True)
     if sends_a_goal:
         bench.part(REFUSED)
         bench.start()
@@ -149,7 +154,7 @@ def serve_goal(bench: Bench, name: str, *, accept: bool, pause: float, late: flo
         hold_back(bench, "result_request")
     else:
         bench.note_whether_it_spins()
-    server.finish("canceled" if cancelled and name == HONOURED else "succeeded", sequence=sequence)
+    server.finish(ENDS[name] if cancelled else "succeeded", sequence=sequence)
     if bench.wait_until(lambda evidence: bool(after_result(evidence.main)), HANGS_AFTER):
         bench.await_end(AFTERMATH)
     else:

@@ -1,4 +1,4 @@
-"""What a client says of how its goal ended, in the run in which it was canceled and in the one in which it succeeded.
+"""What a client says of how its goal ended, in the runs in which it was canceled, in which it succeeded, was aborted.
 
 Any human language is right, and a number is as good as a name. But a word that names one outcome must not be said of
 the other, whatever number stands beside it.
@@ -11,22 +11,29 @@ from typing import TYPE_CHECKING
 import re2
 from exercise_1_3._cancel_evidence import after_result
 
+from autograder.kit.outcome_words import (
+    ABORTED,
+    CANCELED,
+    DOUBTFUL,
+    SUCCEEDED,
+    SUCCESS,
+    ends_as,
+    flag,
+    names_canceled,
+    without_lists,
+)
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from autograder.kit.evidence import Part
 
 _NUMBER = re2.compile(r"\d+(?:\.\d+)*")
-CANCELED = "was canceled"
-SUCCEEDED = "succeeded in spite of the cancel request"
-"""How the two goals end."""
-_CANCELED = r"(?:cancel+ed|abgebrochen|annul\w*)"
-_SUCCEEDED = r"(?:succeeded|success)"
-_ABORTED = "aborted"
-_YES, _NO = r"(?:true|yes|ja|oui|sí|si)", r"(?:false|no|nein|non)"
-_IS = r"\w*[\"']?\s*(?:=|:|->|is|was|ist|\?)+\s*"
-_DOUBTFUL = r"not |n't|refus|reject|fail|nicht|unable|could|instead|denied|unknown|expect|want|but|should"
-"""Words of who says that something is otherwise than it was meant to be."""
+WAS_CANCELED, WAS_ABORTED = "was canceled", "was aborted, though the server had agreed to cancel it"
+HAS_SUCCEEDED = "succeeded in spite of the cancel request"
+"""How the goals end."""
+_ENGLISH = "cancel+ed"
+"""What nobody may say of a goal that was aborted. In other languages one word may stand for both."""
 
 
 def says_canceled(lines: Sequence[str], elsewhere: Sequence[str] = (), otherwise: Sequence[str] = ()) -> bool:
@@ -40,7 +47,7 @@ def says_canceled(lines: Sequence[str], elsewhere: Sequence[str] = (), otherwise
     """
     ends = {_shape(line) for line in otherwise}
     return any(
-        (_names_canceled(line) and _shape(line) not in ends) or _has_the_number(line, elsewhere)
+        (names_canceled(line) and _shape(line) not in ends) or _has_the_number(line, elsewhere)
         for line in lines
     )
 
@@ -54,84 +61,71 @@ def _has_the_number(line: str, elsewhere: Sequence[str]) -> bool:
 
 
 def _numbers(line: str) -> list[str]:
-    return _NUMBER.findall(_without_lists(line))
+    return _NUMBER.findall(without_lists(line))
 
 
 def _shape(line: str) -> str:
     """A line with a place for each number, so that two lines for two goals can be compared."""
-    return _NUMBER.sub("#", _without_lists(line))
+    return _NUMBER.sub("#", without_lists(line))
 
 
-def _names_canceled(line: str) -> bool:
-    return re2.search(r"(?i)cancel|abgebrochen|annul", _without_lists(line)) is not None
-
-
-def _without_lists(line: str) -> str:
-    # The numbers of a sequence are not a status.
-    return re2.sub(r"\[[^\]]*\]|\([\d, ]*\)", "", line)
-
-
-def false_claim(honoured: Part, refused: Part) -> tuple[str, str] | None:
-    """What it says of one of the two goals and is true of the other only, and how the goal that it says it of ended.
+def false_claim(honoured: Part, refused: Part, aborted: Part | None = None) -> tuple[str, str] | None:
+    """What it says of one of its goals and is true of another only, and how the goal that it says it of ended.
 
     None where it says nothing of the kind.
+
+    Args:
+        honoured: The run in which the goal was canceled.
+        refused: The run in which it succeeded.
+        aborted: The run in which it was aborted, where there was one.
     """
     if refused.first("result") is None:
         return None
     of_canceled, of_succeeded = after_result(honoured), after_result(refused)
+    of_aborted = after_result(aborted) if aborted else []
     for said, ended, is_false in (
         (
             of_succeeded,
-            SUCCEEDED,
-            lambda line: _flag(_CANCELED, line) is True or _flag(_SUCCEEDED, line) is False,
+            HAS_SUCCEEDED,
+            lambda line: flag(CANCELED, line) is True or flag(SUCCEEDED, line) is False,
         ),
         (
             of_canceled,
-            CANCELED,
-            lambda line: _flag(_CANCELED, line) is False or _flag(_SUCCEEDED, line) is True,
+            WAS_CANCELED,
+            lambda line: flag(CANCELED, line) is False or flag(SUCCEEDED, line) is True,
         ),
-        (of_succeeded, SUCCEEDED, lambda line: _is_the_goal_s_end(_CANCELED, line)),
-        (of_canceled, CANCELED, lambda line: _is_the_goal_s_end(_SUCCEEDED, line)),
-        (of_succeeded, SUCCEEDED, _says_aborted),
+        (of_aborted, WAS_ABORTED, lambda line: True in (flag(_ENGLISH, line), flag(SUCCEEDED, line))),
+        (of_succeeded, HAS_SUCCEEDED, lambda line: ends_as(CANCELED, line)),
+        (of_canceled, WAS_CANCELED, lambda line: ends_as(SUCCEEDED, line)),
+        (of_succeeded, HAS_SUCCEEDED, lambda line: ends_as(ABORTED, line)),
+        (of_aborted, WAS_ABORTED, lambda line: ends_as(_ENGLISH, line) or ends_as(SUCCEEDED, line)),
     ):
         false = next(filter(is_false, said), None)
         if false is not None:
             return false, ended
-    claimed = _claimed(refused)
-    return None if claimed is None else (claimed, SUCCEEDED)
+    if claimed := _claimed(refused, f"{SUCCESS}|4"):
+        return claimed, HAS_SUCCEEDED
+    if aborted and (claimed := _claimed(aborted, "abort|6", _ENGLISH)):
+        return claimed, WAS_ABORTED
+    return None
 
 
-def _says_aborted(line: str) -> bool:
-    """Whether a line says of a goal that it was aborted, and does not speak of success."""
-    return _is_the_goal_s_end(_ABORTED, line) and not re2.search(r"(?i)succe|erfolg", _without_lists(line))
+def _claimed(part: Part, truth: str, word: str = "cancel|abgebrochen|annul") -> str | None:
+    """What it says that amounts to "the goal was canceled" where it was not, without a word of doubt.
 
-
-def _flag(word: str, line: str) -> bool | None:
-    """What a line says behind the word, as ``canceled=True`` does; None where it says neither yes nor no."""
-    found = re2.search(rf"(?i)\b(?:\w+_)?{word}{_IS}(?P<flag>{_YES}|{_NO})\b", line)
-    return None if found is None else re2.fullmatch(f"(?i){_YES}", found["flag"]) is not None
-
-
-def _is_the_goal_s_end(word: str, line: str) -> bool:
-    """Whether the word is what became of the goal, as in "the goal was canceled" or "status: CANCELED"."""
-    plain = _without_lists(line)
-    if re2.search(f"(?i){_DOUBTFUL}", plain) or (word == _SUCCEEDED and _names_canceled(line)):
-        return False
-    of_the_goal = r"\b(?:goal|it|ziel)\s+(?:is |was |has been |got |wurde |ended as |ended )?"
-    of_its_status = r"\b(?:status|state|zustand|outcome)\s*(?:is|was|=|:)?[\s\d()\[\]'\"=:-]*"
-    return any(
-        not re2.match(r"(?i)\s+after\b|\s*(?:=|:|->|\?)", plain[found.end() :])
-        for found in re2.finditer(rf"(?i)(?:{of_the_goal}|{of_its_status}){word}\b", plain)
-    )
-
-
-def _claimed(refused: Part) -> str | None:
-    """What it says that amounts to "the goal was canceled" although the goal succeeded, without a word of doubt."""
+    Args:
+        part: The run.
+        truth: The words and the number for how its goal ended.
+        word: The words that claim it.
+    """
     # An exception that ends the program says something, too.
-    raised = [line for line in refused.traceback.splitlines() if line.strip()][-1:]
-    said = [*after_result(refused), *raised] or (refused.said() if refused.first("result_request") else [])
-    claims = [line for line in said if _names_canceled(line) and _flag(_CANCELED, line) is not False]
-    doubts = f"(?i){_DOUBTFUL}|succe|erfolg|4"
-    if not claims or any(re2.search(doubts, _without_lists(line)) for line in said):
+    raised = [line for line in part.traceback.splitlines() if line.strip()][-1:]
+    said = [*after_result(part), *raised] or (part.said() if part.first("result_request") else [])
+    claims = [
+        line
+        for line in said
+        if re2.search(f"(?i){word}", without_lists(line)) and flag(CANCELED, line) is not False
+    ]
+    if not claims or any(re2.search(f"(?i){DOUBTFUL}|{truth}", without_lists(line)) for line in said):
         return None
     return claims[-1]

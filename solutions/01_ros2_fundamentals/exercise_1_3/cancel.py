@@ -10,9 +10,13 @@ from exercise_1_3._cancel_evidence import (
     HONOURED,
     LAST_FEEDBACK,
     LEFT,
+    aborted_run,
     after_result,
+    asks_again_when_refused,
+    cancels_every_goal,
     expected_order,
     left_before_its_answer,
+    orders_as_seen,
     telling_count,
 )
 from exercise_1_3._cancel_mistakes import MISTAKES
@@ -40,8 +44,8 @@ def sends_the_goal(evidence: Evidence) -> Finding:
     made = asked_for(evidence.main)
     if made and left_at_once(evidence.main):
         return Finding(False, f"one goal of order {wanted}", NOT_AWAITED)
-    seen = f"{len(made)} goals" if len(made) > 1 else f"order {made[0]}" if made else "no goal"
-    return Finding(made == [wanted], f"one goal of order {wanted}", seen)
+    wrong = orders_as_seen(evidence) if made else "no goal"
+    return Finding(not wrong, f"one goal of order {wanted}", wrong or f"order {wanted}")
 
 
 def cancels_in_the_window(evidence: Evidence) -> Finding:
@@ -52,15 +56,20 @@ def cancels_in_the_window(evidence: Evidence) -> Finding:
     inside = count is not None and FIRST_FEEDBACK <= count <= LAST_FEEDBACK
     if count is not None and left_before_its_answer(evidence.main):
         return Finding(False, expected, LEFT)
+    if cancels_every_goal(evidence):
+        return Finding(False, expected, "a request to cancel every goal of the server")
     return Finding(inside and sends_the_goal(evidence).passed, expected, seen)
 
 
 def cancels_once(evidence: Evidence) -> Finding:
-    """No second cancel request before late feedback arrives."""
+    """No second cancel request before late feedback arrives, and none where the first is refused."""
     cancels = _cancels(evidence.main)
     expected = "one cancel request, before more feedback arrives"
     if cancels and left_before_its_answer(evidence.main):
         return Finding(False, expected, LEFT)
+    if asks_again_when_refused(evidence):
+        total = len(evidence.part(CANCEL_REFUSED).of("cancel"))
+        return Finding(False, expected, f"{total} cancel requests where the server refuses")
     seen = f"{len(cancels)} cancel request{'s' * (len(cancels) != 1)}, before more feedback arrived"
     return Finding(len(cancels) == 1, expected, seen if cancels else "no cancel request")
 
@@ -108,7 +117,7 @@ def reports_the_status(evidence: Evidence) -> Finding:
         if asked == 0:
             return Finding(False, expected, "never asked for the result")
         return Finding(False, expected, f"“{said[-1]}”" if said else "nothing was said after the result")
-    claim = false_claim(part, refused)
+    claim = false_claim(part, refused, aborted_run(evidence))
     if claim:
         words, ended = claim
         return Finding(False, expected, f"“{words}” about a goal that {ended}")
