@@ -9,6 +9,7 @@ from autograder.kit.giving_up import gave_up, patience_not_kept
 from autograder.kit.goal_reports import (
     ABORTED,
     ABSENT,
+    CANCELED,
     LATE,
     MANY_REQUESTS,
     NO_GOAL,
@@ -24,6 +25,7 @@ from autograder.kit.goal_reports import (
     raised_on_purpose,
     refused_as_seen,
     reports_result,
+    returned_instead,
     said_of_result,
     unshown_feedback,
 )
@@ -73,8 +75,8 @@ def gave_up_too_early(evidence: Evidence) -> Advice | None:
 
 
 def order_never_filled(evidence: Evidence) -> Advice | None:
-    """Every goal asks for order 0."""
-    made = [order for part in evidence for order in asked_for(part)]
+    """Every goal asks for order 0, also where another one was given."""
+    made = [order for part in evidence if part.inputs.get("order") != 0 for order in asked_for(part)]
     if not made or any(made):
         return None
     return Advice(
@@ -86,12 +88,22 @@ def order_never_filled(evidence: Evidence) -> Advice | None:
 def wrong_order(evidence: Evidence) -> Advice | None:
     """Another order than the one given, or several goals."""
     wrong = goals_as_seen(evidence)
-    if not wrong or wrong in (NO_GOAL, NOT_AWAITED):
+    if not wrong or wrong in (NO_GOAL, NOT_AWAITED, CANCELED):
         return None
     return Advice(
         f"The judge got {wrong}.",
         "Send one goal, once, with the order that your function or program was given (sys.argv[1] on a command line). "
         "A timer that sends it has to be switched off when it has done so.",
+    )
+
+
+def canceled_unasked(evidence: Evidence) -> Advice | None:
+    """It asks to cancel a goal that nobody wants canceled."""
+    if goals_as_seen(evidence) != CANCELED:
+        return None
+    return Advice(
+        "Your client asked the server to cancel its goal, on its way.",
+        "The task asks for the whole goal: leave out cancel_goal_async(), and wait for the result.",
     )
 
 
@@ -222,6 +234,32 @@ def wrong_result_reported(evidence: Evidence) -> Advice | None:
     return Advice(
         "Your client reported the last feedback as if it were the result; the result was another sequence.",
         "Take the sequence from the result: future.result().result.sequence.",
+    )
+
+
+def another_returned(evidence: Evidence) -> Advice | None:
+    """A function says the sequence, and returns something else."""
+    part = evidence.part(LATE)
+    result = part.first("result")
+    if result is None or not reports_result(part):
+        return None
+    returned = returned_instead(part, result.data["fields"]["sequence"])
+    if not returned:
+        return None
+    return Advice(
+        f"Your function logged the sequence of the result, and returned {returned}.",
+        "End it with `return list(answer.result.sequence)`: whoever calls it wants the numbers.",
+    )
+
+
+def refusal_returned(evidence: Evidence) -> Advice | None:
+    """A function says that the goal was refused, and does not return an empty list."""
+    returned = returned_instead(evidence.part(REFUSED), [])
+    if refused_as_seen(evidence) or not returned:
+        return None
+    return Advice(
+        f"The goal was rejected, your function said so, and then it returned {returned}.",
+        "Where the goal is rejected there is no sequence: `return []`, an empty list.",
     )
 
 

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.kit import outcome_words as words
+from autograder.kit.evidence import INTERRUPTED
 from autograder.kit.giving_up import objection, other_names, remark
 from autograder.kit.model import Finding
 from autograder.kit.numbers_said import mentions
@@ -30,6 +32,7 @@ SERVED = (LATE, REFUSED, ABORTED)
 FEEDBACKS = 14
 """Feedback messages of the goal that succeeds: enough for a client that goes deaf after a while to be found out."""
 NO_GOAL = "no goal"
+CANCELED = "a request to cancel the goal"
 NOT_AWAITED = "it ended without taking in the answer to its goal"
 MANY_REQUESTS = 3
 """Requests for one result that may have a reason; what asks more often goes on asking."""
@@ -38,6 +41,10 @@ AT_ONCE = 4.0
 """Seconds after an answer in which a client ends that never meant to take it in. A process takes a tenth of a second to
 end, and more than one on a crowded machine. A client that spins for 5 seconds, as many do, ends half a second later
 than this, though its answer was held back; one that spins for 3 ends a second before."""
+_CANCELED = "cancel+ed"
+"""In other languages one word may stand for canceled and for aborted."""
+_FAILURES = (_CANCELED, words.ABORTED)
+"""What nobody may say of a goal that succeeded or was refused."""
 _TRACEBACK = "Traceback (most recent call last)"
 _SLIPS = ("AttributeError", "TypeError", "NameError", "UnboundLocalError", "KeyError", "IndexError")
 """Exceptions that nobody raises in order to say something."""
@@ -78,7 +85,19 @@ def goals_as_seen(evidence: Evidence) -> str:
             return f"{len(orders)} goals"
         if orders and orders[0] != part.inputs["order"]:
             return f"order {orders[0]} where {part.inputs['order']} was given"
+        if part.name != REFUSED and cancels_unasked(part):
+            return CANCELED
     return "" if all(map(asked_for, parts)) else NO_GOAL
+
+
+def cancels_unasked(part: Part) -> bool:
+    """Whether it asks to cancel its goal before that has ended; one that was interrupted may."""
+    for event in part.events:
+        if event.kind == "result" or event.name == INTERRUPTED:
+            return False
+        if event.kind == "cancel":
+            return True
+    return False
 
 
 def unshown_feedback(part: Part) -> list[Event]:
@@ -108,18 +127,41 @@ def said_of_result(part: Part) -> list[str]:
 
 
 def reports_result(part: Part) -> bool:
-    """Every number of the result was said after it was sent."""
+    """Every number of the result was said after it was sent, in its order."""
     result = part.first("result")
     if result is None or part.first("result_request") is None:
         return False
-    said = part.said(after=result)
-    return all(mentions(said, number) for number in _sequence(result))
+    # The numbers are long and random, so that their digits alone are told from whatever stands between them.
+    digits, place = re2.sub(r"\D", "", " ".join(part.said(after=result))), 0
+    for number in map(str, _sequence(result)):
+        place = digits.find(number, place)
+        if place < 0:
+            return False
+        place += len(number)
+    return True
+
+
+def returned_instead(part: Part, wanted: Sequence[int]) -> str:
+    """What a function has returned in place of these numbers; empty where it is right, and of a subject that is none.
+
+    Any kind of sequence is taken for a list.
+    """
+    if part.ending is None or part.ending.name != "returned":
+        return ""
+    value = part.ending.data.get("value")
+    # A type may be named beside the numbers, as in np.int32(5).
+    numbers = re2.findall(r"\d+", re2.sub(r"int\d+", "", str(value)))
+    return "" if value is not None and numbers == [str(number) for number in wanted] else str(value)
 
 
 def miscalled(part: Part) -> str:
     """A line that calls a goal canceled or aborted that has succeeded; empty where there is none."""
-    for line in said_of_result(part):
-        plain = _without_lists(line)
+    said = said_of_result(part)
+    if any(re2.search(r"(?i)\bsucceeded\b", words.without_lists(line)) for line in said):
+        # The other names may stand in a table around the true one.
+        return next((line for line in said for word in _FAILURES if words.flag(word, line)), "")
+    for line in said:
+        plain = words.without_lists(line)
         if re2.search(r"(?i)\b(?:cancell?ed|aborted)\b", plain) and not re2.search(
             r"(?i)\b(?:not?|false|if|unless|or)\b|\bun|succe|erfolg|\?|[=:] *0\b|\b4\b", plain
         ):
@@ -138,10 +180,14 @@ def _new_words(lines: Sequence[str], *others: Part) -> list[str]:
     return [line for line in lines if shape(line) not in usual]
 
 
+def last_line(part: Part) -> str:
+    """The exception in its traceback; empty where there is none."""
+    return next(filter(str.strip, reversed(part.traceback.splitlines())), "")
+
+
 def raised_on_purpose(part: Part) -> bool:
     """Whether it ended with an exception that says something."""
-    lines = [line for line in part.traceback.splitlines() if line.strip()]
-    return bool(lines) and not lines[-1].startswith(_SLIPS)
+    return bool(last_line(part)) and not last_line(part).startswith(_SLIPS)
 
 
 def _waits(late: Part) -> bool:
@@ -160,19 +206,31 @@ def refused_as_seen(evidence: Evidence) -> str:
     if goal is None or not _waits(evidence.main):
         return NO_GOAL if part.events else "not reached"
     # An empty list, as a function may return one, is no word.
-    words = [line for line in part.said(after=goal) if re2.search(r"\pL", line)]
-    said = _new_words(words, evidence.main)
+    lines = [line for line in part.said(after=goal) if re2.search(r"\pL", line)]
+    said = [line for line in _new_words(lines, evidence.main) if not _tells_another(line, evidence)]
+    raised = raised_on_purpose(part) and not _tells_another(last_line(part), evidence)
     if part.first("result_request") is not None:
         accepted = [other for other in evidence if other.name not in (REFUSED, ABSENT)]
         told = [line for line in _new_words(said, *accepted) if not _names_unknown(line)]
-        if not (told or raised_on_purpose(part)):
+        if not (told or raised):
             return "asked for the result of a goal that was rejected"
-    if not (said or raised_on_purpose(part)):
+    if not (said or raised):
         return "nothing was said of it"
     # A client that goes on after a success, too, may go on here.
     if part.ending is None and evidence.main.ending is not None:
         return "said so, and did not end"
     return ""
+
+
+def _tells_another(line: str, evidence: Evidence) -> bool:
+    """Whether a line tells of another end than a refusal: how an accepted goal ends, or that there is no server."""
+    if re2.search(r"(?i)accept|reject|refus", line):
+        return False
+    if any(words.ends_as(word, line) for word in (words.SUCCEEDED, *_FAILURES)):
+        return True
+    absent = evidence.part(ABSENT)
+    same = shape(line) in {shape(other) for other in (*absent.said(), last_line(absent))}
+    return same and re2.search(r"(?i)\bserver\b|nobody|no one|time", line) is not None
 
 
 def aborted_as_seen(evidence: Evidence) -> str:
@@ -182,10 +240,15 @@ def aborted_as_seen(evidence: Evidence) -> str:
     if result is None or not _waits(evidence.part(LATE)):
         return NO_GOAL if part.events else "not reached"
     said = said_of_result(part)
-    if raised_on_purpose(part) or any(_names_aborted(line) for line in said):
+    late = {words.without_lists(line).strip() for line in evidence.part(LATE).said()}
+    named = [line for line in said if _names_aborted(line) and words.without_lists(line).strip() not in late]
+    if any("abort" in line.lower() for line in named):
         return ""
-    new = [line for line in _new_words(said, evidence.part(LATE)) if not _names_canceled(line)]
-    if new:
+    for line in said:
+        if words.ends_as(words.SUCCEEDED, line) or words.ends_as(_CANCELED, line):
+            return f"“{line}”"
+    new = [line for line in _new_words(said, evidence.part(LATE)) if not _names_another(line)]
+    if named or new or raised_on_purpose(part):
         return ""
     if part.first("result_request") is None:
         return "never asked for the result"
@@ -197,17 +260,13 @@ def _names_unknown(line: str) -> bool:
 
 
 def _names_aborted(line: str) -> bool:
-    plain = _without_lists(line)
+    plain = words.without_lists(line)
     return re2.search(r"(?i)abort|(?:^|[^\d.])6(?:[^\d.]|$)", plain) is not None
 
 
-def _without_lists(line: str) -> str:
-    # The numbers of a sequence are no status.
-    return re2.sub(r"\[[^\]]*\]|\([\d, ]*\)", "", line)
-
-
-def _names_canceled(line: str) -> bool:
-    return re2.search(r"(?i)cancel|succe|erfolg", line) is not None and "not" not in line.lower()
+def _names_another(line: str) -> bool:
+    named = re2.search(r"(?i)cancel|\brejected\b|succe|erfolg", line)
+    return named is not None and "not" not in line.lower()
 
 
 def given_up(evidence: Evidence) -> str:
@@ -264,6 +323,8 @@ def reports_the_result(evidence: Evidence) -> Finding:
     if asked > MANY_REQUESTS:
         return Finding(False, expected, f"asked for the result {asked} times")
     said = part.said(after=result)
+    if returned := returned_instead(part, result.data["fields"]["sequence"]):
+        return Finding(False, f"{result.data['fields']['sequence']} returned", f"returned {returned}")
     if wrong := miscalled(part):
         return Finding(False, expected, f"“{wrong}” about a goal that succeeded")
     return Finding(
@@ -275,6 +336,15 @@ def tells_of_refusal(evidence: Evidence) -> Finding:
     """A refused goal is told, no result is asked for, and the client ends."""
     wrong = refused_as_seen(evidence)
     return Finding(not wrong, "says that the goal was rejected, and ends", wrong or "it did")
+
+
+def returns_nothing_of_a_refused_goal(evidence: Evidence) -> Finding:
+    """As :func:`tells_of_refusal`; a function that returns has to return an empty list."""
+    told = tells_of_refusal(evidence)
+    returned = returned_instead(evidence.part(REFUSED), [])
+    if not told.passed or not returned:
+        return told
+    return Finding(False, "an empty list is returned for a goal that was rejected", f"returned {returned}")
 
 
 def tells_of_abort(evidence: Evidence) -> Finding:

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.evidence import INTERRUPTED, Event, Evidence, Part, Reference
 from autograder.kit.goal_reports import (
     ABORTED,
     LATE,
     REFUSED,
     aborted_as_seen,
+    cancels_unasked,
+    miscalled,
     refused_as_seen,
     reports_result,
+    returned_instead,
     unshown_feedback,
 )
 
@@ -53,6 +56,12 @@ def evidence(success: str, *others: Part) -> Evidence:
         ("Fertig: [1, 2, 3]", "Daraus wurde nichts.", True),
         ("succeeded: [1, 2, 3]", "the goal was canceled", False),
         ("succeeded: [1, 2, 3]", "succeeded!", False),
+        ("the goal SUCCEEDED with status 4", "the goal SUCCEEDED with status 6", False),
+        ("done", "the goal was rejected", False),
+        ("4 (4 is SUCCEEDED, 6 is ABORTED)", "4 (4 is SUCCEEDED, 6 is ABORTED)", False),
+        ("4 (4 is SUCCEEDED, 6 is ABORTED)", "6 (4 is SUCCEEDED, 6 is ABORTED)", True),
+        ("[4] [1, 2, 3]", "[6] [1, 2, 3]", True),
+        ("[x] SUCCEEDED [ ] ABORTED", "[ ] SUCCEEDED [x] ABORTED", True),
     ],
 )
 def test_an_abort_is_told_by_name_by_number_or_by_other_words(success: str, aborted: str, told: bool) -> None:
@@ -78,6 +87,9 @@ def test_a_late_echo_of_feedback_is_no_word_on_the_result() -> None:
         ("rejected :(", "", True),
         ("refusé", "", True),
         ("goal sent", "", False),
+        ("the goal was ABORTED", "", False),
+        ("Final status: CANCELED", "", False),
+        ("the goal was rejected, so it is aborted", "", True),
         ("goal sent", "RuntimeError: not accepted", True),
         ("goal sent", "AttributeError: 'NoneType' object has no attribute 'status'", False),
     ],
@@ -123,3 +135,50 @@ def test_a_result_is_reported_by_all_its_numbers_after_it_came() -> None:
     assert not reports_result(Part(LATE, {}, head))
     assert not reports_result(Part(LATE, {}, [*head, say(str(NUMBERS[:2]))]))
     assert reports_result(Part(LATE, {}, [*head, say("array('i', [100001, 200002, 300003])")]))
+
+
+def test_a_result_is_reported_in_its_order() -> None:
+    head = [GOAL, ASKED, result("succeeded", [300_003, 100_001, 300_003])]
+    assert reports_result(Part(LATE, {}, [*head, say("300,003 then 100_001 - 300003")]))
+    assert not reports_result(Part(LATE, {}, [*head, say("[300003, 100001]")]))
+    assert not reports_result(Part(LATE, {}, [*head, say("[100001, 300003, 300003]")]))
+
+
+@pytest.mark.parametrize(
+    ("lines", "false"),
+    [
+        (["--> SUCCEEDED", "    CANCELED", "    ABORTED"], False),
+        (["CANCELED"], True),
+        (["SUCCEEDED", "canceled: True"], True),
+    ],
+)
+def test_names_around_the_true_one_claim_nothing(lines: list[str], false: bool) -> None:
+    said = [say(line) for line in lines]
+    assert bool(miscalled(Part(LATE, {}, [GOAL, ASKED, result("succeeded", NUMBERS), *said]))) is false
+
+
+@pytest.mark.parametrize(
+    ("value", "right"),
+    [
+        ("[1, 2]", True),
+        ("array('i', [1, 2])", True),
+        ("[np.int32(1), np.int32(2)]", True),
+        ("[2, 1]", False),
+        ("3", False),
+        (None, False),
+    ],
+)
+def test_a_function_returns_the_numbers_in_any_kind_of_sequence(value: str | None, right: bool) -> None:
+    part = Part(LATE, {}, [Event(0.0, "subject", "returned", {"value": value})])
+    assert (returned_instead(part, [1, 2]) == "") is right
+
+
+def test_a_program_returns_nothing() -> None:
+    assert returned_instead(Part(LATE, {}, [ENDED]), [1, 2]) == ""
+
+
+def test_a_cancel_counts_before_the_end_of_the_goal_and_before_the_program_is_stopped() -> None:
+    cancel = Event(0.0, "cancel", "/fibonacci", {"accepted": True, "known": True})
+    assert cancels_unasked(Part(LATE, {}, [GOAL, cancel]))
+    assert not cancels_unasked(Part(LATE, {}, [GOAL, result("succeeded", NUMBERS), cancel]))
+    assert not cancels_unasked(Part(LATE, {}, [GOAL, Event(0.0, "subject", INTERRUPTED), cancel]))

@@ -50,6 +50,9 @@ class PatientClient:
     def await_end(self, within: float) -> bool:
         return True
 
+    def settle(self) -> None:
+        pass
+
     def run_time(self, seconds: float) -> bool:
         return True
 

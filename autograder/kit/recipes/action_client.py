@@ -1,8 +1,8 @@
 """A client of an action: the judge is the server.
 
-Its numbers are no Fibonacci numbers, and its result is another one than its last feedback, so that only a client that
-shows what it gets can be right. It comes late once, refuses a goal, aborts another, and in the last part it is not
-there.
+Its numbers are no Fibonacci numbers and in no order, one of them is there twice, and its result is another one than its
+last feedback, so that only a client that shows what it gets can be right. It comes late once, refuses a goal, aborts
+another, and in the last part it is not there.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence
     from autograder.kit.model import Advice
 
-ORDERS = (11, 30)
-"""The smallest and the largest order that the client is given."""
+ORDERS = {LATE: (41, 46), REFUSED: (-9, -1), ABORTED: (0, 0), ABSENT: (11, 30)}
+"""The smallest and the largest order that the client is given: a large one, a bad one, none at all is each a number."""
 SHOWN_WITHIN = {Pace.FAST: 0.5, Pace.REAL_TIME: 1.5}
 """Seconds at most in which a client shows a feedback message before the next one is sent."""
 HASTE = 0.2
 """What that is multiplied with once it was used up: who shows nothing is not waited for again and again."""
-RESULT = 12
-"""Numbers of a result: so many that a client that shows the first ten of them is found out."""
+RESULT = 28
+"""Numbers of a result: so many that a client that shows the first ten, or twenty, of them is found out."""
 GOAL_LIMIT = 15.0
 """Seconds in which a goal must arrive once the client is on the graph."""
 END_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 8.0}
@@ -51,7 +51,12 @@ def scenario(bench: Bench) -> None:
 
 def begin(bench: Bench, name: str) -> dict[str, Any]:
     """Begin a part; what the subject is to be started with."""
-    inputs = {"order": bench.random.randint(*ORDERS), PATIENCE: round(bench.random.uniform(*PATIENCES), 2)}
+    order = bench.random.randint(*ORDERS[name])
+    inputs = {
+        # On a command line, -3 could be an option.
+        "order": order if bench.in_a_cell else abs(order),
+        PATIENCE: round(bench.random.uniform(*PATIENCES), 2),
+    }
     bench.part(name, **inputs)
     return inputs
 
@@ -115,18 +120,23 @@ def aborted(bench: Bench) -> None:
 def works_on_a_goal(bench: Bench, server: ActionCounterpart, status: str, feedbacks: int) -> bool:
     """Send feedback for the subject's goal and end it; whether the subject came to an end of its work."""
     # As many as an int32 allows, so that nobody can say them all.
-    numbers = sorted(bench.random.sample(range(10**8, 10**9), feedbacks + 2))
-    result = sorted(bench.random.sample(range(10**9, 2 * 10**9), RESULT))
+    numbers = bench.random.sample(range(10**8, 10**9), feedbacks + 2)
+    newest = bench.random.sample(range(10**8, 10**9), feedbacks)
+    result = bench.random.sample(range(10**9, 2 * 10**9), RESULT - 1)
+    result.append(result[0])
     done = server.await_goal(GOAL_LIMIT)
     if done:
         wait = SHOWN_WITHIN[bench.pace]
         # The first feedback must not come together with the goal's answer: what a client that takes in one event and
         # ends has then would be chance. Who goes on asks for the result next.
         server.await_result_request(wait)
-        for count in range(3, 3 + feedbacks):
-            server.send_feedback(partial_sequence=numbers[:count])
+        for count, last in enumerate(newest, start=2):
+            # The last number of a message is in no other one: who leaves out a message cannot make up for it.
+            server.send_feedback(partial_sequence=[*numbers[:count], last])
             if not bench.wait_until(lambda seen: not unshown_feedback(seen.main), wait):
                 wait = SHOWN_WITHIN[bench.pace] * HASTE
+                # Its queue holds ten messages: a client on a busy machine must have come to those that it has.
+                bench.settle()
         server.await_result_request(END_LIMIT[bench.pace])
         hold_back(bench, "result_request")
         server.finish(status, sequence=result)
@@ -176,7 +186,9 @@ _WHAT_IS_SAID = (
     ("status_misreported", goals.status_misreported),
     ("wrong_result_reported", goals.wrong_result_reported),
     ("result_not_reported", goals.result_not_reported),
+    ("result_not_returned", goals.another_returned),
     ("refusal_not_reported", goals.refusal_not_reported),
+    ("result_not_returned", goals.refusal_returned),
     ("abort_not_reported", goals.abort_not_reported),
     ("silent_end", goals.silent_end),
 )
@@ -230,6 +242,7 @@ def sends_goals() -> ActionClient:
     return ActionClient(
         scenario,
         Mistake("wrong_order", goals.wrong_order, certain=True),
+        Mistake("goal_canceled", goals.canceled_unasked, certain=True),
         common.NOT_BEGUN,
         common.usage_message(),
         Mistake("gave_up_too_early", goals.gave_up_too_early),
