@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.meant_errors import meant
+from autograder.kit.meant_errors import SLIPS, meant
 from autograder.kit.model import Advice
 
 if TYPE_CHECKING:
@@ -43,8 +43,6 @@ PART_OF_A_WAIT = 1.0
 """Seconds that a function may leave out at the end of a longer patience: it may wait in whole seconds."""
 SILENT = "ended without a word"
 """The objection to a client that says nothing of what it misses."""
-_SLIPS = ("AttributeError", "TypeError", "NameError", "UnboundLocalError", "KeyError", "IndexError")
-"""Exceptions that nobody raises in order to say something."""
 _SHUT_DOWN = "rclpy.executors.ExternalShutdownException"
 _VALUE = re2.compile(r"-?\d+(?:\.\d+)?|\b(?:None|True|False)\b")
 AGAIN_AND_AGAIN = 3
@@ -168,7 +166,7 @@ def _failed_aloud(part: Part) -> bool:
     lines = part.traceback.strip().splitlines()
     if not lines:
         return part.ending is not None and part.ending.name == "raised"
-    return meant(part.traceback) or not lines[-1].startswith((*_SLIPS, _SHUT_DOWN))
+    return meant(part.traceback) or not lines[-1].startswith((*SLIPS, _SHUT_DOWN))
 
 
 def broken_patience(part: Part) -> str:

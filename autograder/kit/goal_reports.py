@@ -13,6 +13,7 @@ import re2
 from autograder.kit import outcome_words as words
 from autograder.kit.evidence import INTERRUPTED
 from autograder.kit.giving_up import objection, other_names, remark
+from autograder.kit.meant_errors import SLIPS
 from autograder.kit.model import Finding
 from autograder.kit.numbers_said import mentions
 
@@ -46,8 +47,6 @@ _CANCELED = "cancel+ed"
 _FAILURES = (_CANCELED, words.ABORTED)
 """What nobody may say of a goal that succeeded or was refused."""
 _TRACEBACK = "Traceback (most recent call last)"
-_SLIPS = ("AttributeError", "TypeError", "NameError", "UnboundLocalError", "KeyError", "IndexError")
-"""Exceptions that nobody raises in order to say something."""
 
 
 def asked_for(part: Part) -> list[int]:
@@ -187,7 +186,7 @@ def last_line(part: Part) -> str:
 
 def raised_on_purpose(part: Part) -> bool:
     """Whether it ended with an exception that says something."""
-    return bool(last_line(part)) and not last_line(part).startswith(_SLIPS)
+    return bool(last_line(part)) and not last_line(part).startswith(SLIPS)
 
 
 def _waits(late: Part) -> bool:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re2
 
+SLIPS = ("AttributeError", "TypeError", "NameError", "UnboundLocalError", "KeyError", "IndexError")
+"""Exceptions that nobody raises in order to say something."""
 _FRAME = re2.compile(r'(?m)^ {2}File "(?P<file>[^"]*)", line \d+.*\n {4,}(?P<code>\S.*)$')
 _LIBRARY = re2.compile(r"/(site|dist)-packages/|/lib/python3\.\d+/|/opt/ros/")
 
