@@ -4,8 +4,9 @@ The set-up calls `install` once; calling it again changes nothing. Neither thing
 
 * the program `ros2` hands over to the one of the ROS installation in use, if that has one
   (`real_installation`);
-* `launch` is found by a finder that Python asks last of all, so that every installed `launch` comes first,
-  wherever in the search path it is.
+* `launch` is found by a finder that first asks all others, so that every installed `launch` comes first, wherever
+  in the search path it is. Only a folder without `__init__.py` does not count as one: that is where a package has
+  its launch files, and `colcon build --symlink-install` puts it into the search path.
 """
 
 from __future__ import annotations
@@ -49,8 +50,15 @@ _FOLDER = {folder!r}
 _PACKAGES = ("launch", "launch_ros", "launch_xml", "launch_yaml")
 
 
-class _LastOfAll:
-    """Asked when nobody else has the package."""
+def _installed(name):
+    """Return where a package is that somebody has installed; a mere folder of that name is none."""
+    finders = [finder for finder in sys.meta_path if finder is not _UnlessInstalled]
+    specs = (finder.find_spec(name) for finder in finders if hasattr(finder, "find_spec"))
+    return next((spec for spec in specs if spec is not None and spec.origin is not None), None)
+
+
+class _UnlessInstalled:
+    """Asked before the others, as PathFinder takes a folder for a package where there is no real one."""
 
     @staticmethod
     def find_spec(name, path=None, target=None):
@@ -58,15 +66,16 @@ class _LastOfAll:
             return None
         from importlib.machinery import PathFinder
 
+        real = _installed("launch")
+        if real is None:
+            return PathFinder.find_spec(name, [_FOLDER])
         # Parts of a real launch and of this one do not fit together.
-        if name != "launch" and PathFinder.find_spec("launch") is not None:
-            return None
-        return PathFinder.find_spec(name, [_FOLDER])
+        return real if name == "launch" else _installed(name)
 
 
 def begin():
-    """Add the finder, behind all others."""
-    sys.meta_path.append(_LastOfAll)
+    """Add the finder, before all others."""
+    sys.meta_path.insert(0, _UnlessInstalled)
 '''
 
 

@@ -133,7 +133,9 @@ def _find_launch_package() -> None:
     """Make `launch` importable also where the environment has not been set up with it."""
     import importlib.util
 
-    if importlib.util.find_spec("launch") is None:
+    spec = importlib.util.find_spec("launch")
+    # A folder launch/ of launch files, which a package has in the search path, is a namespace: it has no origin.
+    if spec is None or spec.origin is None:
         from environment.ros2_command.install import LAUNCH_FRONT
 
         sys.path.append(str(LAUNCH_FRONT))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from environment.ros2_command.install import install, uninstall
+from environment.ros2_command.install import LAUNCH_FRONT, install, uninstall
 from environment.ros2_command.real_installation import find_real_command
 
 if TYPE_CHECKING:
@@ -77,6 +77,24 @@ def test_a_real_launch_comes_first_wherever_it_is(place: str, fresh: Path, tmp_p
         (site_packages(fresh) / "zzzz.pth").write_text(f"{real}\n")
     package(real, "launch")
     assert python(fresh, "import launch; print(launch.real)", **variables) == "True"
+
+
+@pytest.mark.parametrize("real", ["nowhere", "PYTHONPATH", "a .pth file that comes later"])
+def test_a_folder_of_launch_files_is_no_launch(real: str, fresh: Path, tmp_path: Path) -> None:
+    # `colcon build --symlink-install` puts the folder of a package into the search path.
+    files, other = tmp_path / "my_robot_pkg", tmp_path / "real"
+    (files / "launch").mkdir(parents=True)
+    (files / "launch" / "remap.launch.yaml").touch()
+    package(other, "launch")
+    if real.startswith("a .pth"):
+        (site_packages(fresh) / "zzzz.pth").write_text(f"{other}\n")
+    path = f"{files}:{other}" if real == "PYTHONPATH" else str(files)
+    shown = python(fresh, "import launch; print(launch.__file__)", PYTHONPATH=path)
+    folder = LAUNCH_FRONT if real == "nowhere" else other
+    assert shown == str(folder / "launch" / "__init__.py")
+    if real == "nowhere":
+        code = "from launch_ros.actions import Node; import launch_xml; print(Node.__name__)"
+        assert python(fresh, code, PYTHONPATH=path) == "Node"
 
 
 def test_parts_of_two_launches_are_never_mixed(fresh: Path) -> None:
