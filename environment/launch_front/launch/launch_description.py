@@ -60,14 +60,24 @@ class LaunchDescription(LaunchDescriptionEntity):
         return [argument for argument, _ in declared_arguments(self)]
 
 
-def declared_arguments(description: LaunchDescription) -> list[tuple[DeclareLaunchArgument, bool]]:
-    """Return each argument of a launch description, with whether only a condition declares it."""
+def declared_arguments(
+    description: LaunchDescription, *, included: bool = True
+) -> list[tuple[DeclareLaunchArgument, bool]]:
+    """Return each argument of a launch description, with whether only a condition declares it.
+
+    Args:
+        description: Where to look.
+        included: Whether to look into the launch files that it includes, too.
+    """
     from .actions.configuration import DeclareLaunchArgument
+    from .actions.include import IncludeLaunchDescription
 
     found: dict[str, tuple[DeclareLaunchArgument, bool]] = {}
 
     def search(entities: Iterable[LaunchDescriptionEntity], *, conditional: bool) -> None:
         for entity in entities:
+            if isinstance(entity, IncludeLaunchDescription) and not included:
+                continue
             under = conditional or (isinstance(entity, Action) and entity.condition is not None)
             if isinstance(entity, DeclareLaunchArgument):
                 found.setdefault(entity.name, (entity, under))

@@ -372,6 +372,18 @@ def test_files_include_each_other(ros2: Ros2, tmp_path: Path) -> None:
     assert "'who'" in ros2("launch", "--show-args", str(tmp_path / "middle.launch.yaml")).stdout
 
 
+@pytest.mark.parametrize("given", [True, False])
+def test_a_file_included_in_a_group_asks_its_include_for_its_arguments(
+    given: bool, ros2: Ros2, write: Callable[[str], str], tmp_path: Path
+) -> None:
+    inner = tmp_path / "inner.launch.xml"
+    inner.write_text('<launch><arg name="who"/><log message="here is $(var who)"/></launch>')
+    arguments = ", launch_arguments=[('who', 'ada')]" if given else ""
+    done = ros2("launch", write(f"GroupAction([IncludeLaunchDescription({str(inner)!r}{arguments})]),"))
+    assert ("here is ada" in done.stdout) == given
+    assert ("missing required argument 'who'" in done.stdout + done.stderr) == (not given)
+
+
 def test_the_service_leaves_signals_as_they_were(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

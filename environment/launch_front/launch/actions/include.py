@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from ..action import Action, LaunchDescriptionEntity
-from ..launch_description import LaunchDescription, declared_arguments
+from ..launch_description import declared_arguments
 from ..launch_description_sources import AnyLaunchDescriptionSource, LaunchDescriptionSource
 from ..substitution import SomeSubstitutionsType, normalize, perform
 from .configuration import SetLaunchConfiguration
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from ..launch_context import LaunchContext
+    from ..launch_description import LaunchDescription
     from .configuration import DeclareLaunchArgument
 
 
@@ -71,13 +72,12 @@ class IncludeLaunchDescription(Action):
 
 
 def _required_arguments(description: LaunchDescription) -> list[DeclareLaunchArgument]:
-    """Return the arguments without a default that are surely declared by the description itself."""
+    """Return the arguments without a default that are surely declared by the description itself.
+
+    What it includes, at whatever depth, asks for its own arguments when it is included.
+    """
     return [
         argument
-        for argument, conditional in declared_arguments(_without_includes(description))
+        for argument, conditional in declared_arguments(description, included=False)
         if not conditional and argument.default_value is None
     ]
-
-
-def _without_includes(description: LaunchDescription) -> LaunchDescription:
-    return LaunchDescription(e for e in description.entities if not isinstance(e, IncludeLaunchDescription))
