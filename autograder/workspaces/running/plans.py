@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 COURSE_PACKAGE = "my_robot_pkg"
 """The course's own programs, which are launched where a student has none."""
+_LAUNCH_FILES = ("launch.py", ".xml", ".yaml", ".yml")
+"""What the names of launch files end in."""
 
 
 @dataclass(frozen=True)
@@ -98,22 +100,27 @@ def _interface_plan(runner: ServesInterface) -> Plan:
 
 
 def launch_targets(file: Path) -> Callable[[Build], Iterable[str]]:
-    """The packages of a workspace whose names stand in a launch file.
+    """The packages of a workspace whose names stand in a launch file, or in one that it includes.
 
     Args:
         file: The launch file, in whatever language.
     """
-    words = set(re2.findall(r"\w+", file.read_text(encoding="utf-8", errors="replace")))
-    return lambda found: [package.name for package in found.packages if package.name in words]
+
+    def targets(found: Build) -> list[str]:
+        words = _launch_words(file, found)
+        return [package.name for package in found.packages if package.name in words]
+
+    return targets
 
 
 def lacks_programs(file: Path, made: Build, course_build: Build) -> bool:
-    """Whether a launch file names programs of the course's package that the student's has not got.
+    """Whether a launch file is for programs of the course's package that the student's has not got.
 
-    Who has written talker and listener in the notebooks alone has no programs to launch.
+    Who has written talker and listener in the notebooks alone has no programs to launch. Who launches programs of
+    other names has them: ``talker`` is then a variable, a node's name or a word in a comment.
     """
-    words = set(re2.findall(r"\w+", file.read_text(encoding="utf-8", errors="replace")))
-    return bool(words & _programs(course_build) - _programs(made))
+    words, own, given = _launch_words(file, made), _programs(made), _programs(course_build)
+    return bool(words & given - own) and not words & own - given
 
 
 def reference_workspace() -> Path:
@@ -153,6 +160,26 @@ def ros2() -> str:
     """The ``ros2`` command of this environment."""
     beside = Path(sys.executable).with_name("ros2")
     return str(beside) if beside.exists() else shutil.which("ros2") or "ros2"
+
+
+def _launch_words(file: Path, build: Build) -> set[str]:
+    """The words of a launch file and of those that it includes: whatever has its name in the text of another one.
+
+    Tags and keys, such as ``<node`` and ``node:``, are not among the words.
+    """
+    near = [
+        *file.parent.iterdir(),
+        *(path for package in build.packages for path in package.folder.rglob("*")),
+    ]
+    others = {path for path in near if path.name.endswith(_LAUNCH_FILES) and path.is_file()}
+    words: set[str] = set()
+    unread = {file}
+    while unread:
+        others -= unread
+        text = "\n".join(path.read_text(encoding="utf-8", errors="replace") for path in unread)
+        words.update(re2.findall(r"</?\w+|\w+:?", text))
+        unread = {path for path in others if path.name in text}
+    return words
 
 
 def _programs(made: Build) -> set[str]:
