@@ -26,6 +26,8 @@ COURSE_PACKAGE = "my_robot_pkg"
 """The course's own programs, which are launched where a student has none."""
 _LAUNCH_FILES = ("launch.py", ".xml", ".yaml", ".yml")
 """What the names of launch files end in."""
+_LARGEST = 1_000_000
+"""Bytes that a launch file may have to be looked into; what a student's folder holds may be of any size."""
 
 
 @dataclass(frozen=True)
@@ -171,7 +173,7 @@ def _launch_words(file: Path, build: Build) -> set[str]:
         *file.parent.iterdir(),
         *(path for package in build.packages for path in package.folder.rglob("*")),
     ]
-    others = {path for path in near if path.name.endswith(_LAUNCH_FILES) and path.is_file()}
+    others = {path for path in near if path.name.endswith(_LAUNCH_FILES) and _is_small(path)}
     words: set[str] = set()
     unread = {file}
     while unread:
@@ -180,6 +182,10 @@ def _launch_words(file: Path, build: Build) -> set[str]:
         words.update(re2.findall(r"</?\w+|\w+:?", text))
         unread = {path for path in others if path.name in text}
     return words
+
+
+def _is_small(path: Path) -> bool:
+    return path.is_file() and path.stat().st_size <= _LARGEST
 
 
 def _programs(made: Build) -> set[str]:
