@@ -61,22 +61,21 @@ class LaunchDescription(LaunchDescriptionEntity):
 
 
 def declared_arguments(
-    description: LaunchDescription, *, included: bool = True
+    description: LaunchDescription, *, closed: tuple[type[Action], ...] = ()
 ) -> list[tuple[DeclareLaunchArgument, bool]]:
     """Return each argument of a launch description, with whether only a condition declares it.
 
     Args:
         description: Where to look.
-        included: Whether to look into the launch files that it includes, too.
+        closed: Kinds of actions that are not looked into.
     """
     from .actions.configuration import DeclareLaunchArgument
-    from .actions.include import IncludeLaunchDescription
 
     found: dict[str, tuple[DeclareLaunchArgument, bool]] = {}
 
     def search(entities: Iterable[LaunchDescriptionEntity], *, conditional: bool) -> None:
         for entity in entities:
-            if isinstance(entity, IncludeLaunchDescription) and not included:
+            if isinstance(entity, closed):
                 continue
             under = conditional or (isinstance(entity, Action) and entity.condition is not None)
             if isinstance(entity, DeclareLaunchArgument):

@@ -78,6 +78,6 @@ def _required_arguments(description: LaunchDescription) -> list[DeclareLaunchArg
     """
     return [
         argument
-        for argument, conditional in declared_arguments(description, included=False)
+        for argument, conditional in declared_arguments(description, closed=(IncludeLaunchDescription,))
         if not conditional and argument.default_value is None
     ]
