@@ -8,15 +8,29 @@ from __future__ import annotations
 
 import ast
 import re  # noqa: TID251  (in the student's own kernel)
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
 PACKAGE = "my_robot_pkg"
 _ENTRY_POINT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*(\w+)\s*")
 _DEFINITIONS = re.compile(r"rosidl_generate_interfaces\s*\(\s*\$\{PROJECT_NAME\}[^)]*")
+
+
+@dataclass(frozen=True)
+class _Element:
+    """An element of the list of entry points.
+
+    Attributes:
+        source: As it stands in setup.py. It is written back as it was read.
+        text: What it comes to; the same as the source where that is known only when setup.py runs.
+    """
+
+    source: str
+    text: str
 
 
 def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str = PACKAGE) -> str:
@@ -38,7 +52,8 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
             return _no_entry_point(entry)
     try:
         text = setup.read_text(encoding="utf-8")
-        programs = _programs(ast.parse(text))
+        tree = ast.parse(text)
+        programs = _programs(tree)
     except FileNotFoundError:
         return f"There is no {setup}. First make the package, as in Lab 1.1."
     except SyntaxError as error:
@@ -46,20 +61,22 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
     if programs is None:
         listed = ", ".join(f'"{entry}"' for entry in wanted)
         return f'{setup} has no list of console_scripts. Add: entry_points={{"console_scripts": [{listed}]}},'
-    merged = _texts(programs)
+    present = _elements(text, tree, programs)
+    merged = list(present)
     for entry in wanted:
-        same = {n for n, old in enumerate(merged) if set(_parts(old)) & set(_parts(entry))}
+        same = {n for n, old in enumerate(merged) if set(_parts(old.text)) & set(_parts(entry))}
         place = min(same, default=len(merged))
+        kept = next((old for old in merged if " ".join(old.text.split()) == " ".join(entry.split())), None)
         merged = [old for n, old in enumerate(merged) if n not in same]
-        merged.insert(place, " ".join(entry.split()))
+        merged.insert(place, kept or _written(entry))
     if not merged:
         return f"{package} has no executable yet."
-    if merged != _texts(programs):
+    if merged != present:
         setup.write_text(_with_list(text, programs, merged), encoding="utf-8")
     return "\n".join(
         [
             f"Executables of {package}:",
-            *(f"  {entry}" for entry in merged),
+            *(f"  {element.text}" for element in merged),
             *_without_package(wanted, package),
         ]
     )
@@ -160,8 +177,41 @@ def _parts(entry: str) -> tuple[str, str]:
     return name, target
 
 
-def _texts(programs: ast.List) -> list[str]:
-    return [str(item.value) for item in programs.elts if isinstance(item, ast.Constant)]
+def _written(entry: str) -> _Element:
+    text = " ".join(entry.split())
+    return _Element(f'"{text}"', text)
+
+
+def _elements(text: str, tree: ast.Module, programs: ast.List) -> list[_Element]:
+    """What stands in the list of a setup.py."""
+    names = {
+        target.id: node.value.value
+        for node in tree.body
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant)
+        for target in node.targets
+        if isinstance(target, ast.Name)
+    }
+    sources = [ast.get_source_segment(text, item) or ast.unparse(item) for item in programs.elts]
+    values = [_value(item, names) for item in programs.elts]
+    return [_Element(source, value or source) for source, value in zip(sources, values, strict=True)]
+
+
+def _value(node: ast.expr, names: Mapping[str, object]) -> str | None:
+    """A text that is put together from texts and names for texts; None where it takes more to know it."""
+    match node:
+        case ast.Constant(value=value):
+            return str(value)
+        case ast.Name(id=name):
+            return str(names[name]) if name in names else None
+        case ast.FormattedValue(value=inner, conversion=-1, format_spec=None):
+            return _value(inner, names)
+        case ast.BinOp(left=left, op=ast.Add(), right=right):
+            parts = [_value(left, names), _value(right, names)]
+        case ast.JoinedStr(values=values):
+            parts = [_value(part, names) for part in values]
+        case _:
+            return None
+    return None if None in parts else "".join(part for part in parts if part)
 
 
 def _programs(tree: ast.Module) -> ast.List | None:
@@ -175,12 +225,12 @@ def _programs(tree: ast.Module) -> ast.List | None:
     return None
 
 
-def _with_list(text: str, programs: ast.List, entries: list[str]) -> str:
-    """The file with these entries in the place of its list."""
+def _with_list(text: str, programs: ast.List, elements: list[_Element]) -> str:
+    """The file with these elements in the place of its list."""
     lines = text.encode().split(b"\n")
     first, last = programs.lineno - 1, (programs.end_lineno or programs.lineno) - 1
     before = b"\n".join([*lines[:first], lines[first][: programs.col_offset]]).decode()
     after = b"\n".join([lines[last][programs.end_col_offset :], *lines[last + 1 :]]).decode()
     indent = " " * (len(lines[first]) - len(lines[first].lstrip()))
-    inside = "".join(f'{indent}    "{entry}",\n' for entry in entries)
+    inside = "".join(f"{indent}    {element.source},\n" for element in elements)
     return f"{before}[\n{inside}{indent}]{after}"

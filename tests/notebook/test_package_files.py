@@ -126,6 +126,39 @@ def test_letters_of_other_alphabets_do_not_shift_the_list(workspace: Path) -> No
     assert "für Zoë" in setup.read_text()
 
 
+@pytest.mark.parametrize(
+    "element",
+    [
+        "f'simple_node = {package_name}.simple_node:main'",
+        "'simple_node = ' + package_name + '.simple_node:main'",
+        "('simple_node = '\n        'my_robot_pkg.simple_node:main')",
+    ],
+)
+def test_an_entry_point_that_is_put_together_stays_until_it_is_replaced(
+    workspace: Path, element: str
+) -> None:
+    setup = workspace / "src/my_robot_pkg/setup.py"
+    setup.write_text(
+        f"package_name = 'my_robot_pkg'\nsetup(entry_points={{'console_scripts': [\n    {element},\n]}})\n"
+    )
+    said = add_entry_points(workspace, [TALKER])
+    assert said.splitlines()[1:] == [f"  {HELLO}", f"  {TALKER}"]
+    assert element.strip("()") in setup.read_text()
+    add_entry_points(workspace, ["simple_node = my_robot_pkg.cli:hello"])
+    assert executables(workspace) == ["simple_node = my_robot_pkg.cli:hello", TALKER]
+
+
+def test_what_only_python_can_work_out_stays_as_it_stands(workspace: Path) -> None:
+    setup = workspace / "src/my_robot_pkg/setup.py"
+    computed = "*(f'{name} = my_robot_pkg.{name}:main' for name in NAMES)"
+    setup.write_text(f"setup(entry_points={{'console_scripts': [{computed}]}})\n")
+    add_entry_points(workspace, [TALKER])
+    text = setup.read_text()
+    assert computed in text
+    assert f'"{TALKER}"' in text
+    ast.parse(text)
+
+
 def test_a_dependency_is_added_once(workspace: Path) -> None:
     for _ in range(2):
         said = add_dependencies(workspace, ["my_robot_interfaces", "std_msgs"])
