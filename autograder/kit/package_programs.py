@@ -142,8 +142,9 @@ def package_name(evidence: Evidence, package: str) -> Advice | None:
 def wrong_folder(evidence: Evidence, entry: Entry) -> Advice | None:
     """The program's file is in the package, and not among its modules."""
     package, file = entry.package, f"{entry.module}.py"
-    own = package_of(report_of(evidence.main), package)
-    if own is None or f"{package}/{file}" in own.modules:
+    report = report_of(evidence.main)
+    own = package_of(report, package)
+    if report is None or own is None or not report.complete or f"{package}/{file}" in own.modules:
         return None
     lost = next((known for known in own.modules if PurePosixPath(known).name == file), None)
     if lost is None or any(_module(named) == _dotted(lost) for named in own.programs):
@@ -156,9 +157,12 @@ def wrong_folder(evidence: Evidence, entry: Entry) -> Advice | None:
 
 
 def lost_entry_point(report: WorkspaceReport | None, package: str, program: str) -> bool:
-    """Whether a module of an earlier lab is in the package, and no entry point of setup.py leads to it any more."""
+    """Whether a module of an earlier lab is in the package, and no program starts it any more.
+
+    What is installed counts: an entry point can be written, or computed, in more ways than can be read from setup.py.
+    """
     own = package_of(report, package)
-    if own is None or f"{package}/{program}.py" not in own.modules:
+    if own is None or f"{package}/{program}.py" not in own.modules or program in own.installed:
         return False
     return not any(_module(entry) == f"{package}.{program}" for entry in own.programs)
 

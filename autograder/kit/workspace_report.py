@@ -1,9 +1,9 @@
 """What a student's side reports about a workspace: one line of JSON behind a mark, among a program's other output.
 
-The judge sees a workspace's programs on the wire. What no wire can tell (which line the build stumbled over)
-is
-reported by the program that built it, before the student's own program says anything: only the first report
-counts.
+The judge sees a workspace's programs on the wire. What no wire can tell (which line the build stumbled over) is
+reported by the program that built it, before the student's own program says anything: only the first report counts.
+A line holds less than a workspace does. So the packages that the exercise needs come first, and a report says of itself
+whether all of them is in it: what was left out is never judged as missing or wrong.
 """
 
 from __future__ import annotations
@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 MARK = REPORTS[0]
 MAX_LINE = 3_900
 """Bytes of a report: the judge reads lines of at most 4,000."""
+_LIMITS = (2_500, 1_200, 600, 200, 50)
+"""Characters of each text of a report, tried in turn until its line is short enough."""
+_FEW = 10
+"""Packages beside the needed ones that are named where there is no room for all."""
 
 
 @dataclass(frozen=True)
@@ -30,12 +34,12 @@ class Interface:
 
     Attributes:
         file: Its path inside the package, such as ``"srv/AddTwoInts.srv"``.
-        text: Its content.
+        text: What it says, without comments; None where the exercise is not about it, or it was left out.
         listed: Whether the package's CMakeLists.txt names it.
     """
 
     file: str
-    text: str
+    text: str | None
     listed: bool
 
 
@@ -46,11 +50,13 @@ class PackageReport:
     Attributes:
         name: The name in its package.xml.
         build_type: ``"ament_python"`` or ``"ament_cmake"``.
-        programs: The console scripts that its setup.py names, as ``name = module:function``.
+        programs: Its console scripts, as ``name = module:function``: those that are installed, before the build
+            those that can be read in setup.py.
         interfaces: Its interface files.
         dependencies: Everything that package.xml depends on, ``member_of_group`` included.
         modules: Its Python files, as paths inside the package.
         commented: What package.xml would depend on, too, if the lines inside its comments counted.
+        installed: The programs that `ros2 run` finds of it, by name; empty before the build.
     """
 
     name: str
@@ -60,6 +66,7 @@ class PackageReport:
     dependencies: Sequence[str] = ()
     modules: Sequence[str] = ()
     commented: Sequence[str] = ()
+    installed: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -69,14 +76,14 @@ class WorkspaceReport:
     Attributes:
         phase: ``"found"`` before the build, ``"built"`` after it.
         built: Whether every package was built.
-        trouble: Which kind of trouble: ``"no_workspace"``, ``"no_package"``, ``"bad_package"``, ``"build"``
-            or
+        trouble: Which kind of trouble: ``"no_workspace"``, ``"no_package"``, ``"bad_package"``, ``"build"`` or
             empty.
         package: The package that failed, else empty.
         line: The one line that matters of a failure.
         log: The end of the log of a failure.
-        packages: The packages of the workspace.
+        packages: The packages of the workspace, those that the exercise needs first.
         missing: Of what the exercise asks for (a program, an interface), what is not there after the build.
+        complete: Whether nothing of the packages that the exercise needs was left out.
     """
 
     phase: str
@@ -87,25 +94,53 @@ class WorkspaceReport:
     log: str = ""
     packages: Sequence[PackageReport] = field(default=())
     missing: str = ""
+    complete: bool = True
 
 
-def as_line(report: WorkspaceReport) -> str:
-    """The line that travels; a log and interface files that are too long for it are cut."""
-    for limit in (2_500, 1_200, 600, 200, 50):
-        packages = [
-            replace(
-                p,
-                interfaces=[replace(i, text=i.text[:limit]) for i in p.interfaces],
-                modules=p.modules[: limit // 60],  # none where all else needs the room
-                commented=p.commented[: limit // 60],
-            )
-            for p in report.packages
-        ]
-        cut = replace(report, log=report.log[-limit:], line=report.line[:limit], packages=packages)
-        line = MARK + json.dumps(asdict(cut), ensure_ascii=False)
-        if len(line.encode()) <= MAX_LINE:
-            return line
-    return MARK + json.dumps(asdict(replace(cut, packages=[])), ensure_ascii=False)
+def as_line(report: WorkspaceReport, others: Sequence[PackageReport] = ()) -> str:
+    """The line that travels; what has no room in it is left out.
+
+    Args:
+        report: Its packages are those that the exercise needs.
+        others: The other packages of the workspace: in full, by name or not at all, as there is room.
+    """
+    whole = _written(report)
+    named = [PackageReport(package.name, package.build_type) for package in others]
+    for limit in _LIMITS:
+        needed = [_shortened(package, limit) for package in report.packages]
+        cut = replace(
+            report,
+            log=report.log[-limit:],
+            line=report.line[:limit],
+            complete=_written(replace(report, packages=needed)) == whole,
+        )
+        for beside in (others, named, named[:_FEW], ()):
+            line = _written(replace(cut, packages=[*needed, *beside]))
+            if len(line.encode()) <= MAX_LINE:
+                return line
+    return _written(replace(cut, packages=[], complete=False))
+
+
+def _shortened(package: PackageReport, limit: int) -> PackageReport:
+    """A package without its longer definitions and the ends of its lists; the same where all of it is short."""
+    few = limit // 20
+    return replace(
+        package,
+        programs=package.programs[:few],
+        interfaces=[_left_out(i) if len(i.text or "") > limit else i for i in package.interfaces[:few]],
+        dependencies=package.dependencies[:few],
+        modules=package.modules[: limit // 60],  # none where all else needs the room
+        commented=package.commented[: limit // 60],
+        installed=package.installed[:few],
+    )
+
+
+def _left_out(interface: Interface) -> Interface:
+    return replace(interface, text=None)
+
+
+def _written(report: WorkspaceReport) -> str:
+    return MARK + json.dumps(asdict(report), ensure_ascii=False, separators=(",", ":"))
 
 
 def report_of(part: Part, phase: str = "built") -> WorkspaceReport | None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from autograder.kit import package_programs
@@ -147,6 +149,22 @@ def report(*modules: str, programs: tuple[str, ...] = (), missing: str = "") -> 
 
 
 ENTRY = "talker = my_robot_pkg.talker:main"
+
+
+@pytest.mark.parametrize(
+    ("programs", "installed", "lost"),
+    [
+        ((ENTRY,), ("talker",), True),
+        ((ENTRY,), ("simple_node", "talker"), False),
+        ((ENTRY, "hello = my_robot_pkg.simple_node:main"), ("hello", "talker"), False),
+    ],
+)
+def test_an_entry_point_is_lost_where_nothing_starts_its_module(
+    programs: tuple[str, ...], installed: tuple[str, ...], lost: bool
+) -> None:
+    made = report("my_robot_pkg/simple_node.py", programs=programs)
+    made = replace(made, packages=[replace(made.packages[0], installed=installed)])
+    assert package_programs.lost_entry_point(made, PACKAGE, "simple_node") is lost
 
 
 @pytest.mark.parametrize(

@@ -71,15 +71,24 @@ class ServiceType:
         packages = report.packages if report is not None else ()
         return [(p, i) for p in packages for i in p.interfaces if i.file.rpartition("/")[2] == self._file]
 
+    def _texts(self, evidence: Evidence) -> list[tuple[str, str]]:
+        """The path and the text of each file of that name, as far as it is reported."""
+        return [(file.file, file.text) for _, file in self._holders(evidence) if file.text is not None]
+
     def _has_other_fields(self, evidence: Evidence) -> bool:
-        holders, expected = self._holders(evidence), _expected(evidence)
-        return bool(holders and expected) and all(fields(file.text) != expected for _, file in holders)
+        texts, expected = self._texts(evidence), _expected(evidence)
+        known = bool(texts and expected) and _is_complete(evidence)
+        return known and all(fields(text) != expected for _, text in texts)
 
     def has_the_fields(self, evidence: Evidence) -> Finding:
         """The file has the reference's fields: names, types and order."""
-        expected, holders = _expected(evidence), self._holders(evidence)
-        seen = _shown(fields(holders[0][1].text)) if holders else f"no file {self._file}"
-        right = any(fields(file.text) == expected for _, file in holders) or (bool(holders) and not expected)
+        expected, texts = _expected(evidence), self._texts(evidence)
+        right = any(fields(text) == expected for _, text in texts) or (bool(texts) and not expected)
+        if not right and not _is_complete(evidence):
+            # What a file says that was not reported shows in the type that is generated from it.
+            wire = self.is_on_the_wire(evidence)
+            return Finding(wire.passed, _shown(expected), wire.seen)
+        seen = _shown(fields(texts[0][1])) if texts else f"no file {self._file}"
         return Finding(right, _shown(expected), seen or "an empty file")
 
     def builds(self, evidence: Evidence) -> Finding:
@@ -112,7 +121,7 @@ class ServiceType:
     def _interface_missing(self, evidence: Evidence) -> Advice | None:
         """There are packages, and none of them has the file."""
         report = workspace.build_report(evidence.main)
-        if report is None or not report.packages or self._holders(evidence):
+        if report is None or not report.packages or not report.complete or self._holders(evidence):
             return None
         others = ", ".join(i.file for p in report.packages for i in p.interfaces)
         return Advice(
@@ -122,11 +131,11 @@ class ServiceType:
 
     def _three_dashes(self, evidence: Evidence) -> Advice | None:
         """Request and response are not kept apart by exactly one line of dashes."""
-        for _, file in self._holders(evidence):
-            number = len(fields(file.text))
+        for file, text in self._texts(evidence):
+            number = len(fields(text))
             if number != 2:
                 return Advice(
-                    f"{file.file} has {number - 1} lines of three dashes; a service has exactly one, between request "
+                    f"{file} has {number - 1} lines of three dashes; a service has exactly one, between request "
                     "and response.",
                     "Write --- on a line of its own after the request's fields. Below it stand the response's.",
                 )
@@ -135,11 +144,11 @@ class ServiceType:
     def _interface_fields(self, evidence: Evidence) -> Advice | None:
         """The fields are others."""
         finding = self.has_the_fields(evidence)
-        holders = self._holders(evidence)
-        if finding.passed or not holders or len(fields(holders[0][1].text)) != 2:
+        texts = self._texts(evidence)
+        if finding.passed or not texts or not _is_complete(evidence) or len(fields(texts[0][1])) != 2:
             return None
         return Advice(
-            f"{holders[0][1].file} has the fields {finding.seen}; the task asks for {finding.expected}.",
+            f"{texts[0][0]} has the fields {finding.seen}; the task asks for {finding.expected}.",
             "A field is its type and its name (`int64 a`). Other programs use these very names and types; the order "
             "counts, too.",
         )
@@ -165,8 +174,9 @@ class ServiceType:
         if self.builds(evidence).passed or not holders:
             return None
         report = report_of(evidence.main)
-        marked = any(GROUP in p.dependencies for p, _ in holders)
-        if report is None or report.built or marked or GROUP not in report.line + report.log:
+        if report is None or report.built or GROUP not in report.line + report.log:
+            return None
+        if not report.complete or any(GROUP in p.dependencies for p, _ in holders):
             return None
         hidden = next((p for p, _ in holders if GROUP in p.commented), None)
         if hidden is not None:
@@ -225,6 +235,12 @@ def fields(text: str) -> list[Fields]:
         elif bare and "=" not in bare:
             sections[-1].append((bare, ""))
     return sections
+
+
+def _is_complete(evidence: Evidence) -> bool:
+    """Whether nothing of the packages with such a file was left out of the report."""
+    report = workspace.build_report(evidence.main)
+    return report is None or report.complete
 
 
 def _expected(evidence: Evidence) -> list[Fields]:

@@ -6,7 +6,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from autograder.workspaces.running.prefixes import package_prefixes
+import re2
+
+from autograder.workspaces.running.prefixes import package_prefixes, python_folders
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -49,6 +51,23 @@ class Build:
     def prefixes(self) -> list[Path]:
         """One folder for each installed package."""
         return package_prefixes(self.install) if self.install else []
+
+    def programs(self, package: str) -> tuple[str, ...]:
+        """The names of the programs that ``ros2 run`` finds of an installed package; empty where it is none."""
+        folders = [prefix / "lib" / package for prefix in self.prefixes if prefix.name == package]
+        return tuple(sorted(file.name for folder in folders for file in folder.glob("*") if file.is_file()))
+
+    def entry_points(self, package: str) -> tuple[str, ...]:
+        """The entry points of an installed Python package, as ``name = module:function``, however it names them."""
+        folders = [f for prefix in self.prefixes if prefix.name == package for f in python_folders(prefix)]
+        files = [file for folder in folders for file in folder.glob("*/entry_points.txt")]
+        texts = (file.read_text(encoding="utf-8", errors="replace") for file in files)
+        return tuple(
+            line
+            for text in texts
+            for line in text.splitlines()
+            if re2.fullmatch(r"\S+ = [\w.]+:[\w.]+", line)
+        )
 
 
 Targets = Callable[[Build], Iterable[str]]

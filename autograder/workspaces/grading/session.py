@@ -174,13 +174,13 @@ class _Run(threading.Thread):
 
     def _workspace(self, plan: Plan) -> None:
         found = look(self._tree / self._path)
-        self._report(found_line(found))
+        self._report(found_line(found, plan))
         made = found
         if not found.trouble:
             made = self._builds.build(found, plan.targets, name=WORKSPACE, cancelled=self._cancelled.is_set)
         missing = plan.missing(made) if made.ok else ""
         self._lines.say(messages.BuildEnded(self.number))
-        self._report(built_line(made, missing))
+        self._report(built_line(made, plan, missing))
         if not made.ok or missing:
             self._exited(1)
             return

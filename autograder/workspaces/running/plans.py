@@ -38,11 +38,13 @@ class Plan:
         targets: The packages that it needs, by name; none of them means all that there are.
         missing: What it asks for and the build has not brought; empty where all is there.
         command: What is run, in the environment of the build. Asked for only where nothing is missing.
+        definition: The name of the interface file that it is about; empty where it is about none.
     """
 
     targets: Callable[[Build], Iterable[str]]
     missing: Callable[[Build], str]
     command: Callable[[Build], Sequence[str]]
+    definition: str = ""
 
 
 def plan_for(runner: RunsProgram | RunsPrograms | ServesInterface, arguments: Sequence[str] = ()) -> Plan:
@@ -63,10 +65,9 @@ def plan_for(runner: RunsProgram | RunsPrograms | ServesInterface, arguments: Se
 
 def _program_plan(package: str, program: str, arguments: Sequence[str]) -> Plan:
     def missing(made: Build) -> str:
-        programs = [prefix / "lib" / package / program for prefix in made.prefixes if prefix.name == package]
-        if not programs:
+        if not any(prefix.name == package for prefix in made.prefixes):
             return package
-        return "" if programs[0].is_file() else program
+        return "" if program in made.programs(package) else program
 
     return Plan(
         targets=lambda found: [known.name for known in found.packages if known.name == package],
@@ -98,6 +99,7 @@ def _interface_plan(runner: ServesInterface) -> Plan:
         targets=lambda found: [package.name for package in holders(found)],
         missing=lambda made: "" if generated(made) else runner.file,
         command=probe,
+        definition=runner.file,
     )
 
 
@@ -189,7 +191,7 @@ def _is_small(path: Path) -> bool:
 
 
 def _programs(made: Build) -> set[str]:
-    return {program.name for prefix in made.prefixes for program in (prefix / "lib" / prefix.name).glob("*")}
+    return {program for prefix in made.prefixes for program in made.programs(prefix.name)}
 
 
 def _snake(name: str) -> str:

@@ -50,13 +50,13 @@ def run(plan: Plan, workspace: Path) -> int:
         An exit code, where there is nothing to become.
     """
     found = look(workspace)
-    tell(found_line(found))
+    tell(found_line(found, plan))
     if found.trouble:
-        tell(built_line(found))
+        tell(built_line(found, plan))
         return 1
     made = build(workspace, plan.targets)
     missing = plan.missing(made) if made.ok else ""
-    tell(built_line(made, missing))
+    tell(built_line(made, plan, missing))
     if not made.ok or missing:
         return 1
     command = plan.command(made)
