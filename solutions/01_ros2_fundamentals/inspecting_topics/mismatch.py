@@ -33,7 +33,9 @@ ANSWERING = {Pace.FAST: 8.0, Pace.REAL_TIME: 15.0}
 _GAVE_UP = re2.compile(r"(?m)^TimeoutError(?:: .*)?$")
 _THINGS = ("camera", "lidar", "gripper", "battery", "wheel", "sonar", "compass", "beacon", "valve", "lamp")
 _BYSTANDERS = ("actuator", "adapter", "aerial", "airbag")
-"""These come first in every list of names, so that who takes the first one that there is takes the same in each run."""
+_OTHERS = ("zapper", "zester", "zipper", "zither")
+"""The former come first in every list of names and the latter last, so that who takes the first one that there is, or
+the last, takes the same in each run."""
 _QUALITIES = ("state", "status", "level", "position", "speed", "report", "alarm", "mode")
 _TYPES = (
     "std_msgs/msg/String", "std_msgs/msg/Int32", "std_msgs/msg/Float64", "std_msgs/msg/Bool", "std_msgs/msg/Int64",
@@ -79,7 +81,7 @@ def _is_answered(evidence: Evidence) -> bool:
 
 
 def bystander(planted: Mapping[str, Any]) -> dict[str, dict[str, str]]:
-    """What a third node publishes and subscribes to: a topic of its own, and each side's beside the node in question.
+    """What a third node publishes and subscribes to: topics of its own, and each side's beside the node in question.
 
     In one participant a topic has one type, so where the two sides share the name it is on the listener's only.
     """
@@ -94,7 +96,7 @@ def bystander(planted: Mapping[str, Any]) -> dict[str, dict[str, str]]:
 def mismatch(random: Random, case: str) -> dict[str, Any]:
     """Names and types of two nodes that do not meet, and of a third that has nothing to do with it."""
     thing, other = random.sample(_THINGS, 2)
-    third = random.choice(_BYSTANDERS)
+    third, last = random.choice(_BYSTANDERS), random.choice(_OTHERS)
     quality, second = random.sample(_QUALITIES, 2)
     kind, another = random.choice(_TYPES), random.choice(_OTHER_TYPES)
     topic = f"/{thing}/{quality}"
@@ -107,7 +109,7 @@ def mismatch(random: Random, case: str) -> dict[str, Any]:
         "talker": f"{thing}_{numbers[0]}",
         "listener": f"{quality}_monitor_{numbers[1]}",
         "bystander": f"{third}_{numbers[2]}",
-        "beside": {f"/{third}/{quality}": kind},
+        "beside": {f"/{third}/{quality}": kind, f"/{last}/{quality}": kind},
         "topic_published": topic,
         "topic_subscribed": topic if case == CASES[1] else wrong,
         "type_published": kind,
@@ -117,11 +119,11 @@ def mismatch(random: Random, case: str) -> dict[str, Any]:
 
 def answer(part: Part) -> Mapping[str, Any] | None:
     """The last dictionary that the subject returned or printed; None where there is none."""
-    for text in reversed(part.said()):
-        found = _dictionary(text)
-        if found is not None:
-            return found
-    return None
+    said = part.said()
+    text = "\n".join(said)
+    # Printed by pprint or with an indent, it stands in several lines.
+    candidates = (*reversed(said), text[max(0, text.rfind("{")) :])
+    return next((found for line in candidates if (found := _dictionary(line)) is not None), None)
 
 
 def _dictionary(text: str) -> dict[str, Any] | None:
