@@ -22,6 +22,8 @@ _QUOTED = re2.compile(r"[\"“«].*[\pL\pN_].*[\"”»]")
 _OPENING, _CLOSING = tuple("\"'“‘«`"), tuple("\"'”’»`")
 _A_TALKERS = re2.compile(r"\W*[Hh]ello,? [Ww]orld!?\W*\d+\W*")
 """What the talkers of this course and of the official tutorials say."""
+_TWO_WORDS = re2.compile(r"\b([a-z]+) ([a-z]+) \d{4}\b")
+"""What the texts of the judge have in them, see :func:`autograder.kit.recipes.subscriber.random_texts`."""
 _BYTE = ("\\x00", "\0")
 """A zero byte, as Python shows it or as it is. A serialized text has them before and behind it."""
 MUCH = 5
@@ -103,7 +105,17 @@ def invented(part: Part, sent: Sequence[str]) -> list[str]:
     found = _frames(part, sent)
     if not found:
         return [] if part.traceback else [line for line in _others(part, sent) if _QUOTED.search(line)]
-    return [line for line, frame, content in _in_frames(part, sent, found) if frame.is_claim(content)]
+    claims = [line for line, frame, content in _in_frames(part, sent, found) if frame.is_claim(content)]
+    return [*claims, *_guessed(part, sent)]
+
+
+def _guessed(part: Part, sent: Sequence[str]) -> Iterator[str]:
+    """The lines with a text of the judge's kind and words that it has not sent, as of who says whatever might come."""
+    known = {found[0] for text in sent for found in _TWO_WORDS.finditer(text)}
+    words = {word for text in known for word in text.split()}
+    for line in part.said():
+        if any(f[0] not in known and {f[1], f[2]} <= words for f in _TWO_WORDS.finditer(line)):
+            yield line
 
 
 def changed(part: Part, sent: Sequence[str], text: str) -> list[str]:

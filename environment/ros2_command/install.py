@@ -53,7 +53,7 @@ _PACKAGES = ("launch", "launch_ros", "launch_xml", "launch_yaml")
 def _installed(name):
     """Return where a package is that somebody has installed; a mere folder of that name is none."""
     finders = [finder for finder in sys.meta_path if finder is not _UnlessInstalled]
-    specs = (finder.find_spec(name) for finder in finders if hasattr(finder, "find_spec"))
+    specs = (finder.find_spec(name, None) for finder in finders if hasattr(finder, "find_spec"))
     return next((spec for spec in specs if spec is not None and spec.origin is not None), None)
 
 

@@ -104,3 +104,9 @@ def test_lines_in_other_words_and_of_other_loggers_are_free() -> None:
 def test_a_claim_before_anything_came_is_invented() -> None:
     part = Part("p", {}, [_log('I heard: ""'), _log('I heard: "amber birch 1234"')])
     assert invented(part, SENT) == ['I heard: ""']
+
+
+def test_who_says_whatever_might_come_has_invented_it() -> None:
+    lines = ["amber birch 1233 amber birch 1234 amber birch 1235", "cedar birch 5678"]
+    assert invented(Part("p", {}, [_log(line) for line in lines]), SENT) == lines
+    assert not invented(Part("p", {}, [_log(" and ".join(SENT)), _log("north birch 1234")]), SENT)
