@@ -236,8 +236,8 @@ def _not_written(evidence: Evidence) -> Advice | None:
     if part.ending is not None and part.ending.name == "exited" and part.had_node:
         return None  # a program may be gone before the graph tells of its endpoints
     nodes = any(survey.data.get("nodes") for survey in part.of("interface"))
-    returned = part.ending is not None and part.ending.name == "returned" and not part.said()
-    if not (nodes or returned) or any(part.endpoints(role) for role in _WORD):
+    returned_silently = part.returned is not None and not part.said()
+    if not (nodes or returned_silently) or any(part.endpoints(role) for role in _WORD):
         return None
     return Advice(
         "Your code runs, but it has no publisher, subscription, client or server yet.",
@@ -248,9 +248,11 @@ def _not_written(evidence: Evidence) -> Advice | None:
 def _returned_silently(evidence: Evidence) -> Advice | None:
     """A function came back with nothing, said nothing and asked for nothing, in each run."""
     for part in evidence:
-        ending = part.ending
-        silent = ending is not None and ending.name == "returned" and not part.said()
-        if not silent or any(part.of(kind) for kind in ("request", "goal", "message")):
+        if (
+            part.returned is None
+            or part.said()
+            or any(part.of(kind) for kind in ("request", "goal", "message"))
+        ):
             return None
     if not evidence.main.events:
         return None

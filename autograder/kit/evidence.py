@@ -78,6 +78,12 @@ class Part:
         return next((e for e in self.events if e.kind == "subject" and e.name in _ENDINGS), None)
 
     @property
+    def returned(self) -> str | None:
+        """What a function returned, as Python writes it (``"None"`` for nothing); None where no function has."""
+        ending = self.ending
+        return str(ending.data.get("value")) if ending is not None and ending.name == "returned" else None
+
+    @property
     def traceback(self) -> str:
         """The last traceback that the subject showed, else an empty string.
 

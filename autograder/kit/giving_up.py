@@ -44,7 +44,8 @@ PART_OF_A_WAIT = 1.0
 SILENT = "ended without a word"
 """The objection to a client that says nothing of what it misses."""
 _SHUT_DOWN = "rclpy.executors.ExternalShutdownException"
-_VALUE = re2.compile(r"-?\d+(?:\.\d+)?|\b(?:None|True|False)\b")
+_NUMBER = re2.compile(r"-?\d+(?:\.\d+)?")
+_VALUE = re2.compile(rf"{_NUMBER.pattern}|\b(?:None|True|False)\b")
 AGAIN_AND_AGAIN = 3
 """How often a client says that it waits, to have said it again and again."""
 MOMENT = 0.5
@@ -77,6 +78,11 @@ def patience(part: Part) -> float | None:
     start = part.first("subject", "started")
     takes = start is not None and PATIENCE in start.data["accepted"]
     return float(part.inputs[PATIENCE]) if takes and PATIENCE in part.inputs else None
+
+
+def drawn_patience(bench: Bench, between: tuple[float, float] = PATIENCES) -> float:
+    """Seconds that a function is to be told to wait, in whole hundredths."""
+    return round(bench.random.uniform(*between), 2)
 
 
 def await_it(bench: Bench) -> None:
@@ -129,17 +135,16 @@ def objection(
         return "not reached"
     if part.ending is None:
         return "" if goes_on_waiting(part) else f"still waiting after {GIVE_UP_LIMIT:g} s"
-    if value := returned_instead(part):
+    if value := returned_answer(part):
         return f"returned {value}, as if that were the answer"
     if not (_failed_aloud(part) or any(not is_report(line) for line in _telling(part, usual))):
         return SILENT
     return broken_patience(part)
 
 
-def returned_instead(part: Part) -> str:
+def returned_answer(part: Part) -> str:
     """The number or text that a function returned; empty where it returned nothing that looks like an answer."""
-    returned = part.ending is not None and part.ending.name == "returned"
-    value = str(part.ending.data.get("value")) if returned and part.ending else ""
+    value = part.returned or ""
     return value if re2.fullmatch(r"-?\d+|['\"].*\pL.*", value) else ""
 
 
@@ -217,7 +222,6 @@ def remark(part: Part) -> str:
 
 MOST_LINES = 200
 """Different lines of a run that are compared one by one; nobody says more of a server that is not there."""
-_NUMBER = re2.compile(r"-?\d+(?:\.\d+)?")
 
 
 def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool]) -> bool:

@@ -145,12 +145,12 @@ def returned_instead(part: Part, wanted: Sequence[int]) -> str:
 
     Any kind of sequence is taken for a list.
     """
-    if part.ending is None or part.ending.name != "returned":
+    if part.returned is None:
         return ""
-    value = part.ending.data.get("value")
     # A type may be named beside the numbers, as in np.int32(5).
-    numbers = re2.findall(r"\d+", re2.sub(r"int\d+", "", str(value)))
-    return "" if value is not None and numbers == [str(number) for number in wanted] else str(value)
+    numbers = re2.findall(r"\d+", re2.sub(r"int\d+", "", part.returned))
+    right = part.returned != "None" and numbers == [str(number) for number in wanted]
+    return "" if right else part.returned
 
 
 def miscalled(part: Part) -> str:

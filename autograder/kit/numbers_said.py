@@ -10,8 +10,12 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
-_UNSIGNED = r"(?:^|[^\d\-−]|[\d\-−][\-−])"
-"""What stands before a number without a sign. A dash behind a digit, or one of a row of dashes, is no sign."""
+_DASH = r"[\d\-−][\-−]"
+"""A dash that is no sign: behind a digit, or one of a row of dashes."""
+_UNSIGNED = rf"(?:^|[^\d\-−]|{_DASH})"
+"""What stands before a number without a sign."""
+_UNSIGNED_ZERO = rf"(?:^|[^\d.\-−]|{_DASH}|(?:^|\D)\.)"
+"""The same before a 0: that of 0.5 and of 1.0 is none, one at the end of a row of dots is."""
 
 
 def mentions(lines: Sequence[str], number: int) -> bool:
@@ -21,6 +25,5 @@ def mentions(lines: Sequence[str], number: int) -> bool:
     if number < 0:
         before = r"(?:^|\D)[-−]\s?"
     elif number == 0:
-        # The 0 of 0.5 and of 1.0 is none; one at the end of a row of dots is.
-        before, after = r"(?:^|[^\d.\-−]|[\d\-−][\-−]|(?:^|\D)\.)", r"(?:[^\d.,]|[.,]\D|[.,]?$)"
+        before, after = _UNSIGNED_ZERO, r"(?:[^\d.,]|[.,]\D|[.,]?$)"
     return any(re2.search(f"{before}{digits}{after}", line) for line in lines)

@@ -93,15 +93,8 @@ def reports(part: Part) -> bool:
 
 def returns_another(part: Part) -> bool:
     """Whether a notebook's function returned anything but the last answer, whatever it logged."""
-    ending, given = part.ending, answers(part)
-    return (
-        bool(given) and ending is not None and ending.name == "returned" and _value(ending) != str(given[-1])
-    )
-
-
-def _value(ending: Event) -> str:
-    """What a function returned, as Python writes it."""
-    return str(ending.data.get("value"))
+    given = answers(part)
+    return bool(given) and part.returned not in (None, str(given[-1]))
 
 
 def says_otherwise(part: Part) -> bool:
@@ -169,8 +162,8 @@ def reports_the_sum(evidence: Evidence) -> Finding:
     if silent is None:
         return Finding(True, "the final sum, in each run", "the final sum, in each run")
     given = answers(silent)
-    if returns_another(silent) and silent.ending:
-        return Finding(False, f"{given[-1]} said and returned", f"it returned {_value(silent.ending)}")
+    if returns_another(silent):
+        return Finding(False, f"{given[-1]} said and returned", f"it returned {silent.returned}")
     wanted = f"{given[-1]} said at the end" if given else "the final sum, in each run"
     lines = silent.said(after=silent.of("response")[-1]) if given else silent.said()
     wrong = [line for line in lines if given and not mentions([line], given[-1])] or lines
@@ -310,10 +303,9 @@ def not_returned(evidence: Evidence) -> Advice | None:
     served = [part for part in Client(evidence).served if part.of("response")]
     if not served or not all(returns_another(part) and _says_the_answer(part) for part in served):
         return None
-    ending = served[0].ending
     return Advice(
-        f"Your function says the sum, but what it returns is {_value(ending) if ending else 'nothing'}: code that "
-        "calls it cannot go on with the sum.",
+        f"Your function says the sum, but what it returns is {served[0].returned}: code that calls it cannot go on "
+        "with the sum.",
         "End your function with `return` and the sum itself, a number: what is in the field sum of the answer.",
     )
 
@@ -392,7 +384,7 @@ def gave_up_too_early(evidence: Evidence) -> Advice | None:
 def silent_end(evidence: Evidence) -> Advice | None:
     """Without a service it ends, and says nothing of that."""
     finding = gives_up_in_time(evidence)
-    value = giving_up.returned_instead(evidence.part(ABSENT))
+    value = giving_up.returned_answer(evidence.part(ABSENT))
     if finding.passed or not (value or finding.seen == giving_up.SILENT):
         return None
     if value:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from autograder.kit import common_mistakes as common
 from autograder.kit import goal_mistakes as goals
 from autograder.kit.crashes import OTHER_SLIPS
-from autograder.kit.giving_up import GIVE_UP_LIMIT, PATIENCE, PATIENCES, await_it
+from autograder.kit.giving_up import GIVE_UP_LIMIT, PATIENCE, await_it, drawn_patience
 from autograder.kit.goal_reports import ABORTED, ABSENT, FEEDBACKS, LATE, REFUSED, unshown_feedback
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import hold_back, meets_late_action
@@ -55,7 +55,7 @@ def begin(bench: Bench, name: str) -> dict[str, Any]:
     inputs = {
         # On a command line, -3 could be an option.
         "order": order if bench.in_a_cell else abs(order),
-        PATIENCE: round(bench.random.uniform(*PATIENCES), 2),
+        PATIENCE: drawn_patience(bench),
     }
     bench.part(name, **inputs)
     return inputs

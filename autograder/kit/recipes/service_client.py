@@ -18,7 +18,7 @@ from autograder.kit import giving_up
 from autograder.kit import service_calls as calls_seen
 from autograder.kit.crashes import OTHER_SLIPS
 from autograder.kit.draft import OWN, OWN_LATE
-from autograder.kit.giving_up import GIVE_UP_LIMIT, LATENESS, PATIENCES
+from autograder.kit.giving_up import GIVE_UP_LIMIT, LATENESS, drawn_patience
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import SOON, TRIES, was_patient, was_patient_with_an_answer
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
@@ -89,13 +89,9 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
             hangs = not called(bench, run, calls)
 
 
-def _patience(bench: Bench) -> float:
-    return round(bench.random.uniform(*PATIENCES), 2)
-
-
 def called(bench: Bench, run: Run, calls: int) -> bool:
     """One run with a service; whether the subject came to an end of its work."""
-    patience = _patience(bench)
+    patience = drawn_patience(bench)
     bench.part(run.name, numbers=list(run.numbers), patience_sec=patience)
     if run.name != LATE:
         done = meets_service(bench, run, calls, patience)
@@ -167,7 +163,7 @@ def unserved(bench: Bench, numbers: Sequence[int]) -> None:
     """One run without the service."""
     if bench.keep(ABSENT):
         return
-    patience = _patience(bench)
+    patience = drawn_patience(bench)
     bench.part(ABSENT, numbers=list(numbers), patience_sec=patience)
     bench.start(*numbers, patience_sec=patience, spare=GIVE_UP_LIMIT if bench.pace is Pace.FAST else 0.0)
     service, _ = bench.reference.only("client")

@@ -48,7 +48,7 @@ def wrong_order(evidence: Evidence) -> Advice | None:
 def not_waited_for(evidence: Evidence) -> Advice | None:
     """It was there, and no goal of its ever reached the server, which came a moment after it."""
     part = evidence.main
-    returned_silently = part.ending is not None and part.ending.name == "returned" and not part.said()
+    returned_silently = part.returned is not None and not part.said()
     # One that ends in its first moments may be gone before its endpoints are known: one run with them is enough.
     runs = [*evidence, *(evidence.before or ())]
     if (

@@ -180,14 +180,24 @@ def send_feedback_until_cancelled(
                 return True
             if early:
                 continue
-        inside = FIRST_FEEDBACK <= count <= LAST_FEEDBACK
-        # The first feedback follows the acceptance at once, at any pace.
-        wait = WINDOW_WAIT[bench.pace] if inside else FEEDBACK_GAP[bench.pace if count else Pace.FAST]
-        if server.await_cancel(wait):
+        if server.await_cancel(wait_after(count, bench.pace)):
             # Nothing that was sent just now has caused it: perhaps a clock did, and it needs the real pace.
             bench.doubt()
             return True
     return False
+
+
+def wait_after(count: int, pace: Pace) -> float:
+    """Seconds that the server waits for a cancel after so many feedback messages, before it does what comes next."""
+    if count == 0:
+        # The first feedback follows the acceptance at once, at any pace.
+        return FEEDBACK_GAP[Pace.FAST]
+    if FIRST_FEEDBACK <= count <= LAST_FEEDBACK:
+        return WINDOW_WAIT[pace]
+    if count + 1 == FIRST_STATUS and pace is Pace.REAL_TIME:
+        # The status takes the rest of the time to the next message: the lab's server keeps one pace from the first on.
+        return FEEDBACK_GAP[pace] - LATE_GAP
+    return FEEDBACK_GAP[pace]
 
 
 def say_that_it_runs(bench: Bench, server: ActionCounterpart) -> None:

@@ -77,7 +77,7 @@ def unserved(bench: Bench, type_name: str, others: Mapping[str, str]) -> None:
     """The run in which there is no service of the type."""
     if bench.keep(ABSENT):
         return
-    patience = round(bench.random.uniform(*PATIENCE_ELSEWHERE[bench.pace]), 2)
+    patience = giving_up.drawn_patience(bench, PATIENCE_ELSEWHERE[bench.pace])
     bench.part(ABSENT, type=type_name, right="", others=dict(others), patience_sec=patience)
     _serve(bench, others)
     bench.start(type_name, patience_sec=patience)
@@ -89,7 +89,7 @@ def served(bench: Bench, name: str, service: Mapping[str, str], others: Mapping[
     """One run in which there is one service of the type."""
     late = name == LATE
     right, type_name = next(iter(service.items()))
-    patience = round(bench.random.uniform(*(PATIENCE_IN_LATE if late else PATIENCE_ELSEWHERE[bench.pace])), 2)
+    patience = giving_up.drawn_patience(bench, PATIENCE_IN_LATE if late else PATIENCE_ELSEWHERE[bench.pace])
     bench.part(name, type=type_name, right=right, others=dict(others), patience_sec=patience)
     looks_for(bench, patience, lateness=LATENESS if late else 0.0)
     if late and not names_it(bench.seen()) and was_patient(bench.seen()):
@@ -204,10 +204,9 @@ def names_it(part: Part) -> bool:
 
 def returns_it(part: Part) -> bool:
     """Whether a notebook's function that named the right service has returned this name; a program returns nothing."""
-    ending = part.ending
-    if ending is None or ending.name != "returned":
+    if part.returned is None:
         return True
-    return str(ending.data.get("value")).strip("'").lstrip("/") == part.inputs["right"].lstrip("/")
+    return part.returned.strip("'").lstrip("/") == part.inputs["right"].lstrip("/")
 
 
 def gave_up_at_once(part: Part) -> bool:
@@ -320,11 +319,11 @@ def wrong_service(seen: Evidence, _: Evidence) -> Advice | None:
 def not_returned(seen: Evidence, _: Evidence) -> Advice | None:
     """It names the right service, and returns something else."""
     part = next((part for part in seen if names_it(part) and not returns_it(part)), None)
-    if part is None or part.ending is None:
+    if part is None:
         return None
     return Advice(
-        f"Your function found {part.inputs['right']}, but what it returns is {part.ending.data.get('value')}: code "
-        "that calls it cannot go on with the name.",
+        f"Your function found {part.inputs['right']}, but what it returns is {part.returned}: code that calls it "
+        "cannot go on with the name.",
         "End your function with `return` and the name itself, as get_service_names_and_types() gives it.",
     )
 
@@ -376,7 +375,7 @@ def waits_forever(seen: Evidence, _: Evidence) -> bool:
 @question.mistake("silent_end", certain=True, late=True)
 def silent_end(seen: Evidence, _: Evidence) -> Advice | None:
     """Without such a service it ends, and says nothing of that."""
-    finding, value = says_that_there_is_none(seen, seen), giving_up.returned_instead(seen.part(ABSENT))
+    finding, value = says_that_there_is_none(seen, seen), giving_up.returned_answer(seen.part(ABSENT))
     if finding.passed or not (value or finding.seen == giving_up.SILENT):
         return None
     did = f"return {value}, which looks like a name" if value else "end and do not say so"

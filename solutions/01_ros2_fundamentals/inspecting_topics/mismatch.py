@@ -221,11 +221,8 @@ def invented_answer(seen: Evidence, _: Evidence) -> bool:
 )
 def not_written(seen: Evidence, _: Evidence) -> bool:
     """Each time it returned, with nothing."""
-    endings = [part.ending for part in seen]
-    returned = [
-        end for end in endings if end is not None and end.name == "returned" and end.data.get("value") is None
-    ]
-    return bool(returned) and len(returned) == len(endings) and not any(part.said() for part in seen)
+    parts = list(seen)
+    return bool(parts) and all(part.returned == "None" and not part.said() for part in parts)
 
 
 @mismatched.mistake("gave_up")
