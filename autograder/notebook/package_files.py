@@ -7,8 +7,10 @@ of a file and leave the rest as it is: an entry point replaces its predecessor, 
 from __future__ import annotations
 
 import ast
+import io
 import re  # noqa: TID251  (in the student's own kernel)
-from dataclasses import dataclass
+import tokenize
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,10 +29,14 @@ class _Element:
     Attributes:
         source: As it stands in setup.py. It is written back as it was read.
         text: What it comes to; the same as the source where that is known only when setup.py runs.
+        above: The comments on the lines above it.
+        behind: The comment behind it.
     """
 
     source: str
     text: str
+    above: tuple[str, ...] = ()
+    behind: str = ""
 
 
 def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str = PACKAGE) -> str:
@@ -61,18 +67,19 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
     if programs is None:
         listed = ", ".join(f'"{entry}"' for entry in wanted)
         return f'{setup} has no list of console_scripts. Add: entry_points={{"console_scripts": [{listed}]}},'
-    present = _elements(text, tree, programs)
+    present, last_comments = _elements(text, tree, programs)
     merged = list(present)
     for entry in wanted:
         same = {n for n, old in enumerate(merged) if set(_parts(old.text)) & set(_parts(entry))}
         place = min(same, default=len(merged))
         kept = next((old for old in merged if " ".join(old.text.split()) == " ".join(entry.split())), None)
+        above = tuple(comment for n in sorted(same) for comment in merged[n].above)
         merged = [old for n, old in enumerate(merged) if n not in same]
-        merged.insert(place, kept or _written(entry))
+        merged.insert(place, replace(kept or _written(entry), above=above))
     if not merged:
         return f"{package} has no executable yet."
     if merged != present:
-        setup.write_text(_with_list(text, programs, merged), encoding="utf-8")
+        setup.write_text(_with_list(text, programs, merged, last_comments), encoding="utf-8")
     return "\n".join(
         [
             f"Executables of {package}:",
@@ -182,8 +189,8 @@ def _written(entry: str) -> _Element:
     return _Element(f'"{text}"', text)
 
 
-def _elements(text: str, tree: ast.Module, programs: ast.List) -> list[_Element]:
-    """What stands in the list of a setup.py."""
+def _elements(text: str, tree: ast.Module, programs: ast.List) -> tuple[list[_Element], list[str]]:
+    """What stands in the list of a setup.py, and the comments below its last element."""
     names = {
         target.id: node.value.value
         for node in tree.body
@@ -191,9 +198,27 @@ def _elements(text: str, tree: ast.Module, programs: ast.List) -> list[_Element]
         for target in node.targets
         if isinstance(target, ast.Name)
     }
-    sources = [ast.get_source_segment(text, item) or ast.unparse(item) for item in programs.elts]
-    values = [_value(item, names) for item in programs.elts]
-    return [_Element(source, value or source) for source, value in zip(sources, values, strict=True)]
+    comments = _comments(text, programs)
+    last_on_its_line = {item.end_lineno or item.lineno: item for item in programs.elts}
+    found, reached = [], programs.lineno
+    for item in programs.elts:
+        source = ast.get_source_segment(text, item) or ast.unparse(item)
+        end = item.end_lineno or item.lineno
+        above = tuple(comments[line] for line in range(reached, item.lineno) if line in comments)
+        behind = comments.get(end, "") if last_on_its_line[end] is item else ""
+        found.append(_Element(source, _value(item, names) or source, above, behind))
+        reached = end + 1
+    return found, [comment for line, comment in comments.items() if line >= reached]
+
+
+def _comments(text: str, programs: ast.List) -> dict[int, str]:
+    """The comments in the list of a setup.py, by line (from 1), in order."""
+    first, last = programs.lineno, programs.end_lineno or programs.lineno
+    return {
+        token.start[0]: token.string
+        for token in tokenize.generate_tokens(io.StringIO(text).readline)
+        if token.type == tokenize.COMMENT and first <= token.start[0] < last
+    }
 
 
 def _value(node: ast.expr, names: Mapping[str, object]) -> str | None:
@@ -225,12 +250,18 @@ def _programs(tree: ast.Module) -> ast.List | None:
     return None
 
 
-def _with_list(text: str, programs: ast.List, elements: list[_Element]) -> str:
-    """The file with these elements in the place of its list."""
+def _with_list(text: str, programs: ast.List, elements: list[_Element], last_comments: list[str]) -> str:
+    """The file with these elements in the place of its list, and comments below them."""
     lines = text.encode().split(b"\n")
     first, last = programs.lineno - 1, (programs.end_lineno or programs.lineno) - 1
     before = b"\n".join([*lines[:first], lines[first][: programs.col_offset]]).decode()
     after = b"\n".join([lines[last][programs.end_col_offset :], *lines[last + 1 :]]).decode()
     indent = " " * (len(lines[first]) - len(lines[first].lstrip()))
-    inside = "".join(f"{indent}    {element.source},\n" for element in elements)
+    written = [line for element in elements for line in _lines(element)]
+    inside = "".join(f"{indent}    {line}\n" for line in [*written, *last_comments])
     return f"{before}[\n{inside}{indent}]{after}"
+
+
+def _lines(element: _Element) -> list[str]:
+    """An element of the list with its comments, a line each."""
+    return [*element.above, f"{element.source},{'  ' * bool(element.behind)}{element.behind}"]

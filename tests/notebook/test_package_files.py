@@ -159,6 +159,31 @@ def test_what_only_python_can_work_out_stays_as_it_stands(workspace: Path) -> No
     ast.parse(text)
 
 
+COMMENTED = """setup(entry_points={'console_scripts': [  # what ros2 run starts
+    # Lab 1.1
+    'simple_node = my_robot_pkg.simple_node:main',  # says hello
+    'a = my_robot_pkg.a:main', 'b = my_robot_pkg.b:main',  # both
+    # 'old = my_robot_pkg.old:main',
+]})  # end
+"""
+
+
+def test_comments_in_the_list_stay_where_they_are(workspace: Path) -> None:
+    setup = workspace / "src/my_robot_pkg/setup.py"
+    setup.write_text(COMMENTED)
+    add_entry_points(workspace, [TALKER, "simple_node = my_robot_pkg.cli:hello"])
+    assert setup.read_text().splitlines()[1:] == [
+        "    # what ros2 run starts",
+        "    # Lab 1.1",
+        '    "simple_node = my_robot_pkg.cli:hello",',
+        "    'a = my_robot_pkg.a:main',",
+        "    'b = my_robot_pkg.b:main',  # both",
+        f'    "{TALKER}",',
+        "    # 'old = my_robot_pkg.old:main',",
+        "]})  # end",
+    ]
+
+
 def test_a_dependency_is_added_once(workspace: Path) -> None:
     for _ in range(2):
         said = add_dependencies(workspace, ["my_robot_interfaces", "std_msgs"])
