@@ -24,7 +24,7 @@ ANSWERS_LATE, ANSWERS_SOON = 0.5, 0.12
 PATIENT_WITH_AN_ANSWER = 0.9
 """Seconds after which a client that has given up on an answer was patient: on a busy machine it may have missed it."""
 TRIES = 3
-"""How often at most such a client is started again: it misses an answer that comes soon where the machine is slow."""
+"""How often at most such a client is started again: what comes soon is missed where the machine is slow."""
 PATIENT = 1.2
 """Seconds after which a client that has given up was patient: it may have missed the server by a moment."""
 
@@ -66,6 +66,31 @@ def hold_back(bench: Bench, kind: str) -> None:
         bench.run_time(max(0.0, answers_late(bench) - (seen.events[-1].t - request.t)))
 
 
+def meets_late(bench: Bench, meet: Callable[[float], bool], role: str, request: str) -> bool:
+    """Have the subject meet a server that comes late; again, with less, where a patient one just missed it.
+
+    What a client asks that dies in the same moment may be lost, too.
+
+    Args:
+        bench: Where it happens.
+        meet: One run: how many seconds the server comes late. Whether the subject came to an end of its work.
+        role: Of the subject's endpoint, such as ``client``.
+        request: The kind of the event with which it asks the server.
+
+    Returns:
+        Whether it came to an end of its work in the last run.
+    """
+
+    def sooner() -> bool:
+        return meet(SOON)
+
+    done = _again_where_missed(bench, sooner, request, meet(LATENESS), 1)
+    name, _ = bench.reference.only(role)
+    # Who waits for another server would only wait once more.
+    times = TRIES - 1 if name in bench.seen().endpoints(role) else 0
+    return _again_where_missed(bench, sooner, request, done, times)
+
+
 def meets_late_action(bench: Bench, meet: Callable[[float, float], bool], requests: Sequence[str]) -> bool:
     """Have the subject meet an action server that comes late; again, with less, where a patient one just missed it.
 
@@ -79,14 +104,39 @@ def meets_late_action(bench: Bench, meet: Callable[[float, float], bool], reques
         Whether it did in the last run.
     """
     held = answers_late(bench)
-    done = meet(LATENESS, held)
-    if done and not bench.seen().of("goal") and was_patient(bench.seen()):
-        bench.again()
-        done = meet(SOON, held)
+    done = meets_late(bench, lambda lateness: meet(lateness, held), "action_client", "goal")
     for _ in range(TRIES):
         seen = bench.seen()
         if not done or seen.of("result_request") or not was_patient_with_an_answer(seen, requests):
             break
         bench.again()
         done = meet(SOON, ANSWERS_SOON)
+    return done
+
+
+def meets_present(bench: Bench, meet: Callable[[], bool], request: str, *, known: bool) -> bool:
+    """Have the subject meet a server that is there; again where a patient one that knows how to missed it.
+
+    On a very busy machine a client may take longer to hear of its server than it waits for it.
+
+    Args:
+        bench: Where it happens.
+        meet: One run; whether the subject came to an end of its work.
+        request: The kind of the event with which it asks the server.
+        known: Whether it has asked a server in an earlier run. One that never asks is not started again.
+
+    Returns:
+        Whether it came to an end of its work in the last run.
+    """
+    return _again_where_missed(bench, meet, request, meet(), TRIES if known else 0)
+
+
+def _again_where_missed(bench: Bench, meet: Callable[[], bool], request: str, done: bool, times: int) -> bool:
+    """Start a patient client that has asked nothing again, so many times at most; whether it came to an end."""
+    for _ in range(times):
+        seen = bench.seen()
+        if not done or seen.of(request) or not was_patient(seen):
+            break
+        bench.again()
+        done = meet()
     return done

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, cast
 
 import pytest
 
-from autograder.kit.evidence import Event, Part
+from autograder.kit.evidence import Event, Part, Reference
 from autograder.kit.giving_up import LATENESS
 from autograder.kit.lateness import (
     ANSWERS_LATE,
@@ -16,6 +16,7 @@ from autograder.kit.lateness import (
     SOON,
     TRIES,
     meets_late_action,
+    meets_present,
     was_patient,
     was_patient_with_an_answer,
 )
@@ -78,6 +79,7 @@ class FakeBench:
     """A bench on which each run brings the next of some parts."""
 
     in_a_cell = False
+    reference = Reference("lab_1_4.client", {"action_client": {"/fibonacci": "Fibonacci"}})
 
     def __init__(self, *runs: list[Event]) -> None:
         self._runs = list(runs)
@@ -96,6 +98,8 @@ class FakeBench:
 
 LATE, SOONER, BOTH_SOON = (LATENESS, ANSWERS_LATE), (SOON, ANSWERS_LATE), (SOON, ANSWERS_SOON)
 MISSED_SERVER = [SEEN, ended(0.4 + PATIENT)]
+CLIENT_OF_IT = Event(0.4, "interface", "graph", {"action_client": {"/fibonacci": "Fibonacci"}})
+MISSED_BY_A_CLIENT_OF_IT = [CLIENT_OF_IT, ended(0.4 + PATIENT)]
 MISSED_ANSWER = [GOAL, said(1.1 + PATIENT_WITH_AN_ANSWER), ended(2.2)]
 DONE = [GOAL, Event(1.2, "result_request", "/fibonacci"), ended(9.0)]
 
@@ -107,6 +111,9 @@ DONE = [GOAL, Event(1.2, "result_request", "/fibonacci"), ended(9.0)]
         ([[SEEN, ended(0.9)]], [LATE]),
         ([MISSED_SERVER, DONE], [LATE, SOONER]),
         ([MISSED_ANSWER, DONE], [LATE, BOTH_SOON]),
+        ([MISSED_SERVER] * 2, [LATE, SOONER]),
+        ([MISSED_BY_A_CLIENT_OF_IT] * (TRIES + 1), [LATE] + [SOONER] * TRIES),
+        ([MISSED_BY_A_CLIENT_OF_IT] * 2 + [DONE], [LATE, SOONER, SOONER]),
         ([MISSED_SERVER, MISSED_ANSWER, DONE], [LATE, SOONER, BOTH_SOON]),
         ([MISSED_ANSWER] * (TRIES + 1), [LATE] + [BOTH_SOON] * TRIES),
     ],
@@ -117,3 +124,23 @@ def test_a_patient_client_of_an_action_is_started_again_with_less_to_wait_for(
     bench = FakeBench(*runs)
     meets_late_action(cast("Bench", bench), bench.meet, ["goal"])
     assert bench.met == met
+
+
+@pytest.mark.parametrize(
+    ("runs", "known", "count"),
+    [
+        ([DONE], True, 1),
+        ([MISSED_SERVER, MISSED_SERVER, DONE], True, 3),
+        ([MISSED_SERVER] * (TRIES + 1), True, TRIES + 1),
+        ([MISSED_SERVER], False, 1),
+        ([[SEEN, ended(0.9)]], True, 1),
+        ([[SEEN]], True, 1),
+    ],
+    ids=["met", "missed twice", "never met", "never asks", "impatient", "not ended"],
+)
+def test_who_knows_how_to_ask_and_misses_a_server_that_is_there_is_started_again(
+    runs: list[list[Event]], known: bool, count: int
+) -> None:
+    bench = FakeBench(*runs)
+    meets_present(cast("Bench", bench), lambda: bench.meet(0.0, 0.0), "goal", known=known)
+    assert len(bench.met) == count

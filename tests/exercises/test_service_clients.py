@@ -38,13 +38,13 @@ def runs_of(scenario: Any, seed: int, monkeypatch: pytest.MonkeyPatch) -> list[t
     """The runs of a check in their order, each with its name and what it is made of."""
     order: list[tuple[str, Any]] = []
 
-    def called(_: Any, run: Run, calls: int) -> bool:
+    def called(_: Any, run: Run, calls: int, **__: Any) -> bool:
         order.append((run.name, run))
         return True
 
     monkeypatch.setattr(service_client, "called", called)
     monkeypatch.setattr(service_client, "unserved", lambda _, numbers: order.append((ABSENT, numbers)))
-    scenario(SimpleNamespace(random=Random(seed)))
+    scenario(SimpleNamespace(random=Random(seed), seen=lambda: Part(LATE)))
     return order
 
 

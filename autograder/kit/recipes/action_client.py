@@ -16,7 +16,7 @@ from autograder.kit.crashes import OTHER_SLIPS
 from autograder.kit.giving_up import GIVE_UP_LIMIT, PATIENCE, await_it, drawn_patience
 from autograder.kit.goal_reports import ABORTED, ABSENT, FEEDBACKS, LATE, REFUSED, unshown_feedback
 from autograder.kit.hangs import HANGS
-from autograder.kit.lateness import hold_back, meets_late_action
+from autograder.kit.lateness import hold_back, meets_late_action, meets_present
 from autograder.kit.model import Bench, Mistake, Pace
 
 if TYPE_CHECKING:
@@ -45,8 +45,9 @@ AFTERMATH = 1.0
 def scenario(bench: Bench) -> None:
     """Four runs: a goal that succeeds at a late server, then one refused, one aborted, no server, in any order."""
     if late(bench):
+        known = bool(bench.seen().of("goal"))
         for run in bench.random.sample((refused, aborted, unserved), 3):
-            run(bench)
+            run(bench, known)
 
 
 def begin(bench: Bench, name: str) -> dict[str, Any]:
@@ -109,11 +110,15 @@ def meets_server(bench: Bench, *, accept: bool = True) -> ActionCounterpart:
     return bench.serve_action(action, type_name, accept_goal=accept)
 
 
-def aborted(bench: Bench) -> None:
-    """One run with a goal that is aborted."""
+def aborted(bench: Bench, known: bool) -> None:
+    """One run with a goal that is aborted; ``known`` says whether the subject has sent a goal before."""
     inputs = begin(bench, ABORTED)
-    start(bench, inputs)
-    works_on_a_goal(bench, meets_server(bench), "aborted", 1)
+
+    def meet() -> bool:
+        start(bench, inputs)
+        return works_on_a_goal(bench, meets_server(bench), "aborted", 1)
+
+    meets_present(bench, meet, "goal", known=known)
     bench.stop()
 
 
@@ -156,20 +161,32 @@ def is_done(evidence: Evidence) -> bool:
     return part.ending is not None or (result is not None and bool(part.said(after=result)))
 
 
-def refused(bench: Bench) -> None:
+def refused(bench: Bench, known: bool) -> None:
     """One run with a server that refuses every goal."""
-    start(bench, begin(bench, REFUSED))
-    refuse(bench)
+    inputs = begin(bench, REFUSED)
+    refuse(bench, lambda: start(bench, inputs), known=known)
 
 
-def refuse(bench: Bench) -> None:
-    """Refuse the goal of the subject, which was started just now; the part ends with that."""
-    if meets_server(bench, accept=False).await_goal(GOAL_LIMIT):
-        bench.await_end(END_LIMIT[bench.pace])
+def refuse(bench: Bench, begin_it: Callable[[], object], *, known: bool) -> None:
+    """Refuse the goal of the subject; the part ends with that.
+
+    Args:
+        bench: Where it happens.
+        begin_it: Starts the subject.
+        known: Whether it has sent a goal before.
+    """
+
+    def meet() -> bool:
+        begin_it()
+        if meets_server(bench, accept=False).await_goal(GOAL_LIMIT):
+            bench.await_end(END_LIMIT[bench.pace])
+        return bench.await_end(0.0)
+
+    meets_present(bench, meet, "goal", known=known)
     bench.stop()
 
 
-def unserved(bench: Bench) -> None:
+def unserved(bench: Bench, _: bool) -> None:
     """One run without a server."""
     action, _ = bench.reference.only("action_client")
     inputs = begin(bench, ABSENT)

@@ -11,6 +11,7 @@ in an order that is drawn, and their numbers and their patience are of the same 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit import common_mistakes as common
@@ -18,9 +19,9 @@ from autograder.kit import giving_up
 from autograder.kit import service_calls as calls_seen
 from autograder.kit.crashes import OTHER_SLIPS
 from autograder.kit.draft import OWN, OWN_LATE
-from autograder.kit.giving_up import GIVE_UP_LIMIT, LATENESS, drawn_patience
+from autograder.kit.giving_up import GIVE_UP_LIMIT, drawn_patience
 from autograder.kit.hangs import HANGS
-from autograder.kit.lateness import SOON, TRIES, was_patient, was_patient_with_an_answer
+from autograder.kit.lateness import TRIES, meets_late, meets_present, was_patient_with_an_answer
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.service_calls import (
     ABSENT,
@@ -79,6 +80,7 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
     late, *others = runs
     if not called(bench, late, calls):
         return
+    known = bool(requests(bench.seen()))
     order: list[Run | None] = [*others, None]
     bench.random.shuffle(order)
     hangs = False
@@ -86,20 +88,18 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
         if run is None:
             unserved(bench, nobody)
         elif not hangs:
-            hangs = not called(bench, run, calls)
+            hangs = not called(bench, run, calls, known=known)
 
 
-def called(bench: Bench, run: Run, calls: int) -> bool:
-    """One run with a service; whether the subject came to an end of its work."""
+def called(bench: Bench, run: Run, calls: int, *, known: bool = False) -> bool:
+    """One run with a service; whether the subject came to an end of its work. One that is ``known`` has called it."""
     patience = drawn_patience(bench)
     bench.part(run.name, numbers=list(run.numbers), patience_sec=patience)
+    meet = partial(meets_service, bench, run, calls, patience)
     if run.name != LATE:
-        done = meets_service(bench, run, calls, patience)
+        done = meets_present(bench, meet, "request", known=known)
     else:
-        done = meets_service(bench, run, calls, patience, lateness=LATENESS)
-        if done and not requests(bench.seen()) and was_patient(bench.seen()):
-            bench.again()
-            done = meets_service(bench, run, calls, patience, lateness=SOON)
+        done = meets_late(bench, lambda lateness: meet(lateness=lateness), "client", "request")
     for _ in range(TRIES if run.held else 0):
         seen = bench.seen()
         if not done or reports(seen) or not was_patient_with_an_answer(seen, ["request"]):

@@ -24,7 +24,7 @@ from exercise_1_3._cancel_evidence import (
 )
 
 from autograder.kit.goal_reports import REFUSED
-from autograder.kit.lateness import hold_back, meets_late_action
+from autograder.kit.lateness import hold_back, meets_late_action, meets_present
 from autograder.kit.model import Bench, Pace
 from autograder.kit.recipes.action_client import refuse
 
@@ -77,9 +77,13 @@ def scenario(bench: Bench) -> None:
         run(bench, AGREED, accept=True)
     if sends_a_goal:
         bench.part(REFUSED)
-        bench.start()
-        bench.release()
-        refuse(bench)
+        refuse(bench, lambda: start(bench), known=True)
+
+
+def start(bench: Bench) -> None:
+    """Start the subject, which nothing keeps waiting."""
+    bench.start()
+    bench.release()
 
 
 def cancel_is_refused(bench: Bench, honoured: Request) -> None:
@@ -116,7 +120,7 @@ def run(bench: Bench, name: str, *, accept: bool, pause: float = 0.0) -> Request
     if name == HONOURED:
         meets_late_action(bench, serve, ["goal", "cancel"])
     else:
-        serve()
+        meets_present(bench, serve, "goal", known=True)
     request = request_of(bench.seen())
     bench.stop()
     return request
