@@ -66,6 +66,34 @@ def hold_back(bench: Bench, kind: str) -> None:
         bench.run_time(max(0.0, answers_late(bench) - (seen.events[-1].t - request.t)))
 
 
+def again_while(
+    bench: Bench, missed: Callable[[Part], bool], meet: Callable[[], bool], done: bool, times: int = TRIES
+) -> bool:
+    """Start a subject again while it has missed something that it waited for.
+
+    Args:
+        bench: Where it happens.
+        missed: Whether it has, by what was seen of its last run.
+        meet: One more run; whether the subject came to an end of its work.
+        done: Whether it did in the run before.
+        times: How often at most.
+
+    Returns:
+        Whether it did in the last run.
+    """
+    for _ in range(times):
+        if not done or not missed(bench.seen()):
+            break
+        bench.again()
+        done = meet()
+    return done
+
+
+def _missed(request: str) -> Callable[[Part], bool]:
+    """Whether a patient client has asked its server nothing, that is, sent no request of this kind."""
+    return lambda seen: not seen.of(request) and was_patient(seen)
+
+
 def meets_late(bench: Bench, meet: Callable[[float], bool], role: str, request: str) -> bool:
     """Have the subject meet a server that comes late; again, with less, where a patient one just missed it.
 
@@ -84,11 +112,11 @@ def meets_late(bench: Bench, meet: Callable[[float], bool], role: str, request: 
     def sooner() -> bool:
         return meet(SOON)
 
-    done = _again_where_missed(bench, sooner, request, meet(LATENESS), 1)
+    done = again_while(bench, _missed(request), sooner, meet(LATENESS), 1)
     name, _ = bench.reference.only(role)
     # Who waits for another server would only wait once more.
     times = TRIES - 1 if name in bench.seen().endpoints(role) else 0
-    return _again_where_missed(bench, sooner, request, done, times)
+    return again_while(bench, _missed(request), sooner, done, times)
 
 
 def meets_late_action(bench: Bench, meet: Callable[[float, float], bool], requests: Sequence[str]) -> bool:
@@ -105,13 +133,11 @@ def meets_late_action(bench: Bench, meet: Callable[[float, float], bool], reques
     """
     held = answers_late(bench)
     done = meets_late(bench, lambda lateness: meet(lateness, held), "action_client", "goal")
-    for _ in range(TRIES):
-        seen = bench.seen()
-        if not done or seen.of("result_request") or not was_patient_with_an_answer(seen, requests):
-            break
-        bench.again()
-        done = meet(SOON, ANSWERS_SOON)
-    return done
+
+    def missed_an_answer(seen: Part) -> bool:
+        return not seen.of("result_request") and was_patient_with_an_answer(seen, requests)
+
+    return again_while(bench, missed_an_answer, lambda: meet(SOON, ANSWERS_SOON), done)
 
 
 def meets_present(bench: Bench, meet: Callable[[], bool], request: str, *, known: bool) -> bool:
@@ -128,15 +154,4 @@ def meets_present(bench: Bench, meet: Callable[[], bool], request: str, *, known
     Returns:
         Whether it came to an end of its work in the last run.
     """
-    return _again_where_missed(bench, meet, request, meet(), TRIES if known else 0)
-
-
-def _again_where_missed(bench: Bench, meet: Callable[[], bool], request: str, done: bool, times: int) -> bool:
-    """Start a patient client that has asked nothing again, so many times at most; whether it came to an end."""
-    for _ in range(times):
-        seen = bench.seen()
-        if not done or seen.of(request) or not was_patient(seen):
-            break
-        bench.again()
-        done = meet()
-    return done
+    return again_while(bench, _missed(request), meet, meet(), TRIES if known else 0)

@@ -21,7 +21,7 @@ from autograder.kit.crashes import OTHER_SLIPS
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.giving_up import GIVE_UP_LIMIT, drawn_patience
 from autograder.kit.hangs import HANGS
-from autograder.kit.lateness import TRIES, meets_late, meets_present, was_patient_with_an_answer
+from autograder.kit.lateness import again_while, meets_late, meets_present, was_patient_with_an_answer
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.service_calls import (
     ABSENT,
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from random import Random
 
-    from autograder.kit.evidence import Evidence
+    from autograder.kit.evidence import Evidence, Part
 
 CALL_LIMIT = 15.0
 """Seconds of wall time in which a client that has its service must be done."""
@@ -100,12 +100,12 @@ def called(bench: Bench, run: Run, calls: int, *, known: bool = False) -> bool:
         done = meets_present(bench, meet, "request", known=known)
     else:
         done = meets_late(bench, lambda lateness: meet(lateness=lateness), "client", "request")
-    for _ in range(TRIES if run.held else 0):
-        seen = bench.seen()
-        if not done or reports(seen) or not was_patient_with_an_answer(seen, ["request"]):
-            break
-        bench.again()
-        done = meets_service(bench, replace(run, held=0), calls, patience)
+
+    def missed_an_answer(seen: Part) -> bool:
+        return bool(run.held) and not reports(seen) and was_patient_with_an_answer(seen, ["request"])
+
+    sooner = partial(meets_service, bench, replace(run, held=0), calls, patience)
+    done = again_while(bench, missed_an_answer, sooner, done)
     bench.stop()
     return done
 
