@@ -277,8 +277,21 @@ def status_misreported(evidence: Evidence) -> Advice | None:
 def result_not_reported(evidence: Evidence) -> Advice | None:
     """The result came and was not said."""
     part = evidence.part(LATE)
-    if part.first("result_request") is None or reports_result(part):
+    result = part.first("result")
+    if result is None or part.first("result_request") is None or reports_result(part):
         return None
+    numbers, said = result.data["fields"]["sequence"], said_of_result(part)
+    left_out = [number for number in numbers if not mentions(said, number)]
+    if len(left_out) < len(numbers) / 2:
+        seen = (
+            f"{left_out[-1]} is missing"
+            if left_out
+            else "not in their order, or one that is there twice only once"
+        )
+        return Advice(
+            f"The result has {len(numbers)} numbers. Your client said most of them, but not all as they came: {seen}.",
+            "Say the whole sequence, as the server sent it: list(future.result().result.sequence).",
+        )
     return Advice(
         "The result came, but your client did not say its sequence.",
         "When the result is there, log future.result().result.sequence (and in the notebook return it).",

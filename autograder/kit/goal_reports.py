@@ -6,6 +6,7 @@ it does not say of a goal that succeeds, whatever the words are.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import re2
@@ -46,6 +47,10 @@ _CANCELED = "cancel+ed"
 """In other languages one word may stand for canceled and for aborted."""
 _FAILURES = (_CANCELED, words.ABORTED)
 """What nobody may say of a goal that succeeded or was refused."""
+_WAYS = ("log", "output", "subject")
+"""The kinds of events in which something is said: on /rosout, printed, returned."""
+_ENDS = re2.compile(rf"(?i)\b(?:status_)?(?:{words.SUCCEEDED}|{'|'.join(_FAILURES)})\b")
+"""The names of the ends that an accepted goal may have."""
 _TRACEBACK = "Traceback (most recent call last)"
 
 
@@ -130,9 +135,16 @@ def reports_result(part: Part) -> bool:
     result = part.first("result")
     if result is None or part.first("result_request") is None:
         return False
+    numbers = [str(number) for number in _sequence(result)]
+    # A log line comes twice, as output and on /rosout: what is left out of one must not be found in the other.
+    ways = ([event for event in part.events if event is result or event.kind == way] for way in _WAYS)
+    return any(_are_in_order(numbers, replace(part, events=events).said(after=result)) for events in ways)
+
+
+def _are_in_order(numbers: Sequence[str], lines: Sequence[str]) -> bool:
     # The numbers are long and random, so that their digits alone are told from whatever stands between them.
-    digits, place = re2.sub(r"\D", "", " ".join(part.said(after=result))), 0
-    for number in map(str, _sequence(result)):
+    digits, place = re2.sub(r"\D", "", " ".join(lines)), 0
+    for number in numbers:
         place = digits.find(number, place)
         if place < 0:
             return False
@@ -210,7 +222,8 @@ def refused_as_seen(evidence: Evidence) -> str:
     raised = raised_on_purpose(part) and not _tells_another(last_line(part), evidence)
     if part.first("result_request") is not None:
         accepted = [other for other in evidence if other.name not in (REFUSED, ABSENT)]
-        told = [line for line in _new_words(said, *accepted) if not _names_unknown(line)]
+        usual = {_without_end(line) for other in accepted for line in other.said()}
+        told = [line for line in said if _without_end(line) not in usual and not _names_unknown(line)]
         if not (told or raised):
             return "asked for the result of a goal that was rejected"
     if not (said or raised):
@@ -252,6 +265,11 @@ def aborted_as_seen(evidence: Evidence) -> str:
     if part.first("result_request") is None:
         return "never asked for the result"
     return f"“{said[-1]}”" if said else "nothing was said after the result"
+
+
+def _without_end(line: str) -> str:
+    """A line without its numbers, its lists and the names of the ends that an accepted goal may have."""
+    return shape(_ENDS.sub("#", words.without_lists(line)))
 
 
 def _names_unknown(line: str) -> bool:

@@ -137,6 +137,13 @@ def test_a_result_is_reported_by_all_its_numbers_after_it_came() -> None:
     assert reports_result(Part(LATE, {}, [*head, say("array('i', [100001, 200002, 300003])")]))
 
 
+def test_a_number_that_is_left_out_is_not_found_in_the_same_line_on_rosout() -> None:
+    head = [GOAL, ASKED, result("succeeded", [300_003, 100_001, 300_003])]
+    line = "[300003, 100001]"
+    twice = [say(line), Event(0.0, "log", "client", {"text": line, "level": 20})]
+    assert not reports_result(Part(LATE, {}, [*head, *twice]))
+
+
 def test_a_result_is_reported_in_its_order() -> None:
     head = [GOAL, ASKED, result("succeeded", [300_003, 100_001, 300_003])]
     assert reports_result(Part(LATE, {}, [*head, say("300,003 then 100_001 - 300003")]))

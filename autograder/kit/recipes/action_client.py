@@ -32,8 +32,14 @@ SHOWN_WITHIN = {Pace.FAST: 0.5, Pace.REAL_TIME: 1.5}
 """Seconds at most in which a client shows a feedback message before the next one is sent."""
 HASTE = 0.2
 """What that is multiplied with once it was used up: who shows nothing is not waited for again and again."""
+AT_PACE = 3
+"""Feedback messages at the end that come at the pace of the lab's server, whether the ones before were shown or not:
+who shows by a timer of its own what came last leaves some out."""
+LAB_PACE = 0.5
+"""Seconds of the client's time between two of these."""
 RESULT = 28
-"""Numbers of a result: so many that a client that shows the first ten, or twenty, of them is found out."""
+"""Numbers of a result at least: a client that shows the first ten, or twenty, of them is found out. A result of a
+larger order has one number more than its order says, as the lab's own have."""
 GOAL_LIMIT = 15.0
 """Seconds in which a goal must arrive once the client is on the graph."""
 END_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 8.0}
@@ -127,18 +133,24 @@ def works_on_a_goal(bench: Bench, server: ActionCounterpart, status: str, feedba
     # As many as an int32 allows, so that nobody can say them all.
     numbers = bench.random.sample(range(10**8, 10**9), feedbacks + 2)
     newest = bench.random.sample(range(10**8, 10**9), feedbacks)
-    result = bench.random.sample(range(10**9, 2 * 10**9), RESULT - 1)
-    result.append(result[0])
+    length = max(RESULT, bench.seen().inputs["order"] + 1)
+    result = bench.random.sample(range(10**9, 2 * 10**9), length - 1)
+    # Neither the first number nor the last: who leaves out either of these cannot make up for it.
+    result.insert(-1, result[1])
     done = server.await_goal(GOAL_LIMIT)
     if done:
         wait = SHOWN_WITHIN[bench.pace]
         # The first feedback must not come together with the goal's answer: what a client that takes in one event and
         # ends has then would be chance. Who goes on asks for the result next.
         server.await_result_request(wait)
+        action, _ = bench.reference.only("action_client")
         for count, last in enumerate(newest, start=2):
             # The last number of a message is in no other one: who leaves out a message cannot make up for it.
             server.send_feedback(partial_sequence=[*numbers[:count], last])
-            if not bench.wait_until(lambda seen: not unshown_feedback(seen.main), wait):
+            left = feedbacks + 1 - count
+            if 0 < left < AT_PACE:
+                bench.pass_time(LAB_PACE, "action_client", action)
+            elif not bench.wait_until(lambda seen: not unshown_feedback(seen.main), wait):
                 wait = SHOWN_WITHIN[bench.pace] * HASTE
                 # Its queue holds ten messages: a client on a busy machine must have come to those that it has.
                 bench.settle()

@@ -20,6 +20,12 @@ if TYPE_CHECKING:
 
 GROUP = "rosidl_interface_packages"
 """The group of packages that define interfaces; a package.xml says with it that its package is one."""
+NEEDED = {
+    "rosidl_default_generators": ("buildtool_depend", "building the package needs the generators"),
+    "rosidl_default_runtime": ("exec_depend", "a program that uses its types needs this library"),
+}
+"""What such a package depends on, each with the tag that the ROS documentation gives it ("Creating custom msg and srv
+files", section 5) and the reason. Any tag of a dependency is right."""
 SERVICE = "/interface_of_the_workspace"
 """The service that a program of the judge's serves with the built interface, so that its type is on the wire."""
 BEGINNING = 15.0
@@ -90,6 +96,27 @@ class ServiceType:
             return Finding(wire.passed, _shown(expected), wire.seen)
         seen = _shown(fields(texts[0][1])) if texts else f"no file {self._file}"
         return Finding(right, _shown(expected), seen or "an empty file")
+
+    def declares(self, evidence: Evidence) -> Finding:
+        """Its package.xml names what the package needs, so that it can be built and used elsewhere, too."""
+        expected = f"package.xml names {' and '.join(NEEDED)}"
+        holders = self._holders(evidence)
+        if not holders:
+            return Finding(False, expected, f"no package with a file {self._file}")
+        undeclared = self._undeclared(evidence)
+        return Finding(
+            not undeclared,
+            expected,
+            f"it does not name {' and '.join(undeclared)}" if undeclared else "it does",
+        )
+
+    def _undeclared(self, evidence: Evidence) -> list[str]:
+        """What no package with such a file says that it needs; nothing where not all of them was reported."""
+        if not _is_complete(evidence):
+            return []
+        declared = [package.dependencies for package, _ in self._holders(evidence)]
+        missing = ([name for name in NEEDED if name not in names] for names in declared)
+        return min(missing, key=len, default=[])
 
     def builds(self, evidence: Evidence) -> Finding:
         """Colcon builds the package, and it generates the interface."""
@@ -204,6 +231,25 @@ class ServiceType:
             "ament_package().",
         )
 
+    def _dependency_missing(self, evidence: Evidence) -> Advice | None:
+        """Everything works here, and package.xml does not name what that needs."""
+        undeclared = self._undeclared(evidence)
+        if not undeclared:
+            return None
+        name, holder = undeclared[0], self._holders(evidence)[0][0]
+        tag, reason = NEEDED[name]
+        line = f"<{tag}>{name}</{tag}>"
+        if name in holder.commented:
+            return Advice(
+                f"package.xml of {holder.name} has {name} only inside a comment (<!-- … -->), where it does not count.",
+                f"Write {line} below the -->.",
+            )
+        return Advice(
+            f"package.xml of {holder.name} does not name {name}. It works here, because this computer has it; "
+            "elsewhere nobody would know that it has to be installed.",
+            f"Add {line} above <export>: {reason}.",
+        )
+
     @property
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most telling first."""
@@ -219,6 +265,7 @@ class ServiceType:
             *workspace.BUILD,
             *common.CRASHES,
             *common.OTHER_CRASHES,
+            Mistake("dependency_missing", self._dependency_missing, certain=True),
         )
 
 

@@ -35,8 +35,8 @@ AFTERMATH = 2.5
 """Seconds (likewise) after the last text, in which nothing may be made up or said again."""
 GREETING = "Hello, world!"
 """The beginning of what many talkers say: some of the texts have it in them."""
-KINDS = 5
-"""Kinds of texts in each row that are more than two words and a number; one more text comes twice."""
+KINDS = 6
+"""Kinds of texts in each row that are something else than two words and a number; one more text comes twice."""
 
 _WORDS = (
     "amber", "birch", "cedar", "delta", "ember", "fjord", "grove", "harbour", "islet", "juniper", "kelp", "lagoon",
@@ -187,7 +187,7 @@ def random_texts(random: Random) -> list[str]:
     """Texts of words and a number; none is part of another, and in each row one comes twice, one after the other.
 
     In each row some are of other kinds: with the greeting of many talkers before or behind, long and in capitals, with
-    braces and a percent sign, with letters beyond ASCII and two blanks.
+    braces and a percent sign, with letters beyond ASCII and two blanks, without any blank.
     """
     count = 1 + TRIES * AT_PACE + SINGLY
     words = [f"{random.choice(_WORDS)} {random.choice(_WORDS)}" for _ in range(count)]
@@ -198,13 +198,14 @@ def random_texts(random: Random) -> list[str]:
     for row in (*at_pace, range(count - SINGLY, count)):
         twice = random.choice(row[:-1])
         rest = [place for place in row if place not in (twice, twice + 1)]
-        greets, greeted, long, marks, far = random.sample(rest, KINDS)
+        greets, greeted, long, marks, far, single = random.sample(rest, KINDS)
         texts[twice + 1] = texts[twice]
         texts[greets] = f"{GREETING} {texts[greets].rpartition(' ')[2]}"
         texts[greeted] = f"{texts[greeted]} {GREETING}"
         texts[long] = f"{random.choice(_WORDS).upper()} {' '.join(random.sample(_WORDS, 4))} {texts[long]}"
         texts[marks] = f"{{{random.choice(_WORDS)}}} {random.randrange(10, 100)}% {texts[marks]}"
         texts[far] = f"{random.choice(_ELSEWHERE)}  {texts[far]}"
+        texts[single] = texts[single].replace(" ", "_")
     return texts
 
 

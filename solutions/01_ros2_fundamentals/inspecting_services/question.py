@@ -36,6 +36,9 @@ TEMPTING = {
 }
 """The types that are asked for, each with a name that sounds like it and is given to a service of another type."""
 
+HIDDEN = "_parameters"
+"""How the name of one service ends that is asked for."""
+
 LATE = "the service comes late"
 OTHER = "another type is asked for"
 ABSENT = "no service has the type"
@@ -70,7 +73,8 @@ def scenario(bench: Bench) -> None:
         if name == ABSENT:
             unserved(bench, type_name, misleading)
         else:
-            served(bench, name, {right: type_name}, misleading)
+            # The notebook's own list leaves out what has this word in its name, and only the type counts here.
+            served(bench, name, {f"{right}{HIDDEN}" if name == OTHER else right: type_name}, misleading)
 
 
 def unserved(bench: Bench, type_name: str, others: Mapping[str, str]) -> None:
@@ -217,6 +221,11 @@ def gave_up_at_once(part: Part) -> bool:
     return seen is None or part.ending.t < seen.t + IMPATIENT
 
 
+def gave_up_with_nothing(part: Part) -> bool:
+    """Whether the subject ended without any service named."""
+    return part.ending is not None and bool(part.events) and not named(part)
+
+
 def _found(part: Part) -> Finding:
     expected = "the one service of the type that was asked for"
     if names_it(part):
@@ -313,6 +322,19 @@ def wrong_service(seen: Evidence, _: Evidence) -> Advice | None:
                 "about its type.",
             )
     return None
+
+
+@question.mistake("name_filtered", certain=True)
+def name_filtered(seen: Evidence, _: Evidence) -> Advice | None:
+    """It finds a service by its type, but not one that has a certain word in its name."""
+    part = seen.part(OTHER)
+    if not names_it(seen.part(LATE)) or not gave_up_with_nothing(part):
+        return None
+    return Advice(
+        f"Your code finds a service that comes late, but not {part.inputs['right']}, which is of the type "
+        f"{part.inputs['type']} and was there from the start.",
+        "Does it leave out services by their names, as the demonstration does with “parameter”? Only the type counts.",
+    )
 
 
 @question.mistake("not_returned", certain=True)

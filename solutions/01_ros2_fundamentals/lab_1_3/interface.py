@@ -13,7 +13,8 @@ interface = Draft(
     recipe,
 )
 interface.asks("fields", 3, "Has the right fields", recipe.has_the_fields)
-interface.asks("builds", 4, "Builds and generates the type", recipe.builds)
+interface.asks("declares", 1, "Names what it needs in package.xml", recipe.declares)
+interface.asks("builds", 3, "Builds and generates the type", recipe.builds)
 interface.asks("wire", 3, "Has the right type on the wire", recipe.is_on_the_wire)
 
 EXERCISE = interface.exercise(limit=400.0, runner=recipe.runner)
