@@ -181,8 +181,8 @@ def miscalled(part: Part) -> str:
 
 
 def shape(line: str) -> str:
-    """A line without its numbers, so that two lines for two goals can be compared."""
-    return re2.sub(r"\d+", "#", line).strip()
+    """A line without its numbers, however many there are in a list, so that two lines for two goals can be compared."""
+    return re2.sub(r"\d+(?:[\s,;]+\d+)*", "#", line).strip()
 
 
 def _new_words(lines: Sequence[str], *others: Part) -> list[str]:
