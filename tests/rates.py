@@ -221,7 +221,7 @@ def markdown(rates: Rates) -> str:
         how, soak = rates.soak
         same = soak.repeated - len(soak.changed)
         beside = f"{how.command}: {soak.judgements} judgements, {soak.jobs} at a time beside {soak.busy} busy loops"
-        what = "answers with the same points and diagnosis each time, in random order under load"
+        what = "answers judged more than once under load, with the same points and diagnosis each time"
         lines.append(_row(what, _of(same, soak.repeated), replace(how, command=beside)))
         details += [f"- changed in the soak: {name}: {_ends(ends)}" for name, ends in soak.changed.items()]
     if rates.again:
