@@ -324,7 +324,7 @@ def wrong_service(seen: Evidence, _: Evidence) -> Advice | None:
     return None
 
 
-@question.mistake("name_filtered", certain=True)
+@question.mistake("name_filtered")
 def name_filtered(seen: Evidence, _: Evidence) -> Advice | None:
     """It finds a service by its type, but not one that has a certain word in its name."""
     part = seen.part(OTHER)
