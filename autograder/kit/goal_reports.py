@@ -19,7 +19,7 @@ from autograder.kit.model import Finding
 from autograder.kit.numbers_said import mentions
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from autograder.kit.evidence import Event, Evidence, Part
 
@@ -185,10 +185,10 @@ def shape(line: str) -> str:
     return re2.sub(r"\d+(?:[\s,;]+\d+)*", "#", line).strip()
 
 
-def _new_words(lines: Sequence[str], *others: Part) -> list[str]:
-    """Those of the lines that were not said, with other numbers, in other runs."""
-    usual = {shape(line) for part in others for line in part.said()}
-    return [line for line in lines if shape(line) not in usual]
+def _new_words(lines: Sequence[str], *others: Part, reduced: Callable[[str], str] = shape) -> list[str]:
+    """Those of the lines that were not said, with other numbers, in other runs; lines are compared as ``reduced``."""
+    usual = {reduced(line) for part in others for line in part.said()}
+    return [line for line in lines if reduced(line) not in usual]
 
 
 def last_line(part: Part) -> str:
@@ -222,8 +222,8 @@ def refused_as_seen(evidence: Evidence) -> str:
     raised = raised_on_purpose(part) and not _tells_another(last_line(part), evidence)
     if part.first("result_request") is not None:
         accepted = [other for other in evidence if other.name not in (REFUSED, ABSENT)]
-        usual = {_without_end(line) for other in accepted for line in other.said()}
-        told = [line for line in said if _without_end(line) not in usual and not _names_unknown(line)]
+        new = _new_words(said, *accepted, reduced=_without_end)
+        told = [line for line in new if not _names_unknown(line)]
         if not (told or raised):
             return "asked for the result of a goal that was rejected"
     if not (said or raised):
