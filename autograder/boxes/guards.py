@@ -2,36 +2,46 @@
 
 With cgroups the operating system itself refuses a process or ends one that has too much. Without them a watch counts
 what it sees in the box's ``/proc`` several times a second and ends the box; what is faster than that is kept in bounds
-by limits on each single process. Processor time is always counted by the watch: it does no harm to be late there.
+by limits on each single process. How much memory a process has had at most is seen later, too, so that it is no chance
+which of the two meets a process first. Processor time is always counted by the watch: it does no harm to be late there.
 """
 
 from __future__ import annotations
 
 import os
 import time
+from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
+
+import re2
 
 from autograder.boxes.cgroups import Group, usable
 from autograder.boxes.execution import Ended
 from autograder.boxes.limits import open_files_of_a_box
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
     from autograder.boxes.limits import Limits
 
 INTERVAL = 0.25
 """Seconds from one look to the next."""
+_SIZE = re2.compile(r"(?m)^(\w+):[ \t]+(\d+) kB$")
 _TICKS = os.sysconf("SC_CLK_TCK")
 
 
 class Guard(Protocol):
     """Says whether a limit was exceeded."""
 
-    def exceeded(self) -> Ended | None:
-        """The limit that is exceeded now; the box must be ended then. Cheap enough to be asked at any time."""
+    def exceeded(self, *, at_once: bool = False) -> Ended | None:
+        """The limit that is exceeded now; the box must be ended then. Cheap enough to be asked at any time.
+
+        Args:
+            at_once: Look now, however short the time since the last look is.
+        """
         ...
 
     def reason(self) -> Ended | None:
@@ -91,10 +101,10 @@ class BoxGuard:
         """
         self._first = first
 
-    def exceeded(self) -> Ended | None:
+    def exceeded(self, *, at_once: bool = False) -> Ended | None:
         """The limit that is exceeded, as the last look has shown; looks again every ``INTERVAL`` seconds."""
         now = time.monotonic()
-        if self._seen is None and self._first and now >= self._next_look:
+        if self._seen is None and self._first and (at_once or now >= self._next_look):
             self._next_look = now + INTERVAL
             self._seen = self._look()
         return self._seen
@@ -123,6 +133,8 @@ class BoxGuard:
             return Ended.TOO_MANY_FILES
         if not self._processes and use.threads > self._limits.processes:
             return Ended.TOO_MANY_PROCESSES
+        if use.most_memory > self._limits.memory_now:
+            return Ended.OUT_OF_MEMORY
         files = 0 if self._memory else _scratch_of(self._first)
         if use.memory + files > self._limits.memory_now:
             # Forks were counted with all that they share: look exactly before it has consequences.
@@ -138,43 +150,52 @@ class Use:
     Attributes:
         threads: How many there are, a process having at least one.
         memory: Bytes that belong to no file; 0 where nobody looked.
+        most_memory: The same of one process alone, of that which has had most, at the time when it had most.
         cpu_seconds: Processor time, that of children included which have ended and were waited for.
         files: Open files, sockets and pipes. What waits in them and who is told of them belongs to no process.
     """
 
     threads: int
     memory: int
+    most_memory: int
     cpu_seconds: float
     files: int
 
 
-def use_of(first: int, memory_of: Callable[[str], int] | None) -> Use:
+_NOTHING = Use(0, 0, 0, 0.0, 0)
+_MemoryOf = Callable[[str], tuple[int, int]]
+"""The memory of the process with this folder: bytes now, and at most until now."""
+
+
+def use_of(first: int, memory_of: _MemoryOf | None) -> Use:
     """Look at all processes of a PID namespace.
 
     Args:
         first: Its first process, as the host counts; the namespace's own ``/proc`` is seen through it.
-        memory_of: The memory of the process with this folder, in bytes.
+        memory_of: Says how much memory a process has; None where nobody needs to know.
     """
-    threads = memory = files = 0
+    threads = memory = most_memory = files = 0
     seconds = 0.0
     try:
         own = f"/proc/{first}/root/proc"
         if Path(own).stat().st_dev == Path("/proc").stat().st_dev:
-            return Use(0, 0, 0.0, 0)  # it is on its way into the box and still sees the processes of the host
+            return _NOTHING  # it is on its way into the box and still sees the processes of the host
         processes = [entry for entry in os.scandir(own) if entry.name.isdecimal()]
     except OSError:
-        return Use(0, 0, 0.0, 0)
+        return _NOTHING
     for process in processes:
         try:
             # After the name of the program, which may hold anything (proc(5)).
             fields = Path(process.path, "stat").read_text(errors="replace").rpartition(")")[2].split()
             threads += int(fields[17])
             seconds += sum(map(int, fields[11:15])) / _TICKS
-            memory += memory_of(process.path) if memory_of else 0
+            now, most = memory_of(process.path) if memory_of else (0, 0)
+            memory += now
+            most_memory = max(most_memory, most)
             files += _files_of(process.path)
         except (OSError, ValueError, IndexError):
             continue  # it has ended meanwhile
-    return Use(threads, memory, seconds, files)
+    return Use(threads, memory, most_memory, seconds, files)
 
 
 def _files_of(process: str) -> int:
@@ -192,30 +213,37 @@ def _scratch_of(first: int) -> int:
     return 0 if inside.f_fsid == outside.f_fsid else (inside.f_blocks - inside.f_bfree) * inside.f_frsize
 
 
-def _memory_of(process: str) -> int:
-    """Pages that are shared by a fork count in each process."""
-    return _sum_of(Path(process, "status"), ("RssAnon:", "RssShmem:"))
+def _memory_of(process: str) -> tuple[int, int]:
+    """Pages that are shared by a fork count in each process.
+
+    ``VmHWM`` is the most that a process has had since it was forked or has become another program, pages of files
+    included (proc_pid_status(5)).
+    """
+    sizes = _sizes_in(Path(process, "status"))
+    now = sizes["RssAnon"] + sizes["RssShmem"]
+    return now, max(now, sizes["VmHWM"] - sizes["RssFile"])
 
 
-def _exact_memory_of(process: str) -> int:
+def _exact_memory_of(process: str) -> tuple[int, int]:
     """A page that several processes share counts once in all; takes the kernel a moment."""
     try:
-        return _sum_of(Path(process, "smaps_rollup"), ("Pss_Anon:", "Pss_Shmem:"))
+        sizes = _sizes_in(Path(process, "smaps_rollup"))
     except PermissionError:
         # It has hidden itself (PR_SET_DUMPABLE, prctl(2)): then all that it shares counts, too.
         return _memory_of(process)
+    now = sizes["Pss_Anon"] + sizes["Pss_Shmem"]
+    return now, now
 
 
-def _sum_of(file: Path, wanted: tuple[str, ...]) -> int:
-    return sum(
-        int(line.split()[1]) * 1024 for line in file.read_text().splitlines() if line.startswith(wanted)
-    )
+def _sizes_in(file: Path) -> Counter[str]:
+    """Bytes by name, 0 for what the file does not name. A process may call itself anything: only whole lines count."""
+    return Counter({name: int(size) * 1024 for name, size in _SIZE.findall(file.read_text(errors="replace"))})
 
 
 class NoGuard:
     """The guard without a box: it counts nothing, and only the limits of time hold."""
 
-    def exceeded(self) -> Ended | None:
+    def exceeded(self, *, at_once: bool = False) -> Ended | None:  # noqa: ARG002  (the protocol's signature)
         """Nothing is counted."""
         return None
 

@@ -232,6 +232,10 @@ class Kernel:
         if _asks_to_exit(reply):
             self._await_end()
             return self._died()
+        if self._guard.exceeded(at_once=True):
+            # It was over before the watch came by: it ends as it would have ended a moment later.
+            self.kill()
+            return self._died()
         return Ended.DONE if reply.get("status") == "ok" else Ended.RAISED
 
     def _await_idle(self, request: str) -> None:

@@ -77,6 +77,23 @@ def test_memory(run: Run) -> None:
     assert execution.trouble == ""
 
 
+def test_memory_that_was_given_back_before_anyone_looked(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A watch comes by now and then: what a process may have must not depend on when."""
+    monkeypatch.setattr(guards, "INTERVAL", 3600.0)
+    source = "try:\n    bytearray(700_000_000)\nexcept MemoryError:\n    pass"
+    execution = run(source, memory_bytes=500_000_000)
+    assert execution.cells[0].ended is Ended.OUT_OF_MEMORY
+    assert key(execution) == "out_of_memory"
+
+
+def test_memory_that_a_process_hides_by_its_name(tmp_path: Path) -> None:
+    for name in ("1 kB", "a b kB", "RssAnon: 1 kB"):
+        tmp_path.joinpath("status").write_text(
+            f"Name:\t{name}\nVmHWM:\t  9000 kB\nRssAnon:\t  2000 kB\nRssFile:\t  1000 kB\nRssShmem:\t     0 kB\n"
+        )
+        assert guards._memory_of(str(tmp_path)) == (2000 * 1024, 8000 * 1024)
+
+
 def test_memory_that_many_processes_take_together(run: Run) -> None:
     fork = (
         "import os, time\nfor _ in range(5):\n    if os.fork() == 0:\n"
@@ -188,4 +205,4 @@ def test_many_small_processes_cannot_take_the_watcher_with_them(run: Run) -> Non
 
 
 def test_what_is_not_in_its_box_yet_is_not_taken_for_all_that_the_host_does() -> None:
-    assert guards.use_of(os.getpid(), None) == guards.Use(0, 0, 0.0, 0)
+    assert guards.use_of(os.getpid(), None) == guards.Use(0, 0, 0, 0.0, 0)
