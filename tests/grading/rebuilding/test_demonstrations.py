@@ -36,6 +36,7 @@ def given(source: str, **marks: object) -> NotebookNode:
         "source ros2_ws/install/setup.bash\nros2 launch ./x.launch.py > x.log 2>&1 &\nwait\ncat x.log",
         'for try in {1..200}; do grep -q "I heard" x.log && break; kill -0 $! || break; sleep 0.1; done 2> /dev/null',
         'timeout -s INT 20 ros2 topic pub -r 2 /t std_msgs/msg/String "{data: a; rm b}" > /dev/null 2>&1 &',
+        "# Empty:\n> hello.log\ntimeout -k 10 -s INT 30 ros2 run p node > hello.log 2>&1 &",
         "until grep -q Hello hello.log || ! kill -0 $! 2> /dev/null; do sleep 0.1; done",
     ],
 )
