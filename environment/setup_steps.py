@@ -19,6 +19,7 @@ from environment.jupyter_files import kernel_install_options, write_jupyter_file
 from environment.lighter_imports import make_lighter
 from environment.lock import EXTRAS, split_blocks
 from environment.place import INTERFACES, Place, environment_paths, environment_values
+from environment.repair_fast_dds import repair as repair_fast_dds
 from environment.ros2_command.install import install as install_ros2_command
 from environment.steps import Step, files_below
 
@@ -64,6 +65,7 @@ class Setup:
             *(file for package in place.interfaces for file in files_below(package)),
         )
         lighter = (place.environment / "lighter_imports.py",)
+        fast_dds = (place.environment / "repair_fast_dds.py",)
         start = (place.environment / "course_process.py", place.environment / "place.py")
         ros2 = (place.environment / "ros2_command" / "install.py",)
         jupyter = (place.environment / "jupyter_files.py",)
@@ -73,6 +75,7 @@ class Setup:
             Step("environment", f"making .venv with {python}", kind, self._make_environment),
             Step("packages", self._what_is_installed(), tuple(locks), lambda: self._install(locks)),
             Step("imports", "making the imports of ROS lighter", lighter, self._make_imports_lighter),
+            Step("fast_dds", "repairing how a node ends", fast_dds, self._repair_fast_dds),
             Step(
                 "interfaces", f"building {self._interfaces()} with colcon", interfaces, self._build_interfaces
             ),
@@ -163,6 +166,9 @@ class Setup:
         if changed:
             # For a user who may read this environment and not write to it.
             self._run("compiling what was changed", [self.place.python, "-m", "compileall", "-q", *changed])
+
+    def _repair_fast_dds(self) -> None:
+        repair_fast_dds(self.place.prefix)
 
     def _build_interfaces(self) -> None:
         place = self.place
