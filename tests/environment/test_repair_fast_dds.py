@@ -11,7 +11,7 @@ import pytest
 
 from environment.repair_fast_dds import FOR_EVER, YEARS_68, repair, repaired
 
-INSTALLED = Path(sys.prefix) / "lib/libfastrtps.so.2.14.5"
+INSTALLED = Path(sys.prefix) / "lib/libfastrtps.so"
 SET_LISTENER = "_ZN8eprosima7fastdds3dds17DomainParticipant12set_listenerEPNS1_25DomainParticipantListenerE"
 IMPLEMENTATION, MUTEX, CONDITION, CALLBACKS = 0x48, 0x510, 0x538, 0xCE8
 """Where Fast DDS 2.14.5 keeps them, in bytes: the first in a DomainParticipant, the others in what it points at."""

@@ -34,18 +34,8 @@ def made_from(step: Step) -> str:
 
 def test_the_order() -> None:
     assert list(steps(with_tests=True)) == [
-        *(
-            "environment",
-            "packages",
-            "imports",
-            "fast_dds",
-            "interfaces",
-            "start",
-            "ros2",
-            "jupyter",
-            "project",
-            "dev",
-        ),
+        *("environment", "packages", "imports", "fast_dds", "interfaces", "start", "ros2", "jupyter"),
+        *("project", "dev"),
         *("cluster", "postgresql"),
     ]
 
