@@ -40,7 +40,8 @@ class Guard(Protocol):
         """The limit that is exceeded now; the box must be ended then. Cheap enough to be asked at any time.
 
         Args:
-            at_once: Look now, however short the time since the last look is.
+            at_once: Look now, however short the time since the last look is, where nothing else holds the limit on
+                memory.
         """
         ...
 
@@ -104,7 +105,8 @@ class BoxGuard:
     def exceeded(self, *, at_once: bool = False) -> Ended | None:
         """The limit that is exceeded, as the last look has shown; looks again every ``INTERVAL`` seconds."""
         now = time.monotonic()
-        if self._seen is None and self._first and (at_once or now >= self._next_look):
+        due = now >= self._next_look or (at_once and not self._memory)
+        if self._seen is None and self._first and due:
             self._next_look = now + INTERVAL
             self._seen = self._look()
         return self._seen
