@@ -25,13 +25,13 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, NoReturn
 
 from autograder.judge.subjects.command_subject import CommandSubject
+from autograder.parent_death import die_with_parent
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from autograder.judge.subjects.command_subject import Process
 
-_PR_SET_PDEATHSIG = 1
 _libc = ctypes.CDLL(None)
 _OWN = ("autograder", "tests")
 """Packages and modules that a program does not find imported."""
@@ -127,7 +127,7 @@ def _end_after(life: Callable[..., NoReturn], *arguments: Any) -> NoReturn:
 
 def _serve(orders: socket.socket) -> NoReturn:
     """The warm process: never returns, and ends with the process that made it."""
-    _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+    die_with_parent()
     os.dup2(orders.detach(), 3)
     os.closerange(4, os.sysconf("SC_OPEN_MAX") if os.sysconf("SC_OPEN_MAX") < 65536 else 65536)
     orders = socket.socket(fileno=3)
@@ -159,7 +159,7 @@ def _live(order: Mapping[str, Any], streams: Sequence[int], maker: int) -> NoRet
     """The program's whole life, as ``python FILE ARGUMENTS`` lives it."""
     while os.getppid() == maker:  # until it is the judge's child
         time.sleep(0.0002)
-    _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+    die_with_parent()
     os.setsid()
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     for number, stream in enumerate(streams, 1):

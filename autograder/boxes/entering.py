@@ -16,6 +16,7 @@ from typing import Any
 from autograder.boxes import syscalls
 from autograder.boxes.channel import Channel, ChannelClosed, close_all
 from autograder.boxes.seccomp_filter import filter_for_boxes
+from autograder.parent_death import adopt_orphans, die_with_parent
 
 Run = Callable[[Mapping[str, Any], Sequence[int]], None]
 """What a child becomes: called with the request's ``call`` and its descriptors."""
@@ -60,7 +61,7 @@ def enter(channel: Channel, run: Run) -> None:
     The answer is ``{"pid": …}`` as the host counts, and when that process has ended ``{"status": …}``, its wait
     status. When the other end hangs up before, the process is killed.
     """
-    syscalls.die_with_parent(0)
+    die_with_parent()
     message, descriptors = channel.receive()
     entrance = Entrance(**message)
     # Opened here, where they can be seen; but only the child goes in, so that a box without memory costs nobody who
@@ -70,7 +71,7 @@ def enter(channel: Channel, run: Run) -> None:
         syscalls.setns(descriptors[0], _ALL_NAMESPACES)
     else:
         # Without a PID namespace to take all along, daemons become our children, and we end them.
-        syscalls.prctl(syscalls.PR_SET_CHILD_SUBREAPER, 1)
+        adopt_orphans()
     pid = os.fork()
     if pid == 0:
         channel.close()
@@ -116,7 +117,7 @@ def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
             descriptors = descriptors[1:]
             give_up_rights(hidden_memory=entrance.hidden_memory)
         # Given up rights take this away (prctl(2)), so it comes after them. Our parent is in another PID namespace.
-        syscalls.die_with_parent(0)
+        die_with_parent()
         signal.signal(signal.SIGINT, signal.default_int_handler)
         run(entrance.call, descriptors)
         code = 0

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import os
-import sys
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -15,25 +13,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from pathlib import Path
 
-_PR_SET_CHILD_SUBREAPER = 36  # linux/prctl.h
-
-
-def adopt_orphans() -> bool:
-    """Make this process the parent of every descendant whose own parent dies, so that none gets out of sight.
-
-    Returns:
-        Whether the system can do this; elsewhere than on Linux a daemon may escape.
-    """
-    if sys.platform != "linux":
-        return False
-    return ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0) == 0
-
 
 def end_descendants(within: float = 3.0) -> int:
     """Kill every descendant of this process and reap it.
 
-    Meant for a worker between two submissions, when nothing of its own is running and :func:`adopt_orphans`
-    holds.
+    Meant for a worker between two submissions, when nothing of its own is running and it adopts orphans
+    (:mod:`autograder.parent_death`).
 
     Args:
         within: Seconds after which to give up; a process in an uninterruptible system call dies when that

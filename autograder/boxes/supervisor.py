@@ -27,6 +27,7 @@ from autograder.boxes.channel import Channel, ChannelClosed, close_all
 from autograder.boxes.entering import apply_rlimits
 from autograder.boxes.mounts import ETC, ETC_FOLDERS, TERMINALS, etc_files
 from autograder.boxes.seccomp_filter import filter_for_boxes
+from autograder.parent_death import die_with_parent
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -45,7 +46,7 @@ def prepare() -> None:
 
 def run(channel: Channel) -> None:
     """Serve one submission until its worker hangs up."""
-    syscalls.die_with_parent(0)
+    die_with_parent()
     supervisor = _Supervisor(channel)
     try:
         supervisor.serve()
@@ -115,7 +116,7 @@ class _Supervisor:
         user, group = os.geteuid(), os.getegid()
         syscalls.unshare(syscalls.CLONE_NEWUSER | syscalls.CLONE_NEWNET | syscalls.CLONE_NEWNS)
         syscalls.map_only_user(0, user, group)
-        syscalls.die_with_parent(0)  # taken away by the change of rights
+        die_with_parent()  # taken away by the change of rights
         syscalls.bring_loopback_up()
         place = Path(scratch)
         furnish(place, size, inodes)

@@ -20,11 +20,9 @@ CLONE_NEWUSER = 0x10000000
 CLONE_NEWPID = 0x20000000
 CLONE_NEWNET = 0x40000000
 
-PR_SET_PDEATHSIG = 1
 PR_SET_DUMPABLE = 4
 PR_SET_SECCOMP = 22
 PR_CAPBSET_DROP = 24
-PR_SET_CHILD_SUBREAPER = 36
 PR_SET_NO_NEW_PRIVS = 38
 PR_CAP_AMBIENT = 47
 _PR_CAP_AMBIENT_CLEAR_ALL = 4
@@ -58,18 +56,6 @@ def prctl(option: int, value: int = 0) -> None:
         _libc.prctl(option, ctypes.c_ulong(value), ctypes.c_ulong(0), ctypes.c_ulong(0), ctypes.c_ulong(0)),
         f"prctl {option}",
     )
-
-
-def die_with_parent(parent: int) -> None:
-    """Be killed when the parent ends, also where it has ended already.
-
-    Args:
-        parent: Who was the parent before the fork; 0 where it is in another PID namespace, which os.getppid
-            does not tell apart from one that has ended.
-    """
-    prctl(PR_SET_PDEATHSIG, 9)
-    if parent and os.getppid() != parent:
-        os._exit(1)
 
 
 def drop_capabilities() -> None:

@@ -7,7 +7,8 @@ import pytest
 
 DAEMON = """
 import os, subprocess, sys
-from autograder.boxes.processes import adopt_orphans, end_descendants
+from autograder.boxes.processes import end_descendants
+from autograder.parent_death import adopt_orphans
 adopt_orphans()
 # The usual way into the background: a child in a session of its own whose parent ends.
 middle = subprocess.Popen([sys.executable, "-c", '''

@@ -31,7 +31,7 @@ import psutil
 sys.path.insert(0, str(Path(__file__).parent))
 from tiny_class import LISTENER, TALKER, TinyClass, make_tiny_class
 
-from autograder.boxes.processes import adopt_orphans
+from autograder.parent_death import adopt_orphans
 
 BATCH = """
 import sys

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import os
 import signal
 import subprocess
@@ -16,6 +15,7 @@ import psutil
 
 from autograder.judge.settings import subject_environment
 from autograder.judge.subjects.subject import CannotStart, InOwnProcesses
+from autograder.parent_death import adopt_orphans, die_with_parent
 from autograder.short_lines import short_lines
 
 if TYPE_CHECKING:
@@ -33,10 +33,6 @@ READ_LIMIT = 2.0
 """Seconds in which the last output of a command that has exited must have been read."""
 POLITE = 1.0
 """Seconds that a command has to end after SIGINT, before it is killed."""
-
-_libc = ctypes.CDLL(None, use_errno=True)
-_PR_SET_PDEATHSIG = 1
-_PR_SET_CHILD_SUBREAPER = 36
 
 
 class Process(Protocol):
@@ -103,7 +99,7 @@ class CommandSubject(InOwnProcesses):
         self._dying = threading.Event()
         self._last_words: list[str] = []
         # Whatever a subject leaves behind becomes this process's child and can be found and killed.
-        _libc.prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+        adopt_orphans()
 
     def begin(self, domain_id: int) -> None:
         """Remember the domain that the command's environment will name."""
@@ -152,7 +148,7 @@ class CommandSubject(InOwnProcesses):
             self._box.limit()
         # A judge that runs in the background of a shell ignores Ctrl-C; its subjects must not.
         signal.signal(signal.SIGINT, signal.SIG_DFL)
-        _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+        die_with_parent()
 
     def release(self) -> None:
         """A command runs from its start."""

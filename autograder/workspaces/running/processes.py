@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import os
 import select
 import signal
 from pathlib import Path
-
-_PR_SET_PDEATHSIG = 1
 
 
 def descendants(pid: int) -> list[int]:
@@ -92,8 +89,3 @@ def _status(pid: int, name: str) -> list[str]:
 def tell(line: str) -> None:
     """Print a line in one piece: what else writes to the same pipe cannot come between it and its end."""
     os.write(1, f"{line}\n".encode("utf-8", "replace"))
-
-
-def end_with_the_parent() -> None:
-    """Get SIGTERM when the process that started this one is gone; what this one becomes by exec gets it, too."""
-    ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)

@@ -9,17 +9,19 @@ instead.
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import exercises
 from autograder.kit.runners import Launches, RunsPrograms
+from autograder.parent_death import die_with_parent
 from autograder.workspaces.building.colcon import build, look
 from autograder.workspaces.running.launching import launch
 from autograder.workspaces.running.plans import plan_for, ros2
 from autograder.workspaces.running.prefixes import with_prefixes
-from autograder.workspaces.running.processes import end_with_the_parent, tell
+from autograder.workspaces.running.processes import tell
 from autograder.workspaces.running.reporting import built_line, found_line
 
 if TYPE_CHECKING:
@@ -34,7 +36,7 @@ def main(arguments: Sequence[str]) -> int:
     Where an exercise is about several programs, the path is followed by the name of one.
     """
     exercise = exercises.get(arguments[0])
-    end_with_the_parent()
+    die_with_parent(number=signal.SIGTERM)
     if isinstance(exercise.runner, Launches):
         return _launch(arguments[1:])
     if exercise.runner is None or (len(arguments) > 2) != isinstance(exercise.runner, RunsPrograms):
