@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from typing import TYPE_CHECKING, Any
 
@@ -11,11 +10,15 @@ import msgspec
 from autograder.judge.verdicts.keeping import Kept, plain, restored
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
     from pathlib import Path
 
 FORMAT = "ros2-course-appeal-1"
-ABOUT = "One check of one student. To judge it again: ./course replay FILE"
+ABOUT = (
+    "One check of one student. To judge it again: ./course replay FILE. This file proves nothing by itself: anybody "
+    "can write one. Only the class that it names has the grade and what the judge saw."
+)
+"""Stands at the top of each file."""
 MAX_BYTES = 64_000_000
 """Bytes of a file that is read. The largest evidence takes a fifth of that."""
 _WIDTH = 120
@@ -62,26 +65,14 @@ class Appeal(msgspec.Struct, frozen=True):
     seen: Kept
 
 
-class Opened(msgspec.Struct, frozen=True):
-    """A file that was read.
-
-    Attributes:
-        appeal: What it holds.
-        edited: Whether it was changed after it was written.
-    """
-
-    appeal: Appeal
-    edited: bool
-
-
 def dump(appeal: Appeal) -> bytes:
     """The file's content: JSON, an event a line."""
     content = plain(msgspec.to_builtins(appeal))
-    head = {"format": FORMAT, "about": ABOUT, "mark": _mark(content)}
+    head = {"format": FORMAT, "about": ABOUT}
     return ("\n".join(_lines({**head, **content}, "")) + "\n").encode()
 
 
-def read(path: Path) -> Opened:
+def read(path: Path) -> Appeal:
     """Read an appeal file.
 
     Raises:
@@ -108,19 +99,10 @@ def read(path: Path) -> Opened:
             f"{path} is JSON, but not an appeal file of this version of the course ({FORMAT}). "
             "`./course appeal CLASS STUDENT EXERCISE` writes one."
         )
-    content.pop("about", None)
-    mark = content.pop("mark", None)
     try:
-        appeal = msgspec.convert(restored(content), type=Appeal)
+        return msgspec.convert(restored(content), type=Appeal)
     except (ValueError, TypeError, RecursionError) as error:
-        raise BadAppeal(f"{path} was changed so that it is no appeal file any more: {error}") from error
-    return Opened(appeal, edited=mark != _mark(content))
-
-
-def _mark(content: Mapping[str, Any]) -> str:
-    """Changes with anything in the file, but not with its layout. It keeps nobody from writing a new one."""
-    text = json.dumps(content, sort_keys=True, separators=(",", ":"))
-    return hashlib.sha256(text.encode()).hexdigest()
+        raise BadAppeal(f"{path} is not as an appeal file is: {error}") from error
 
 
 def _lines(value: Any, indent: str, before: str = "", after: str = "") -> Iterator[str]:

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
+from autograder.cards.readable import printable
+
 if TYPE_CHECKING:
     from autograder.judge.verdicts.keeping import Kept
 
 
 def _fail(message: str) -> NoReturn:
-    click.echo(f"autograder: {message}", err=True)
+    click.echo(f"autograder: {printable(message)}", err=True)
     sys.exit(2)
 
 
@@ -32,7 +34,9 @@ def replay(file: Path, mcap: Path | None, bag: Path | None) -> None:
 
     Nothing of the student's is run, and no ROS node is started.
 
-    Exit code 0: the same verdict; 1: another one, or the file was edited; 2: it cannot be judged again.
+    A file proves nothing by itself: anybody can write one. Have `./course appeal` write it from the class.
+
+    Exit code 0: the same verdict; 1: another one; 2: it cannot be judged again.
     """
     from autograder.appeals import appeal_file, replaying, showing
 
@@ -40,17 +44,17 @@ def replay(file: Path, mcap: Path | None, bag: Path | None) -> None:
         for path in (mcap, bag):
             if path is not None:
                 check_name(path)
-        opened = appeal_file.read(file)
+        appeal = appeal_file.read(file)
         if mcap is not None:
-            click.echo(save_messages(opened.appeal.seen, mcap))
+            click.echo(save_messages(appeal.seen, mcap))
         if bag is not None:
-            click.echo(save_bag(opened.appeal.seen, bag))
-        again = replaying.replay(opened.appeal.seen)
+            click.echo(save_bag(appeal.seen, bag))
+        again = replaying.replay(appeal.seen)
     except (appeal_file.BadAppeal, replaying.CannotReplay) as error:
         _fail(str(error))
-    for line in showing.lines(opened, again):
-        click.echo(line)
-    sys.exit(1 if again.differences or opened.edited else 0)
+    for line in showing.lines(appeal, again):
+        click.echo(printable(line))
+    sys.exit(1 if again.differences else 0)
 
 
 def check_name(path: Path) -> None:

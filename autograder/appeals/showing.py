@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from autograder.appeals.appeal_file import Opened
+    from autograder.appeals.appeal_file import Appeal
     from autograder.appeals.replaying import Replay
     from autograder.verdict import Verdict
 
 
-def lines(opened: Opened, again: Replay) -> Iterator[str]:
+def lines(appeal: Appeal, again: Replay) -> Iterator[str]:
     """What came of a replay, the answer first."""
-    appeal, then = opened.appeal, again.then
+    then = again.then
     at = datetime.fromtimestamp(appeal.seen.at, tz=UTC)
     yield f"{then.exercise} by {appeal.student}, checked {at:%Y-%m-%d %H:%M:%S} UTC with course {appeal.course[:8]}"
     yield f"then: {_told(then)}"
@@ -25,9 +25,8 @@ def lines(opened: Opened, again: Replay) -> Iterator[str]:
         yield from (f"  {line}" for line in again.differences)
     else:
         yield "the same verdict, points and diagnosis"
-    if opened.edited:
-        yield "note: this file was changed after it was written; `./course appeal` writes the true one again"
     yield from (f"note: {note}" for note in again.notes)
+    yield "note: the file proves nothing by itself, anybody can write one; `./course appeal` writes it from the class"
 
 
 def _told(verdict: Verdict) -> str:

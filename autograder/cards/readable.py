@@ -21,6 +21,11 @@ _HARMLESS_FORMAT = frozenset("\u200c\u200d\u00ad")
 _NAMED_ESCAPES = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
+def printable(text: str) -> str:
+    """``text`` with whatever could forge a line or move the cursor shown as an escape; of any length."""
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
+
+
 def one_line(text: str, limit: int, *, mark: str = "…") -> str:
     """``text`` on one line, every control character written as an escape, cut in the middle to ``limit``.
 

@@ -15,6 +15,7 @@ from nbgrader.converters import Autograde, BaseConverter, GenerateFeedback, NbGr
 from rich.console import Console
 from traitlets.config import Application
 
+from autograder.cards.readable import printable
 from autograder.grading.asked_for import check_known
 from autograder.grading.batch import grade
 from autograder.grading.classes.class_directory import ClassDirectory, Submission, reason_against_name
@@ -22,7 +23,6 @@ from autograder.grading.classes.configuration import check_configuration
 from autograder.grading.entering.records import Records
 from autograder.grading.entering.writer import Writer
 from autograder.grading.errors import GradingError, clear_disk_errors
-from autograder.grading.reporting.report_table import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -25,6 +25,9 @@ def run(*words: object) -> tuple[int, str]:
     return result.exit_code, result.output
 
 
+FORGED = "ada\x1b[2J\nthe same verdict, points and diagnosis, forged\u202e"
+
+
 def edit(file: Path, change: Callable[[dict[str, Any]], object]) -> None:
     content = json.loads(file.read_text(encoding="utf-8"))
     change(content)
@@ -39,6 +42,7 @@ def test_the_same_verdict_ends_with_0(file: Path) -> None:
         "then: passed, 10 of 10 points",
         "now:  passed, 10 of 10 points",
         "the same verdict, points and diagnosis",
+        "note: the file proves nothing by itself, anybody can write one; `./course appeal` writes it from the class",
     ]
 
 
@@ -48,7 +52,7 @@ def test_an_edited_verdict_is_not_the_one_that_follows(file: Path) -> None:
     assert code == 1
     assert "state: was failed, is passed" in said
     assert "points: was 3 of 10, is 10 of 10" in said
-    assert "this file was changed after it was written" in said
+    assert "proves nothing by itself" in said
 
 
 def test_edited_evidence_is_judged_as_what_it_says(file: Path) -> None:
@@ -58,15 +62,33 @@ def test_edited_evidence_is_judged_as_what_it_says(file: Path) -> None:
     assert code == 1
     assert "now:  failed" in said
     assert "diagnosis: was none, is" in said
-    assert "was changed after it was written" in said
 
 
-def test_an_edit_that_changes_no_verdict_is_told_as_well(file: Path) -> None:
-    edit(file, lambda content: content.update(student="ben"))
-    code, said = run("replay", file)
-    assert code == 1
-    assert "the same verdict" in said
-    assert "was changed after it was written" in said
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda content: content.update(student=FORGED),
+        lambda content: content.update(course=FORGED),
+        lambda content: content["seen"]["verdict"].update(exercise=FORGED),
+        lambda content: content["seen"]["verdict"]["criteria"][0].update(name=FORGED),
+        lambda content: content["seen"].update(cut=FORGED),
+    ],
+)
+def test_a_forged_name_neither_begins_a_line_nor_reaches_the_terminal(
+    file: Path, change: Callable[[dict[str, Any]], object]
+) -> None:
+    edit(file, change)
+    _, said = run("replay", file)
+    assert "\x1b" not in said
+    assert not any(
+        line.startswith("the same verdict, points") and "forged" in line for line in said.splitlines()
+    )
+    assert "\u202e" not in said
+
+
+def test_what_is_printed_of_an_honest_file_with_a_forged_name_is_escaped(file: Path) -> None:
+    edit(file, lambda content: content.update(student=FORGED))
+    assert "ada\\x1b[2J\\nthe same verdict, points and diagnosis, forged\\u202e" in run("replay", file)[1]
 
 
 def test_another_reference_output_is_told(file: Path) -> None:

@@ -11,7 +11,6 @@ import functools
 import io
 import os
 import stat
-import struct
 import zipfile
 import zlib
 from dataclasses import dataclass
@@ -27,11 +26,13 @@ MOST_FILES = 20_000
 """In one archive or folder; a class of a thousand has a few thousand."""
 _MOST_UNPACKED = 4_000_000_000
 """Bytes that one archive may unpack to, as far as it says so itself."""
-_LARGEST_LIST = 30_000_000
-"""Bytes of an archive's list of files, which Python reads whole before anybody can count them."""
+_LARGEST_LIST = 8_000_000
+"""Bytes of an archive's list of files, which Python reads whole before anybody can count them: 400 a file."""
 _LARGEST_LIST_WITHIN = 300_000
 """The same for an archive that a student has handed in."""
-_MARK_OF_THE_END = b"PK\x05\x06"
+_OTHER_METHODS = {9: "Deflate64", 12: "bzip2", 14: "LZMA", 93: "Zstandard", 95: "xz", 98: "PPMd"}
+_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+"""Others (bzip2, LZMA) unpack a few hundred bytes to a gigabyte in one step, before anybody can stop them."""
 _NOBODYS = ("__MACOSX", ".git", ".ipynb_checkpoints", "__pycache__", ".DS_Store")
 
 
@@ -146,10 +147,11 @@ def _of_zip(
 ) -> Iterator[File | NotPlaced]:
     label = "/".join((source.name, *above))
     try:
-        _check_list(file, largest_list)
-        archive = zipfile.ZipFile(file)
+        bounded = _Bounded(file, largest_list)
+        archive = zipfile.ZipFile(bounded)
+        bounded.most = MAX_BYTES + 1  # from here on, the files themselves
         entries = [entry for entry in archive.infolist() if not entry.is_dir()]
-    except (NotTaken, zipfile.BadZipFile, ValueError, NotImplementedError, OSError) as error:
+    except (NotTaken, zipfile.BadZipFile, ValueError, NotImplementedError, OSError, EOFError) as error:
         yield NotPlaced(label, f"it is no zip file that can be read: {error}")
         return
     if len(entries) > MOST_FILES or sum(entry.file_size for entry in entries) > _MOST_UNPACKED:
@@ -173,18 +175,35 @@ def _of_zip(
             yield File(source, above, read, parts) if above else File(source, parts, read)
 
 
-def _check_list(file: BinaryIO, most: int) -> None:
-    """Refuse a list of files that would fill the memory before anybody could count them."""
-    size = file.seek(0, os.SEEK_END)
-    file.seek(max(0, size - 65_557))
-    tail = file.read()
-    place = tail.rfind(_MARK_OF_THE_END)
-    if place < 0 or len(tail) < place + 16:
-        raise NotTaken("its end is missing")
-    (listed,) = struct.unpack_from("<I", tail, place + 12)
-    if listed > most:
-        raise NotTaken(f"its list of files has {listed / 1e6:.0f} MB")
-    file.seek(0)
+class _Bounded:
+    """A file of which nobody reads more at once than a limit.
+
+    An archive may say several times how long its list of files is, and programs differ in which they believe. So the
+    limit is on what is really read.
+
+    Attributes:
+        most: Bytes that may be read at once.
+    """
+
+    def __init__(self, file: BinaryIO, most: int) -> None:
+        self._file = file
+        self.most = most
+        self.seek, self.tell, self.close = file.seek, file.tell, file.close
+
+    def read(self, size: int = -1) -> bytes:
+        """What ``read`` of any file gives.
+
+        Raises:
+            NotTaken: It is more than the limit.
+        """
+        data = self._file.read(self.most + 1 if size < 0 else min(size, self.most + 1))
+        if len(data) > self.most:
+            raise NotTaken(f"its list of files has more than {self.most / 1e6:.1f} MB")
+        return data
+
+    def seekable(self) -> bool:
+        """It can be read from any place."""
+        return True
 
 
 def _name_of(entry: zipfile.ZipInfo) -> str:
@@ -205,6 +224,9 @@ def _reason_against(entry: zipfile.ZipInfo, name: str, parts: tuple[str, ...]) -
         return "it is a link, or no ordinary file"
     if entry.flag_bits & 0x1:
         return "it is encrypted; ask for it without a password"
+    if entry.compress_type not in _METHODS:
+        method = _OTHER_METHODS.get(entry.compress_type, f"method {entry.compress_type}")
+        return f"it is packed with {method}, which is not unpacked here: pack it again as an ordinary zip (deflate)"
     if entry.file_size > MAX_BYTES and parts[-1].lower().endswith((".ipynb", ".zip")):
         return f"it unpacks to {entry.file_size / 1e6:.0f} MB; the limit is {MAX_BYTES / 1e6:.0f} MB"
     return ""
@@ -214,7 +236,15 @@ def _read_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
     try:
         with archive.open(entry) as file:
             data = file.read(MAX_BYTES + 1)
-    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, RuntimeError, NotImplementedError) as error:
+    except (
+        NotTaken,
+        zipfile.BadZipFile,
+        zlib.error,
+        EOFError,
+        OSError,
+        RuntimeError,
+        NotImplementedError,
+    ) as error:
         raise NotTaken(f"it cannot be unpacked: {error}") from error
     if len(data) > MAX_BYTES:
         raise NotTaken(f"it unpacks to more than {MAX_BYTES / 1e6:.0f} MB")

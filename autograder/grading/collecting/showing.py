@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from autograder.grading.reporting.report_table import printable
+from autograder.cards.readable import printable
 
 if TYPE_CHECKING:
     from autograder.grading.collecting.collect import CollectReport

@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from autograder.cards.readable import printable
 from autograder.grading.reporting.report import LATE, NOT_SUBMITTED, WAITS, columns
 from autograder.grading.task import UNREADABLE
 from autograder.verdict import State
@@ -176,11 +177,6 @@ def _unreadable(report: GradeReport) -> list[tuple[str, str]]:
         if row.diagnosis == UNREADABLE and (row.student, row.assignment) not in refused
     }
     return list(reasons.items())
-
-
-def printable(text: str) -> str:
-    """``text`` with whatever could forge a line or move the cursor shown as an escape."""
-    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 
 def _cell(row: Row | None, diagnoses: bool) -> Text:

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from autograder.grading.reporting.report_table import printable
+from autograder.cards.readable import printable
 from autograder.grading.similarity.wording import HINT, nothing_found, percent, place
 
 if TYPE_CHECKING:

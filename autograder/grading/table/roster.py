@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import io
+import itertools
 import unicodedata
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 from autograder.grading.classes.class_directory import ClassDirectory, reason_against_name
 from autograder.grading.entering.database import has_tables, opened, sql
 from autograder.grading.errors import GradingError
+from autograder.grading.reporting.spreadsheet import csv_rows
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -146,18 +146,17 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
         return []
     except (OSError, UnicodeDecodeError) as error:
         raise RosterError(f"{path} cannot be read: {error}. Save it as CSV in UTF-8.") from error
-    first = text.partition("\n")[0]
-    reader = csv.DictReader(io.StringIO(text), delimiter=";" if first.count(";") > first.count(",") else ",")
-    columns = [(name or "").strip().lower() for name in reader.fieldnames or ()]
-    reader.fieldnames = columns
+    header, *rows = csv_rows(text) or [[]]
+    columns = [name.strip().lower() for name in header]
     if "id" not in columns:
         raise RosterError(
             f"{path} has no column named id. Its first line has to name its columns: id, and as far as you have "
             f"them {', '.join((*_OWN[1:], *LMS))}."
         )
     found: dict[str, Student] = {}
-    for row in reader:
-        values = {name: unicodedata.normalize("NFC", (row.get(name) or "").strip()) for name in columns}
+    for line, row in enumerate(rows, 2):
+        cells = itertools.zip_longest(columns, row[: len(columns)], fillvalue="")
+        values = {name: unicodedata.normalize("NFC", cell.strip()) for name, cell in cells}
         if not any(values.values()):
             continue
         name = values["id"]
@@ -165,7 +164,7 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
         if name in found:
             reason = f"the id {name} stands there twice"
         if reason:
-            raise RosterError(f"{path}, line {reader.line_num}: {reason}.")
+            raise RosterError(f"{path}, line {line}: {reason}.")
         lms = {system: values[system] for system in LMS if values.get(system)}
         found[name] = Student(
             name, values.get("first_name", ""), values.get("last_name", ""), values.get("email", ""), lms

@@ -59,7 +59,7 @@ def kept(tiny: TinyClass, student: str = "ada") -> dict[str, bytes]:
 def test_everything_about_the_check_is_in_the_file_and_it_is_judged_the_same(graded: TinyClass) -> None:
     file = write_appeal(graded.path, "ada", ID)
     assert file == graded.path / "appeals" / "ada-lab_1_2.talker.json"
-    appeal = appeal_file.read(file).appeal
+    appeal = appeal_file.read(file)
     assert (appeal.student, appeal.assignment, appeal.notebook) == ("ada", "lab_1_2", "lab_1_2")
     assert appeal.course == "test"
     assert [(cell.cell, cell.text) for cell in appeal.solution] == [
@@ -82,7 +82,7 @@ def test_where_a_person_says_so_the_file_is_somewhere_else(graded: TinyClass, tm
     words = ["appeal", str(graded.path), "ada", ID, "-o", str(tmp_path / "here.json")]
     done = CliRunner().invoke(cli, words)
     assert (done.exit_code, done.output.strip()) == (0, str(tmp_path / "here.json"))
-    assert appeal_file.read(tmp_path / "here.json").appeal.student == "ada"
+    assert appeal_file.read(tmp_path / "here.json").student == "ada"
     assert CliRunner().invoke(cli, [*words[:-1], str(tmp_path)]).exit_code == 2
 
 
@@ -90,7 +90,7 @@ def test_a_course_that_expects_something_else_since_does_not_say_what_was_expect
     graded: TinyClass, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(reference, "digest", lambda _: "another")
-    assert appeal_file.read(write_appeal(graded.path, "ada", ID)).appeal.expected is None
+    assert appeal_file.read(write_appeal(graded.path, "ada", ID)).expected is None
 
 
 @pytest.mark.parametrize(

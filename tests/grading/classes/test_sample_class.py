@@ -80,7 +80,7 @@ def test_each_check_that_began_can_be_appealed_and_is_judged_the_same_again(grad
         except GradingError as error:
             refused[row.diagnosis] = str(error)
             continue
-        seen = appeal_file.read(file).appeal.seen
+        seen = appeal_file.read(file).seen
         again = replaying.replay(seen)
         assert (again.differences, again.notes) == ([], []), row
         diagnosis = seen.verdict.diagnosis.key if seen.verdict.diagnosis else ""

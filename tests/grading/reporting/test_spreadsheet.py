@@ -12,8 +12,11 @@ from typing import TYPE_CHECKING
 import pytest
 from nbgrader.api import Gradebook
 
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.exporting.export import export
 from autograder.grading.reporting.report import Row, write_csv
-from autograder.grading.reporting.spreadsheet import csv_text, defused
+from autograder.grading.reporting.spreadsheet import csv_rows, csv_text, defused
+from autograder.grading.table.roster import read_students_csv
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -93,3 +96,26 @@ def test_plain_nbgrader_export_is_defused_too(tiny: TinyClass, fake_engine: Fake
         ("'-ada", "'=cmd,\" +1", "'@x", "14", "20"),
         ("ben", "", "", "0", "20"),
     }
+
+
+@pytest.mark.parametrize("student", ["+1+1", "-2+3", "@SUM", "-5"])
+def test_an_id_that_looks_like_a_formula_goes_out_defused_and_comes_back_as_it_is(
+    tiny: TinyClass, fake_engine: FakeEngine, student: str
+) -> None:
+    tiny.submit(student, 4, 2)
+    tiny.grade()
+    tables = {path: path.read_text("utf-8-sig") for path in [tiny.path / "grades.csv", *exported(tiny)]}
+    for path, text in tables.items():
+        cells = [cell for row in csv.reader(io.StringIO(text)) for cell in row]
+        assert f"'{student}" in cells, path
+        assert student not in cells, path
+        assert any(student in row for row in csv_rows(text)), path
+    # A table that this program wrote is a list of students again.
+    (tiny.path / "students.csv").write_text(f"id,first_name\n{defused(student)},Ada\n")
+    assert [one.id for one in read_students_csv(ClassDirectory(tiny.path))] == [student]
+
+
+def exported(tiny: TinyClass) -> list[Path]:
+    """What each export that is CSV writes."""
+    files = [file for to in ("csv", "canvas", "moodle") for file, _ in export(tiny.path, to).files]
+    return [file for file in files if file.suffix == ".csv" and file.name != "moodle-lab_1_2.csv"]
