@@ -20,6 +20,8 @@ LONGEST = 120
 """Characters of a text that is compared: comparing takes time in proportion to the square."""
 _QUOTED = re2.compile("“([^“”]*)”")
 _BLANK = "␣"
+_PLACE = "N"
+"""Stands for any whole number in what is expected."""
 
 
 class DiffTag(StrEnum):
@@ -72,8 +74,10 @@ def _pieces(expected: str, seen: str) -> tuple[Piece, ...]:
         return ()
     found = []
     for operation, a1, a2, b1, b2 in matcher.get_opcodes():
-        if operation == "equal":
-            found.append(Piece(DiffTag.SAME, expected[a1:a2]))
+        fills_in = expected[a1:a2] == _PLACE and seen[b1:b2].isdigit()
+        if operation == "equal" or fills_in:
+            found.append(Piece(DiffTag.SAME, seen[b1:b2]))
+            continue
         if operation in ("delete", "replace"):
             found.append(Piece(DiffTag.MISSING, expected[a1:a2]))
         if operation in ("insert", "replace"):

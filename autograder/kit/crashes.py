@@ -52,13 +52,16 @@ KNOWN = (
     ),
     Crash(
         "not_initialized",
-        r"NotInitializedException|rclpy\.init has not been called|context (?:must be initialized|is not valid)",
+        r"NotInitializedException|rclpy\.init has not been called|context (?:must be initialized|is not valid)"
+        # An executor that was made before: spinning makes one.
+        r"|guard_condition\.py\".*\n.*self\._context\.handle",
         "The node was made before ROS was started, or after it was shut down.",
         "Call rclpy.init() first (in a notebook: start_ros()) and make nodes only after it.",
     ),
     Crash(
         "super_init_missing",
         r"no attribute '_(?:Node__|default_callback_group|parameter|context|logger|handle)"
+        r"|rclpy/node\.py\".*\n(?: .*\n){1,2}AttributeError: '\w+' object has no attribute '_"
         r"|descriptor '__init__' (?:requires|of) .*'super'",
         "The class uses the Node before the Node was set up: super().__init__('a_name') is missing or comes "
         "too late.",
@@ -330,8 +333,9 @@ def what_and_where(traceback: str) -> str:
     last = [line for line in traceback.splitlines() if line[:1].strip()][-1:]
     frames = [found for found in _FRAME.finditer(traceback) if not _is_a_library(found["file"])]
     where = f" (line {frames[-1]['line']}, in {frames[-1]['function']})" if frames else ""
-    what = "an exception" if not last or last[0].startswith("Traceback") else last[0].strip()
-    return f"{what}{where}"
+    if not last or last[0].startswith("Traceback"):
+        return f"another of its threads ended it before it had said which{where}"
+    return f"{last[0].strip()}{where}"
 
 
 _FRAME = re2.compile(r'(?m)^ +File "(?P<file>[^"\n]*)", line (?P<line>\d+), in (?P<function>[^\n]*)$')

@@ -104,8 +104,12 @@ INTERRUPTED = "Ctrl-C"
 """The name of the event that stands where the judge has pressed Ctrl-C."""
 
 
+_TRACEBACK = "Traceback (most recent call last)"
+_IGNORED = "Exception ignored in"
+"""How Python begins what a destructor raised: it has stopped nothing, and often follows from what did."""
 _OF_A_TRACEBACK = (
     "Exception in thread ",
+    _IGNORED,
     "terminate called ",
     "Fatal Python error: ",
     "Extension modules: ",
@@ -131,7 +135,7 @@ def _without_tracebacks(events: Sequence[Event]) -> Iterator[tuple[int, Event]]:
             line = str(event.data["text"])
             if line.startswith(_OF_A_TRACEBACK) or (line[:1].isspace() and _FRAME.match(line)):
                 continue
-            if inside.get(event.name) or line.startswith("Traceback (most recent call last)"):
+            if inside.get(event.name) or line.startswith(_TRACEBACK):
                 inside[event.name] = line.startswith(("Traceback", " ", "\t")) or not line
                 continue
         yield place, event
@@ -185,9 +189,14 @@ def _is_the_middlewares(text: str) -> bool:
 def _traceback_in(lines: Sequence[str]) -> str:
     """The last Python traceback among lines of output, the way a terminal shows it.
 
-    One that was cut off, as where the process died while it was printed, only counts where there is no other.
+    One that was cut off, as where the process died while it was printed, or where another thread printed its own in
+    between, only counts where there is no other.
     """
-    starts = [i for i, line in enumerate(lines) if line.startswith("Traceback (most recent call last)")]
+    starts = [
+        i
+        for i, line in enumerate(lines)
+        if line.startswith(_TRACEBACK) and not (i and lines[i - 1].startswith(_IGNORED))
+    ]
     syntax = [i for i, line in enumerate(lines) if line.startswith("  File ") and i not in starts]
     if not starts:
         # A SyntaxError in the program itself is shown without the word "Traceback".
@@ -198,7 +207,8 @@ def _traceback_in(lines: Sequence[str]) -> str:
         ]
         return "\n".join(lines[syntax[0] : ends[-1] + 1]) if ends and syntax else ""
     found = [_traceback_at(lines, start) for start in starts]
-    complete = [taken for taken in found if len(taken) > 1 and not taken[-1].startswith((" ", "\t"))]
+    cut_off = (" ", "\t", _TRACEBACK, *_OF_A_TRACEBACK)
+    complete = [taken for taken in found if len(taken) > 1 and not taken[-1].startswith(cut_off)]
     return "\n".join((complete or found)[-1])
 
 

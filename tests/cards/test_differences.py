@@ -31,5 +31,10 @@ def test_has_nothing_to_say_of_what_holds() -> None:
     assert between("“a b c d”", "“a b c”", passed=True) == ""
 
 
+def test_the_place_of_a_number_is_no_difference_where_a_number_is() -> None:
+    assert between("“holds at N percent”", "“hold at 11 percent”") == "hold[s] at 11 percent"
+    assert between("“holds at N”", "“holds at n”") == "holds at [N]{n}"
+
+
 def test_long_texts_are_not_compared() -> None:
     assert between(f"“{'ab' * 5000}”", f"“{'ab' * 4999}”") == ""

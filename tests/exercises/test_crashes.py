@@ -239,6 +239,49 @@ def test_a_traceback_that_was_cut_off_is_not_quoted() -> None:
     assert "File" not in advice.text
 
 
+def test_of_two_tracebacks_that_two_threads_print_at_once_the_place_is_told_and_no_exception_made_up() -> None:
+    other = ["Traceback (most recent call last):", '  File "race.py", line 114, in work']
+    advice = next(filter(None, (m.recognise(_shown(["    spin()", *other])) for m in OTHER_CRASHES)))
+    assert advice.text.endswith("another of its threads ended it before it had said which (line 114, in work)")
+
+
+DESTRUCTOR = [
+    "Exception ignored in: <function Executor.__del__ at 0x7f46>",
+    "Traceback (most recent call last):",
+    '  File "/opt/ros/jazzy/rclpy/executors.py", line 257, in __del__',
+    "    if self._sigint_gc is not None:",
+    "AttributeError: 'SingleThreadedExecutor' object has no attribute '_sigint_gc'",
+]
+
+
+@pytest.mark.parametrize(
+    ("lines", "key"),
+    [
+        (
+            [
+                '  File "/opt/ros/jazzy/rclpy/guard_condition.py", line 23, in __init__',
+                "    with self._context.handle:",
+                f"TypeError: 'NoneType' {NO_CONTEXT}",
+            ],
+            "not_initialized",
+        ),
+        (
+            [
+                '  File "/opt/ros/jazzy/rclpy/node.py", line 1952, in destroy_node',
+                "    while self._publishers:",
+                "          ^^^^^^^^^^^^^^^^",
+                "AttributeError: 'Talker' object has no attribute '_publishers'. Did you mean: 'publishers'?",
+            ],
+            "super_init_missing",
+        ),
+    ],
+)
+def test_what_a_destructor_raised_does_not_hide_what_ended_the_program(lines: list[str], key: str) -> None:
+    shown = _shown([*lines, *DESTRUCTOR])
+    assert next(m.key for m in (*CRASHES, *OTHER_CRASHES) if m.recognise(shown)) == key
+    assert not shown.main.said()
+
+
 def test_what_a_thread_says_at_a_shutdown_is_no_crash() -> None:
     for last in ("rclpy.executors.ExternalShutdownException", "rclpy.exceptions.ROSInterruptException: over"):
         assert not any(m.recognise(_shown(["    spin()", last])) for m in (*CRASHES, *OTHER_CRASHES))

@@ -52,6 +52,17 @@ def test_the_reference_itself_passes() -> None:
     assert all(criterion.judge(evidence).passed for criterion in talker.EXERCISE.criteria)
 
 
+@pytest.mark.parametrize(("ended", "known"), [(None, True), (2.5, True), (0.3, False)])
+def test_a_publisher_whose_qos_does_not_fit_was_there_whether_it_goes_on_or_not(
+    ended: float | None, known: bool
+) -> None:
+    misfit = Event(0.24, "mismatch", TOPIC, {"policy": "reliability"})
+    exited = [Event(ended, "subject", "exited", {"code": 0})] if ended else []
+    seen = _evidence([misfit, *exited])
+    assert judged("topic", seen) is known
+    assert judged("type", seen) is known
+
+
 def test_a_first_message_that_nobody_could_hear_is_forgiven() -> None:
     assert judged("counter", _evidence(_messages(list(range(1, 21)), 0.5, first=2)))
 

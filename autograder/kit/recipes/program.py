@@ -171,5 +171,5 @@ class Program:
             *common.CRASHES,
             *common.OTHER_CRASHES,
             OWN_LATE,
-            *common.NOTHING_THERE[:2],
+            *common.NOTHING_THERE[:3],
         )

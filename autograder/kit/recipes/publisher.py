@@ -101,10 +101,14 @@ class Publisher:
         """Its publishers, topic -> type; none of a program that has ended at once.
 
         Whether the graph showed those before they were gone is a matter of chance. A notebook's class is held until
-        they are known.
+        they are known, and one whose QoS does not fit was there when that was noticed.
         """
+        ending, misfit = self.part.ending, self.part.first("mismatch", self.topic)
         met = (
-            self.part.ending is None or self.part.first("subject", "constructed") is not None or self.went_on
+            ending is None
+            or self.part.first("subject", "constructed") is not None
+            or self.went_on
+            or (misfit is not None and ending.t - misfit.t >= BURST)
         )
         return self.part.endpoints("publisher") if met else {}
 
