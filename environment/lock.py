@@ -48,7 +48,6 @@ _PURPOSE = {
     "cluster": "What grading on a Dask cluster needs besides.",
     "postgresql": "What a gradebook in PostgreSQL needs besides.",
 }
-_INPUTS_LINE = re.compile(r"^# inputs sha256:([0-9a-f]{64})$", re.MULTILINE)
 _BLOCK_START = re.compile(r"^([A-Za-z0-9][A-Za-z0-9._-]*)==")
 
 
@@ -66,12 +65,6 @@ def inputs_digest(root: Path = ROOT) -> str:
         wanted = [line.strip() for line in text.splitlines() if line.strip() and not line.startswith("#")]
         digest.update(repr(sorted(wanted)).encode())
     return digest.hexdigest()
-
-
-def recorded_digest(lock: str) -> str | None:
-    """Return the digest that the text of a lock file says it was made from, or None if it says nothing."""
-    found = _INPUTS_LINE.search(lock)
-    return found.group(1) if found else None
 
 
 def split_blocks(lock: str) -> list[tuple[str, str]]:

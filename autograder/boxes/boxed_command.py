@@ -33,11 +33,6 @@ class Finished:
     cut: bool
     seconds: float
 
-    @property
-    def timed_out(self) -> bool:
-        """Whether it was ended at its limit."""
-        return self.returncode is None
-
 
 class Running:
     """A command that runs in a box; leaving the context ends it and all that it has started."""

@@ -122,13 +122,3 @@ def install(venv: Path) -> None:
     _write(packages / _PTH, f"import {_HOOK}; {_HOOK}.begin()\n")
     program = _shebang(venv.absolute() / "bin" / "python") + _PROGRAM.format(root=str(ROOT))
     _write(venv / "bin" / "ros2", program, executable=True)
-
-
-def uninstall(venv: Path) -> None:
-    """Remove what `install` has written, and nothing else."""
-    packages = _site_packages(venv)
-    program = venv / "bin" / "ros2"
-    for path in (packages / f"{_HOOK}.py", packages / _PTH):
-        path.unlink(missing_ok=True)
-    if program.exists() and b"environment.ros2_command" in program.read_bytes():
-        program.unlink()

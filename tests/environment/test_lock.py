@@ -16,7 +16,6 @@ from environment.lock import (
     ROOT,
     cut,
     inputs_digest,
-    recorded_digest,
     split_blocks,
 )
 
@@ -60,7 +59,8 @@ def test_what_two_extras_need_is_in_the_lock_of_each() -> None:
 
 @pytest.mark.parametrize("name", LOCKS)
 def test_a_lock_is_in_step_with_its_inputs(name: str) -> None:
-    assert recorded_digest(lock_text(name)) == inputs_digest(), "run: python3 -m environment.lock"
+    inputs = f"# inputs sha256:{inputs_digest()}"
+    assert inputs in lock_text(name).splitlines(), "run: python3 -m environment.lock"
 
 
 def test_a_changed_dependency_changes_the_digest_and_another_edit_does_not(tmp_path: Path) -> None:

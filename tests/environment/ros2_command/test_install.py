@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from environment.ros2_command.install import LAUNCH_FRONT, install, uninstall
+from environment.ros2_command.install import LAUNCH_FRONT, install
 from environment.ros2_command.real_installation import find_real_command
 
 if TYPE_CHECKING:
@@ -136,15 +136,6 @@ def test_installing_again_changes_nothing(fresh: Path) -> None:
     assert len(before) == 3
     install(fresh)
     assert state() == before
-
-
-def test_uninstalling_leaves_what_is_not_ours(fresh: Path) -> None:
-    uninstall(fresh)
-    assert "No module named 'launch'" in python(fresh, "import launch")
-    assert not (fresh / "bin/ros2").exists()
-    (fresh / "bin/ros2").write_text("#!/bin/sh\n")
-    uninstall(fresh)
-    assert (fresh / "bin/ros2").exists()
 
 
 def test_what_is_no_environment_is_named(tmp_path: Path) -> None:
