@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.judge.subjects.command import check_command
+from autograder.judge.subjects.command import check_and_keep
 from autograder.masters.layout import masters
 from autograder.masters.magics import WrittenFile, written_file
 from autograder.masters.parsing import CellRole
@@ -44,7 +44,7 @@ def program(sources: list[str], subject: str) -> WrittenFile:
 def test_the_program_earns_full_marks(master: Path, exercise: str, subject: str, tmp_path: Path) -> None:
     file = tmp_path / "program.py"
     file.write_text(program([named.cell.source for named in named_cells(master)], subject).text)
-    verdict = check_command(exercise, [sys.executable, str(file)], cwd=tmp_path)
+    verdict, _ = check_and_keep(exercise, [sys.executable, str(file)], cwd=tmp_path)
     assert verdict.passed, verdict
 
 

@@ -39,14 +39,14 @@ SPARE = 10.0
 """Seconds beyond an exercise's own limit before its judge is taken to have died."""
 
 
-def check_command(
+def check_and_keep(
     exercise_id: str,
     command: Sequence[str],
     *,
     seed: str | None = None,
     cwd: Path | None = None,
     box: Box | None = None,
-) -> Verdict:
+) -> tuple[Verdict, bytes]:
     """Run a command as the subject of an exercise.
 
     Args:
@@ -57,26 +57,12 @@ def check_command(
         box: Where to run it, shut off from the user's files and network; with all rights of the user where None.
 
     Returns:
-        The verdict; its state is ``not_checked`` when the judge itself had trouble.
+        The verdict, and the evidence as :mod:`autograder.judge.verdicts.keeping` packs it. Where the judge itself had
+        trouble, the verdict's state is ``not_checked`` and the evidence is empty.
 
     Raises:
         UnknownExercise: No exercise has this id.
         CommandNotFound: There is no such program.
-    """
-    return check_and_keep(exercise_id, command, seed=seed, cwd=cwd, box=box)[0]
-
-
-def check_and_keep(
-    exercise_id: str,
-    command: Sequence[str],
-    *,
-    seed: str | None = None,
-    cwd: Path | None = None,
-    box: Box | None = None,
-) -> tuple[Verdict, bytes]:
-    """Like :func:`check_command`, with the evidence as :mod:`autograder.judge.verdicts.keeping` packs it.
-
-    It is empty where the judge itself had trouble.
     """
     exercise = exercises.get(exercise_id)
     if not is_path(exercise, command, cwd) and shutil.which(command[0], path=_search_path(cwd)) is None:
