@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import course
-from autograder.grading.running.pacing import cores
+from autograder.grading.running.engine import cores
 from benchmarks import figures, results
 from benchmarks.box_start import measure_box_start
 from benchmarks.classes import BenchmarkClass, make_class

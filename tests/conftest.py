@@ -84,7 +84,7 @@ def pytest_xdist_auto_num_workers() -> int:
 
     With one more of them the processors were busy all the time, and did each thing more slowly: nothing was gained.
     """
-    from autograder.grading.running.pacing import cores
+    from autograder.grading.running.engine import cores
 
     return cores() + 1
 

@@ -27,7 +27,7 @@ def build(only_check: bool) -> None:
 @click.option(
     "--jobs",
     type=click.IntRange(min=1),
-    help="Notebooks at once; as many as load and memory allow where not given.",
+    help="Notebooks at once; as many as processors and memory allow where not given.",
 )
 @click.option(
     "--reports", type=click.Path(path_type=Path), help="Keep the pages about failed notebooks in this folder."

@@ -98,7 +98,7 @@ def collect(folder: Path, files: tuple[Path, ...], assignment: str, timezone: st
 @click.option(
     "--jobs",
     type=click.IntRange(min=1),
-    help="Notebooks at once; as many as load and memory allow where not given.",
+    help="Notebooks at once; as many as processors and memory allow where not given.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
 @click.option(

@@ -58,7 +58,7 @@ def execute_command(
     Args:
         root: The folder with ``solutions`` and ``chapters``.
         only: Names such as ``"lab_1_2"``; all notebooks where empty.
-        jobs: Notebooks at once; as many as load and memory allow by default.
+        jobs: Notebooks at once; as many as processors and memory allow by default.
         reports: Where the page about a notebook that failed is kept; pages of an earlier run are removed.
         console: Where progress and result are shown; standard error by default.
 
@@ -99,7 +99,7 @@ def execute_all(
     Args:
         planned: What to execute.
         reports: Where the page about a notebook that failed is kept.
-        jobs: Notebooks at once; as many as load and memory allow by default.
+        jobs: Notebooks at once; as many as processors and memory allow by default.
         console: Where progress is shown.
         judge: What makes a judge, as ``module:class``.
 

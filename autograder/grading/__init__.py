@@ -66,7 +66,7 @@ def grade(
         assignments: Only these; all by default.
         students: Only these; all by default.
         again: Execute everything anew, also what is unchanged.
-        jobs: Notebooks executed at once; as many as load and memory allow by default.
+        jobs: Notebooks executed at once; as many as processors and memory allow by default.
         unsafe_no_sandbox: Run submissions with all rights of whatever process executes them.
         scheduler: The address of a Dask scheduler whose workers execute the notebooks; this machine by default.
         dry_run: Enter nothing, and say who would get other points.

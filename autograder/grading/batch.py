@@ -76,7 +76,7 @@ def grade(
         path: The class directory.
         assignments: Only these; all by default.
         students: Only these; all by default.
-        jobs: Notebooks executed at once; as many as load and memory allow by default.
+        jobs: Notebooks executed at once; as many as processors and memory allow by default.
         again: Execute everything anew, also what is unchanged.
         feedback: Make the pages that go back to the students.
         console: Where progress is shown; standard error by default.

@@ -1,8 +1,9 @@
-"""Executing tasks side by side, each in a worker process of its own, as many at once as the machine bears."""
+"""Executing tasks side by side, each in a worker process of its own, as many at once as the machine has memory for."""
 
 from __future__ import annotations
 
 import contextlib
+import os
 import queue
 import threading
 import time
@@ -11,8 +12,8 @@ from typing import TYPE_CHECKING
 
 import psutil
 
+from autograder.boxes.limits import Limits
 from autograder.boxes.scratch import remove_tree
-from autograder.grading.running.pacing import TICK, Gate, Machine, Pace, cores
 from autograder.grading.running.worker import JUDGE
 from autograder.grading.running.worker_process import GOODBYE_SECONDS, WorkerProcess
 
@@ -23,7 +24,27 @@ if TYPE_CHECKING:
     from autograder.boxes.execution import Execution
     from autograder.grading.task import Task
 
-__all__ = ["Done", "execute_all"]
+_PER_CORE = 4
+"""A notebook mostly waits: for a timer, for a discovery, for a program to start."""
+BOX_BYTES = Limits().beside_bytes + 150_000_000
+"""Memory that one more notebook may take: its box, its judge and its worker."""
+_RESERVE_BYTES = 1_000_000_000
+_BUILD_BYTES = 500_000_000
+"""Memory that a build takes; enough is kept for one build on each processor."""
+
+
+def cores() -> int:
+    """Processors that this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+def at_once(processors: int, free_bytes: int) -> int:
+    """Notebooks that run at once by default, never more than have memory if each takes all of its share.
+
+    A submission that needs more than its share is executed again, alone.
+    """
+    room = free_bytes - _RESERVE_BYTES - processors * _BUILD_BYTES
+    return max(1, min(processors * _PER_CORE, room // BOX_BYTES))
 
 
 @dataclass(frozen=True)
@@ -49,22 +70,16 @@ def execute_all(
     Args:
         tasks: In the order in which they are begun; each is asked for, from a thread, when there is a place for it.
         scratch: Where submissions run; emptied at the end.
-        workers: How many run at once; found out while they run where it is None.
+        workers: How many run at once; as many as :func:`at_once` says where it is None.
         on_start: Called from a thread when a task is begun.
         judge: What makes a judge, as ``module:class``.
     """
-    pace = Pace(cores(), psutil.virtual_memory().available)
-    gate = Gate(workers or pace.first)
-    crew = _Crew(_Feed(tasks), scratch, gate, judge, on_start, beside=workers != 1)
-    pacer = None if workers else _Pacer(crew, pace)
+    workers = workers or at_once(cores(), psutil.virtual_memory().available)
+    crew = _Crew(_Feed(tasks), scratch, workers, judge, on_start)
     try:
-        crew.fill()
-        if pacer is not None:
-            pacer.start()
+        crew.start()
         yield from crew.results()
     finally:
-        if pacer is not None:
-            pacer.stop()
         crew.end()
         with contextlib.suppress(OSError):
             remove_tree(scratch)
@@ -116,36 +131,28 @@ class _Crew:
     """The workers of a run, each with a thread that speaks with it."""
 
     def __init__(
-        self,
-        feed: _Feed,
-        scratch: Path,
-        gate: Gate,
-        judge: str,
-        on_start: Callable[[Task], None],
-        *,
-        beside: bool,
+        self, feed: _Feed, scratch: Path, number: int, judge: str, on_start: Callable[[Task], None]
     ) -> None:
-        self.feed, self.gate = feed, gate
-        self._scratch, self._judge, self._on_start = scratch, judge, on_start
-        self._beside = beside
+        self._feed, self._scratch, self._number = feed, scratch, number
+        self._judge, self._on_start = judge, on_start
         # None says that a thread has found nothing more to do, so that who waits for results looks again.
         self._done: queue.SimpleQueue[Done | BaseException | None] = queue.SimpleQueue()
         self._threads: list[_WorkerThread] = []
 
-    def fill(self) -> None:
-        """Have as many threads as may be at work. From one thread at a time."""
-        while len(self._threads) < self.gate.allowed and not self.feed.exhausted:
-            worker = WorkerProcess(self._scratch / str(len(self._threads)), judge=self._judge)
-            thread = _WorkerThread(
-                worker, self.feed, self.gate, self._done, self._on_start, beside=self._beside
-            )
-            self._threads.append(thread)
-            thread.start()
+    def start(self) -> None:
+        """Begin with the first tasks."""
+        for number in range(self._number):
+            worker = WorkerProcess(self._scratch / str(number), judge=self._judge)
+            beside = self._number > 1
+            self._threads.append(_WorkerThread(worker, self._feed, self._done, self._on_start, beside=beside))
+            self._threads[-1].start()
+            if self._feed.exhausted:
+                break
 
     def results(self) -> Iterator[Done]:
         """Results until the last task is done."""
         received = 0
-        while not (self.feed.exhausted and received == self.feed.taken):
+        while not (self._feed.exhausted and received == self._feed.taken):
             result = self._done.get()
             if isinstance(result, BaseException):
                 raise result
@@ -155,8 +162,7 @@ class _Crew:
 
     def end(self) -> None:
         """End every worker and what it runs."""
-        self.feed.exhausted = True
-        self.gate.close()
+        self._feed.exhausted = True
         for thread in self._threads:
             thread.worker.stop()
         deadline = time.monotonic() + GOODBYE_SECONDS
@@ -175,7 +181,6 @@ class _WorkerThread(threading.Thread):
         self,
         worker: WorkerProcess,
         feed: _Feed,
-        gate: Gate,
         done: queue.SimpleQueue[Done | BaseException | None],
         on_start: Callable[[Task], None],
         *,
@@ -184,19 +189,13 @@ class _WorkerThread(threading.Thread):
         super().__init__(daemon=True)
         self.worker = worker
         self._beside = beside
-        self._feed, self._gate, self._done, self._on_start = feed, gate, done, on_start
+        self._feed, self._done, self._on_start = feed, done, on_start
 
     def run(self) -> None:
         """The thread's life."""
         try:
-            while self._gate.enter():
-                try:
-                    given = self._feed.next()
-                    if given is None:
-                        return
-                    self._execute(*given)
-                finally:
-                    self._gate.leave()
+            while not self.worker.stopping and (given := self._feed.next()) is not None:
+                self._execute(*given)
         except BaseException as error:  # the main thread waits for results: tell it
             self._done.put(error)
         finally:
@@ -217,25 +216,3 @@ class _WorkerThread(threading.Thread):
                 self._done.put(Done(task, execution))
         finally:
             self._feed.done(again)
-
-
-class _Pacer(threading.Thread):
-    """Lets more or fewer run at once, by what the machine says."""
-
-    def __init__(self, crew: _Crew, pace: Pace) -> None:
-        super().__init__(daemon=True)
-        self._crew, self._pace = crew, pace
-        self._stopped = threading.Event()
-
-    def run(self) -> None:
-        """The thread's life."""
-        pace, machine, gate = self._pace, Machine(), self._crew.gate
-        while not self._stopped.wait(TICK) and not self._crew.feed.exhausted:
-            all_at_work = gate.inside >= gate.allowed
-            gate.allow(pace.next(gate.allowed, machine.look(), all_at_work=all_at_work))
-            self._crew.fill()
-
-    def stop(self) -> None:
-        """Change nothing any more."""
-        self._stopped.set()
-        self.join()

@@ -39,7 +39,7 @@ def here(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[Ex
 
     Args:
         directory: The class.
-        jobs: Notebooks at once; as many as load and memory allow where it is None.
+        jobs: Notebooks at once; as many as processors and memory allow where it is None.
         judge: What makes a judge, as ``module:class``; the real one where empty.
     """
     from autograder.grading.running import engine

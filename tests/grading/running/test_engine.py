@@ -1,4 +1,4 @@
-"""What could not be checked, or needs more memory than its share, is executed once more, when nobody else is."""
+"""How many tasks are executed at once, and which of them are executed once more, when nobody else is."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class WorkerProcesses:
 
 @pytest.fixture
 def run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
-    def made(answer: Callable[[Task, int], Execution], students: str, workers: int = 3) -> Any:
+    def made(answer: Callable[[Task, int], Execution], students: str, workers: int | None = 3) -> Any:
         processes = WorkerProcesses(answer)
         monkeypatch.setattr(engine, "WorkerProcess", processes)
         tasks = [Task(student, "lab", "lab", (), "0", "1") for student in students]
@@ -90,3 +90,16 @@ def test_who_needs_room_gets_all_of_it_alone(run: Any) -> None:
 def test_with_one_worker_everybody_has_all_the_memory_at_once(run: Any) -> None:
     _, seen, _ = run(lambda task, times: Execution(()), "ab", 1)
     assert seen == [("a", False, 1), ("b", False, 1)]
+
+
+@pytest.mark.parametrize(("gib", "number"), [(64, 8), (16, 8), (6, 8), (4, 4), (2, 1)])
+def test_there_are_never_more_at_once_than_have_room_if_each_takes_its_share(gib: int, number: int) -> None:
+    free = gib * 2**30
+    assert engine.at_once(2, free) == number
+    assert number == 1 or number * engine.BOX_BYTES < free
+
+
+def test_so_many_are_at_work_at_once_and_no_more(run: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(engine, "cores", lambda: 1)
+    _, seen, _ = run(lambda task, times: Execution(()), "abcdefghijkl", None)
+    assert max(together for _, _, together in seen) == 4
