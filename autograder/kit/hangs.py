@@ -108,6 +108,11 @@ def _stuck_callback(found: list[Stack]) -> str:
     return ""
 
 
+def _executes_a_goal(stack: Stack) -> bool:
+    """Whether code of the student's was called by an action server to execute a goal."""
+    return bool(_stuck_callback([stack])) and any(frame.rclpy == "action/server.py" for frame in stack)
+
+
 Recognise = Callable[[list[Stack]], bool]
 
 _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
@@ -135,6 +140,14 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
         "rate.sleep() waits for ever: a rate is a timer, and a timer only fires while something spins the "
         "node.",
         "Spin the node in a second thread, or use create_timer and rclpy.spin in place of the loop.",
+    ),
+    (
+        "callback_never_returns",
+        lambda found: any(map(_executes_a_goal, found)),
+        "Your execute callback {callback}() was given a goal and does not come to its end: it loops or waits for ever, "
+        "or each number takes it longer than the one before, as in a function that calls itself for each number.",
+        "Keep the numbers found so far in a list, let each turn of the loop add one, and end the loop when there are "
+        "enough. A pause in each turn, such as time.sleep(0.5), is right.",
     ),
     (
         "callback_never_returns",

@@ -239,10 +239,14 @@ def test_a_traceback_that_was_cut_off_is_not_quoted() -> None:
     assert "File" not in advice.text
 
 
-def test_of_two_tracebacks_that_two_threads_print_at_once_the_place_is_told_and_no_exception_made_up() -> None:
+def test_of_two_tracebacks_that_two_threads_print_at_once_the_place_is_told_and_no_exception_made_up() -> (
+    None
+):
     other = ["Traceback (most recent call last):", '  File "race.py", line 114, in work']
     advice = next(filter(None, (m.recognise(_shown(["    spin()", *other])) for m in OTHER_CRASHES)))
-    assert advice.text.endswith("another of its threads ended it before it had said which (line 114, in work)")
+    assert advice.text.endswith(
+        "another of its threads ended it before it had said which (line 114, in work)"
+    )
 
 
 DESTRUCTOR = [

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
 from lab_1_4 import _server_criteria as criteria
 from lab_1_4 import server as lab_1_4_server
-from lab_1_4._goals import AGAIN, ALONE, BAD_ORDERS, BESIDE, GOALS, LONG
+from lab_1_4._goals import AGAIN, ALONE, BAD_ORDERS, BESIDE, GOALS, LONG, LONG_ALONE
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 
@@ -136,6 +137,17 @@ def test_one_of_two_goals_with_the_others_numbers_is_wrong() -> None:
         [*goal(ALONE, 5), *goal(BESIDE, 4, sequence=FIBONACCI[:4]), *goal(AGAIN, 3), *canceled([0, 1, 1, 2])]
     )
     assert failed(seen) == {"sequence", "two"}
+
+
+def test_a_policy_of_one_goal_at_a_time_costs_the_points_of_two_at_once_only() -> None:
+    alone, again = goal(ALONE, 5), goal(AGAIN, 3)
+    refused = evidence([*alone, *canceled([0, 1, 1, 2, 3]), *goal(BESIDE, 4, accepted=False), *again])
+    assert failed(refused) == {"two"}
+    *older, result = goal(LONG, 20, feedback=[[0, 1, 1]], status=6, sequence=[])
+    later = [replace(e, data={**e.data, "goal": LONG_ALONE}) for e in canceled([0, 1, 1, 2, 3])]
+    ended = evidence([*alone, *older, *goal(BESIDE, 4), result, *again, *later])
+    assert failed(ended) == {"two"}
+    assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(ended)) == "older_goal_ended"
 
 
 def test_a_bad_order_that_is_taken_is_wrong_even_if_it_is_aborted_later() -> None:

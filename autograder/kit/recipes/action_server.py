@@ -9,7 +9,7 @@ import re2
 from autograder.kit import common_mistakes as common
 from autograder.kit.crashes import traceback_of
 from autograder.kit.draft import OWN, OWN_LATE
-from autograder.kit.goals_seen import ABORTED, CANCELED, all_goals, goal, servers, status_text
+from autograder.kit.goals_seen import ABORTED, CANCELED, all_goals, servers, status_text
 from autograder.kit.hangs import HANGS
 from autograder.kit.model import Advice, Mistake
 
@@ -42,10 +42,9 @@ class SendsGoals:
         scenario: Callable[[Bench], None],
         *,
         good: Callable[[Evidence], list[Goal]],
-        canceled: tuple[str, int],
+        canceled: Callable[[Evidence], Goal],
     ) -> None:
-        self.scenario, self._good = scenario, good
-        self._part, self._number = canceled
+        self.scenario, self._good, self.canceled = scenario, good, canceled
 
     def seen(self, evidence: Evidence) -> Evidence:
         """What was seen of the subject."""
@@ -54,10 +53,6 @@ class SendsGoals:
     def expected(self, evidence: Evidence) -> Evidence:
         """The same: it holds what was recorded, too."""
         return evidence
-
-    def canceled(self, evidence: Evidence) -> Goal:
-        """The goal that is canceled."""
-        return goal(evidence.part(self._part), self._number)
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from autograder.kit.goals_seen import SUCCEEDED, Goal, goal, status_text
+from autograder.kit.goals_seen import ABORTED, CANCELED, SUCCEEDED, Goal, goal, status_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,8 +19,8 @@ ORDERS = (5, 4)
 feedback that leaves some out."""
 LARGE_ORDER = 25
 """The order of the goal that goes on beside the others: its last number does not fit into 16 bits."""
-SMALLEST = ((1, 0, 1), (0, 1, 1, 1), (1, 0, 1))
-"""Orders that take no time, in batches: the edge of what there is, and enough goals for a server that dies of many."""
+SMALLEST = (1, 0, 1, 0, 1, 1, 1, 1, 0, 1)
+"""Orders that take no time, one after another: the edge of what there is, and enough for a server that dies of many."""
 SINGLE = 0
 """The order of a single number. A server may also answer it with both numbers that it begins with."""
 LAST_ORDER = 2
@@ -39,13 +39,32 @@ where it looked already."""
 FIRST_TOO_LARGE = 47
 """The first order whose last number does not fit into an int32."""
 ALONE = 0
-TINY = range(1, 1 + sum(map(len, SMALLEST)))
-LONG, BESIDE, AGAIN = range(TINY.stop, TINY.stop + 3)
+TINY = range(1, 1 + len(SMALLEST))
+LONG, BESIDE, AGAIN, LONG_ALONE = range(TINY.stop, TINY.stop + 4)
 """The goals of the first part by their numbers. In the second part the last two are good, those before them are bad."""
 LONG_ORDER = 46
 """The order of the goal that is canceled: the largest that there is."""
 PACED = (ALONE, BESIDE, AGAIN)
 """The goals that take time and are to succeed."""
+
+
+def ended_by_a_younger(part: Part) -> Goal | None:
+    """The goal that the server ended when a younger one came, before anybody asked to cancel it; None for none.
+
+    A server may hold that this is right, as the official example of a single goal does.
+    """
+    older, younger = goal(part, LONG), goal(part, BESIDE)
+    if older.status not in (ABORTED, CANCELED) or not younger.accepted:
+        return None
+    about_both = [e.kind for e in part.events if e.data.get("goal") in (LONG, BESIDE)]
+    before = about_both[: about_both.index("result_heard")]
+    return older if before.count("goal_sent") == 2 and "cancel_sent" not in before else None
+
+
+def to_be_canceled(evidence: Evidence) -> Goal:
+    """The goal that is canceled: beside a younger one, or alone where the server ended it for that one."""
+    part = evidence.part(GOALS)
+    return goal(part, LONG_ALONE if ended_by_a_younger(part) else LONG)
 
 
 def takes_no_time(part: Part) -> bool:
@@ -90,13 +109,16 @@ def good_goals(evidence: Evidence) -> list[Goal]:
 
 def _sent(evidence: Evidence, numbers: Sequence[int]) -> list[Goal]:
     part = evidence.part(GOALS)
-    busy = goal(part, LONG).accepted and not goal(part, LONG).over
+    older, beside = goal(part, LONG), goal(part, BESIDE)
+    one_at_a_time = older.accepted and (
+        beside.accepted is False or (beside.accepted is None and not older.over)
+    )
     known = {number: goal(part, number) for number in numbers}
     # Whether a server takes a goal while it works on another one is a question of its own.
     return [
         seen
         for number, seen in known.items()
-        if seen.order is not None and not (number == BESIDE and busy and seen.accepted is None)
+        if seen.order is not None and not (number == BESIDE and one_at_a_time)
     ]
 
 

@@ -13,9 +13,9 @@ from lab_1_4._goals import (
     FIRST_TOO_LARGE,
     GOALS,
     LAST_ORDER,
-    LONG,
     ORDERS,
     ROUNDS_LEFT,
+    ended_by_a_younger,
     expected_sequence,
     feedback_objection,
     first_two,
@@ -25,6 +25,7 @@ from lab_1_4._goals import (
     paced_goals,
     takes_no_time,
     tells_at_the_end,
+    to_be_canceled,
 )
 
 from autograder.kit.goals_seen import CANCELED, Goal, all_goals, goal, servers, status_text
@@ -96,8 +97,11 @@ def gives_feedback(evidence: Evidence) -> Finding:
 @of_one_server
 def serves_two_at_once(evidence: Evidence) -> Finding:
     """A goal beside the one that is canceled is right, and so is one beside that."""
-    two = [goal(evidence.part(GOALS), number) for number in (BESIDE, AGAIN)]
+    part = evidence.part(GOALS)
+    two = [goal(part, number) for number in (BESIDE, AGAIN)]
     wrong = [text for seen in two if seen.order is not None and (text := objection(evidence, seen))]
+    if (older := ended_by_a_younger(part)) is not None:
+        wrong.insert(0, f"the older goal ended as {status_text(older.status)} when the younger one came")
     asked = all(seen.order is not None for seen in two)
     seen = wrong[0] if wrong else "both are right" if asked else "not reached"
     return Finding(asked and not wrong, "each of two goals at once ends with its own sequence", seen)
@@ -106,7 +110,7 @@ def serves_two_at_once(evidence: Evidence) -> Finding:
 @of_one_server
 def lets_cancel(evidence: Evidence) -> Finding:
     """A cancel is accepted, ends the goal soon, and the part that was computed comes back."""
-    long = goal(evidence.part(GOALS), LONG)
+    long = to_be_canceled(evidence)
     expected = "the cancel is accepted, the goal ends as CANCELED with the numbers found so far"
     seen = _cancel_objection(evidence, long)
     return Finding(not seen, expected, seen or f"CANCELED with {len(long.sequence)} numbers")

@@ -12,11 +12,13 @@ from lab_1_4._goals import (
     LARGE_ORDER,
     LAST_ORDER,
     LONG,
+    LONG_ALONE,
     LONG_ORDER,
     ORDERS,
     PACED,
     ROUNDS_LEFT,
     SMALLEST,
+    ended_by_a_younger,
 )
 
 from autograder.kit.goals_seen import Goal, goal
@@ -80,17 +82,17 @@ def run(bench: Bench, name: str, goals: Callable[[Bench, ActionCaller], bool]) -
 def send_good_goals(bench: Bench, caller: ActionCaller) -> bool:
     """A goal alone, many small ones, one that is canceled beside a younger one; False as soon as one does not end.
 
-    There are never more than two goals at once that take time: a server may have no threads for a third one.
+    There are never more than two goals at once: a server may have no threads for a third one.
     """
     order = bench.random.choice(ORDERS)
-    if not all(
-        ended(bench, *[caller.send_goal(order=order) for order in batch]) for batch in ((order,), *SMALLEST)
-    ):
+    if not one_by_one(bench, caller, order, *SMALLEST):
         return False
     caller.send_goal(order=LONG_ORDER)
     _await_feedback(bench, LONG, 1)
     caller.send_goal(order=LARGE_ORDER)
     _await_feedback(bench, LONG, CANCEL_AFTER)
+    if bench.wait_until(lambda e: ended_by_a_younger(e.main) is not None, 0.0):
+        return ended(bench, BESIDE, quiet=SILENCE[bench.pace]) and _goals_alone(bench, caller, order)
     caller.cancel(LONG)
     honoured = _await_cancel(bench)
     if goal(bench.seen(), BESIDE).accepted is None:
@@ -106,6 +108,22 @@ def send_good_goals(bench: Bench, caller: ActionCaller) -> bool:
         # Where two threads work on two goals, nobody reads the cancel before one of them is done.
         _await_cancel(bench)
     return True
+
+
+def _goals_alone(bench: Bench, caller: ActionCaller, order: int) -> bool:
+    """What is left to send to a server that serves one goal at a time: that policy must not cost other points."""
+    if not one_by_one(bench, caller, order):
+        return False
+    caller.send_goal(order=LONG_ORDER)
+    _await_feedback(bench, LONG_ALONE, CANCEL_AFTER)
+    caller.cancel(LONG_ALONE)
+    _await_cancel(bench, LONG_ALONE)
+    return True
+
+
+def one_by_one(bench: Bench, caller: ActionCaller, *orders: int) -> bool:
+    """Send each goal when the one before has ended; whether all did."""
+    return all(ended(bench, caller.send_goal(order=order)) for order in orders)
 
 
 def _await_feedback(bench: Bench, number: int, messages: int) -> None:
@@ -125,9 +143,9 @@ def _tells_all(seen: Goal) -> bool:
     return len(seen.feedback) >= int(seen.order or 0) - 2
 
 
-def _await_cancel(bench: Bench) -> bool:
+def _await_cancel(bench: Bench, number: int = LONG) -> bool:
     """Wait until the cancel was honoured or refused, but not for ever; whether it was."""
-    if bench.wait_until(lambda e: _cancel_is_over(goal(e.main, LONG)), CANCEL_LIMIT[bench.pace]):
+    if bench.wait_until(lambda e: _cancel_is_over(goal(e.main, number)), CANCEL_LIMIT[bench.pace]):
         return True
     # A MultiThreadedExecutor raises what a callback of its raised only when it has something else to do.
     bench.settle()
@@ -140,7 +158,7 @@ def _cancel_is_over(seen: Goal) -> bool:
 
 
 def send_bad_goals(bench: Bench, caller: ActionCaller) -> bool:
-    """Orders that must be refused, up to the first that is not; then a good one, twice at once."""
+    """Orders that must be refused, up to the first that is not; then a good one, twice."""
     orders = (
         *(-1, -bench.random.randint(2, 99), LEAST),
         *(FIRST_TOO_LARGE, bench.random.randint(60, 999), GREATEST),
@@ -151,7 +169,7 @@ def send_bad_goals(bench: Bench, caller: ActionCaller) -> bool:
             return False
         if bench.wait_until(lambda e, n=number: bool(goal(e.main, n).accepted), 0.0):  # type: ignore[misc]
             return True
-    return ended(bench, *[caller.send_goal(order=LAST_ORDER) for _ in range(2)])
+    return one_by_one(bench, caller, LAST_ORDER, LAST_ORDER)
 
 
 def ended(bench: Bench, *numbers: int, quiet: float | None = None) -> bool:

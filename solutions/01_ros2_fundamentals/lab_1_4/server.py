@@ -1,9 +1,10 @@
 """Lab 1.4: an action server that counts Fibonacci numbers, with feedback, cancel and refusal.
 
 The judge is the client. In one run of the server it sends a goal alone, many that take no time, and the largest one,
-which it cancels while a younger goal goes on beside it; then the first goal again. In another run it sends orders that
-must be refused, and two good goals to see that the node is still alive. A server may pace its work as it likes, so
-orders are small where nothing else is going on.
+which it cancels while a younger goal goes on beside it; then the first goal again. Where the server ends the older goal
+for the younger one, the largest is sent and canceled once more, alone. In another run it sends orders that must be
+refused, and two good goals to see that the node is still alive. A server may pace its work as it likes, so orders are
+small where nothing else is going on.
 """
 
 from __future__ import annotations
@@ -19,8 +20,8 @@ from lab_1_4._goals import (
     FIRST_TOO_LARGE,
     GOALS,
     LAST_ORDER,
-    LONG,
     ROUNDS_LEFT,
+    ended_by_a_younger,
     expected_sequence,
     feedback_objection,
     feedback_slip,
@@ -29,12 +30,13 @@ from lab_1_4._goals import (
     paced_goals,
     takes_no_time,
     tells_at_the_end,
+    to_be_canceled,
 )
 from lab_1_4._server_run import scenario
 
 from autograder.kit.crashes import traceback_of
 from autograder.kit.draft import Draft
-from autograder.kit.goals_seen import CANCELED, SUCCEEDED, all_goals, goal
+from autograder.kit.goals_seen import CANCELED, SUCCEEDED, all_goals, goal, status_text
 from autograder.kit.model import Advice
 from autograder.kit.recipes.action_server import SendsGoals, is_quick
 
@@ -45,7 +47,7 @@ server = Draft(
     "lab_1_4.server",
     "Lab 1.4 · An action server that counts",
     "Serve the action fibonacci: feedback for each number, cancel at any time, bad orders rejected.",
-    sends := SendsGoals(scenario, good=good_goals, canceled=(GOALS, LONG)),
+    sends := SendsGoals(scenario, good=good_goals, canceled=to_be_canceled),
 )
 server.asks("action", 1, "Serves fibonacci, with the right type", criteria.serves)
 server.asks("sequence", 3, "Succeeds with the right numbers", criteria.counts)
@@ -66,7 +68,7 @@ def only_bad_orders(seen: Evidence, _: Evidence) -> bool | Advice | None:
 def goal_rejected(seen: Evidence, _: Evidence) -> Advice | None:
     """A good goal is refused."""
     last = [one for one in all_goals(seen.part(BAD_ORDERS)) if one.order == LAST_ORDER]
-    good = (*good_goals(seen), sends.canceled(seen), *last)
+    good = (*good_goals(seen), sends.canceled(seen), goal(seen.part(GOALS), BESIDE), *last)
     refused = [one for one in good if one.accepted is False]
     if not refused or traceback_of(seen):
         return None
@@ -74,7 +76,7 @@ def goal_rejected(seen: Evidence, _: Evidence) -> Advice | None:
         return Advice(
             f"Your server rejected a goal of order {refused[0].order}, which is a good one, and took others.",
             f"Look at the comparison in your goal_callback: all orders from 0 to {FIRST_TOO_LARGE - 1} can be served, "
-            "whatever else is being worked on.",
+            "also while another goal is at work.",
         )
     return Advice(
         f"Your server rejected a goal of order {refused[0].order}, which is a good one. A goal_callback that returns "
@@ -95,6 +97,20 @@ def result_never_filled(seen: Evidence, _: Evidence) -> bool:
     """Every goal succeeds with an empty sequence."""
     good = [one for one in paced_goals(seen) if one.status == SUCCEEDED]
     return bool(good) and not any(one.sequence for one in good)
+
+
+@server.mistake("older_goal_ended", certain=True)
+def older_goal_ended(seen: Evidence, _: Evidence) -> Advice | None:
+    """A goal ended when a younger one came."""
+    older = ended_by_a_younger(seen.part(GOALS))
+    if older is None or traceback_of(seen):
+        return None
+    return Advice(
+        f"When a second goal came, your server ended the older one as {status_text(older.status)}. The task asks it to "
+        "serve both, each with its own sequence.",
+        "Leave out what aborts the goal that is at work when another one is accepted; or let the new one wait until "
+        "the older one has ended.",
+    )
 
 
 @server.mistake("goals_mixed_up")
