@@ -319,11 +319,12 @@ def _recogniser(crash: Crash) -> Mistake:
     compiled = re2.compile(f"(?m){crash.pattern}")
 
     def recognise(evidence: Evidence) -> Advice | None:
-        found = compiled.search(traceback_of(evidence))
+        traceback = traceback_of(evidence)
+        found = compiled.search(traceback)
         if found is None:
             return None
         words = {name: value or "" for name, value in found.groupdict().items()}
-        return Advice(crash.text.format(**words), crash.next_step.format(**words))
+        return Advice(crash.text.format(**words), crash.next_step.format(**words), traceback)
 
     return Mistake(crash.key, recognise, certain=True)
 
@@ -353,6 +354,7 @@ def _crashed(evidence: Evidence) -> Advice | None:
     return Advice(
         f"The program stopped with an exception: {what_and_where(traceback)}",
         "Read the traceback from the bottom: the last line says what, the lines above say where.",
+        traceback,
     )
 
 
@@ -366,6 +368,7 @@ def _exception_in_callback(evidence: Evidence) -> Advice | None:
         f"{what_and_where(traceback)}",
         "Read the traceback from the bottom: the last line says what, the lines above it where. Mend the line that is "
         "yours.",
+        traceback,
     )
 
 

@@ -57,7 +57,7 @@ class Part:
         """
         start = self.events.index(after) + 1 if after is not None else 0
         # A traceback that has begun before that event goes on after it.
-        own = _without_tracebacks(self.events)
+        own = without_tracebacks(self.events)
         return [text for i, e in own if i >= start and (text := spoken_by(e)) is not None]
 
     def endpoints(self, role: str) -> dict[str, str]:
@@ -127,7 +127,7 @@ without an active exception``), and faulthandler shows what ran.
 _FRAME = re2.compile(r'\s+File ".*", line \d+')
 
 
-def _without_tracebacks(events: Sequence[Event]) -> Iterator[tuple[int, Event]]:
+def without_tracebacks(events: Sequence[Event]) -> Iterator[tuple[int, Event]]:
     """All but the output lines of tracebacks, with their places: they quote the program, which is not what it says."""
     inside: dict[str, bool] = {}
     for place, event in enumerate(events):

@@ -140,6 +140,7 @@ def crashed_by_refusal(evidence: Evidence) -> Advice | None:
         f"{what_and_where(crashed[0].traceback)}",
         "Look at goal_handle.accepted as soon as the answer to the goal is there. Where it is False, say so, as the "
         "task asks, and stop: there is no result to wait for.",
+        crashed[0].traceback,
     )
 
 

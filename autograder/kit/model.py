@@ -57,10 +57,17 @@ class Criterion:
 
 @dataclass(frozen=True)
 class Advice:
-    """What a recognised mistake tells the student."""
+    """What a recognised mistake tells the student.
+
+    Attributes:
+        text: What happened and why.
+        next_step: What to do now.
+        traceback: The one that it was told from, which the card shows; empty where it was told from anything else.
+    """
 
     text: str
     next_step: str
+    traceback: str = ""
 
 
 @dataclass(frozen=True)

@@ -84,6 +84,7 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
         f"The entry point in setup.py leads to {what}, which is not there.",
         f"It must read {entry.line}, with a comma behind it: the file without .py, a colon, and the function. "
         f"{_again(evidence)}",
+        tracebacks,
     )
 
 
@@ -113,6 +114,7 @@ def _unknown_module(tracebacks: str, entry: Entry, again: str) -> Advice | None:
         f"The entry point in setup.py names the module {found['module']}, which is not there. A module of the package "
         "is named with the package before it.",
         f"Write package, dot, file, without .py: {entry.line}. {again}",
+        tracebacks,
     )
 
 

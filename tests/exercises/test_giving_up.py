@@ -83,7 +83,7 @@ def test_a_client_that_looks_once_is_told_so_whenever_it_met_the_service(
         seen = run("not there", part.inputs.get("numbers", [1, 2, 3]))
         events = [SEEN, *part.events, ENDED] if number in met_in else seen.events
         parts.append(Part(part.name, {"numbers": part.inputs.get("numbers", [1, 2, 3])}, events))
-    diagnosis = trial.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
+    diagnosis, _ = trial.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
     assert diagnosis.key == "gave_up_too_early"
 
 

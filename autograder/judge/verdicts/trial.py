@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from autograder.judge.bench.bench import TestBench
 from autograder.judge.verdicts import timeline
 from autograder.judge.verdicts.deciding import Undecided, limited, undecidable
-from autograder.kit.crashes import traceback_of
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.model import Advice, Exercise, Mistake, Pace
 from autograder.verdict import Criterion, Diagnosis, State, Verdict
@@ -131,6 +130,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         for finding in [c.judge(evidence)]
     )
     passed = all(criterion.passed for criterion in criteria)
+    diagnosis, traceback = (None, "") if passed else diagnose(exercise, evidence)
     return Verdict(
         exercise=exercise.id,
         title=exercise.title,
@@ -138,25 +138,31 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         score=float(sum(c.points for c in criteria if c.passed)),
         max_score=float(exercise.points),
         criteria=criteria,
-        diagnosis=None if passed else diagnose(exercise, evidence),
+        diagnosis=diagnosis,
         remarks=tuple(_cut(text) for remark in exercise.remarks if (text := remark(evidence))),
         timeline=timeline.moments(evidence),
         seed=seed,
-        detail="" if passed else traceback_of(evidence)[-MAX_DETAIL:],
+        detail=traceback[-MAX_DETAIL:],
     )
 
 
-def diagnose(exercise: Exercise, evidence: Evidence) -> Diagnosis:
-    """The first known mistake that the evidence shows."""
+def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
+    """The first known mistake that the evidence shows, and the traceback that it was told from, where it was.
+
+    No other traceback is shown beside it: that of another run, perhaps of a line that is right, would be taken for the
+    mistake.
+    """
     found = _recognised(exercise, evidence)
     if found is not None:
         mistake, advice = found
-        return Diagnosis(mistake.key, _cut(advice.text, 2 * MAX_WORDS), _cut(advice.next_step, 2 * MAX_WORDS))
-    return Diagnosis(
+        words = _cut(advice.text, 2 * MAX_WORDS), _cut(advice.next_step, 2 * MAX_WORDS)
+        return Diagnosis(mistake.key, *words), advice.traceback
+    unknown = Diagnosis(
         "unknown",
         "This is none of the mistakes that the judge knows by name.",
         "Compare what was expected with what was seen, criterion by criterion.",
     )
+    return unknown, ""
 
 
 def _recognised(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice] | None:

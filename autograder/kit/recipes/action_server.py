@@ -154,12 +154,14 @@ def _result_missing(evidence: Evidence) -> Advice | None:
     """The execute callback returned no result."""
     # What rclpy says when it sends the result, and what autograder/notebook says in its place.
     said = r"'NoneType' object has no attribute '_?sequence'|must return a result of the action"
-    if not re2.search(said, traceback_of(evidence)):
+    traceback = traceback_of(evidence)
+    if not re2.search(said, traceback):
         return None
     return Advice(
         "The execute callback returned nothing, so there is no result to send.",
         "End it with `return result`, where result is a Fibonacci.Result() whose sequence you have filled. Do so on "
         "every way out, after a cancel too.",
+        traceback,
     )
 
 
@@ -172,4 +174,5 @@ def _exception_in_execute(evidence: Evidence) -> Advice | None:
     return Advice(
         f"The execute callback raised an exception, so rclpy aborted the goal: {last.strip()}",
         "Read the traceback from the bottom: the last line says what, the line above it where. Mend that line.",
+        traceback,
     )

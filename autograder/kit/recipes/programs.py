@@ -316,7 +316,7 @@ def _in_one_program(program: Program, mistake: Mistake, evidence: Evidence) -> A
     if program.judge(evidence).passed and not program.ending(evidence):
         return None
     advice = mistake.recognise(program.view(evidence))
-    return Advice(f"{program.name}: {advice.text}", advice.next_step) if advice else None
+    return replace(advice, text=f"{program.name}: {advice.text}") if advice else None
 
 
 _MADE_OF_NOTHING = re2.compile(
@@ -326,13 +326,15 @@ _MADE_OF_NOTHING = re2.compile(
 
 def _class_not_in_its_file(program: Program, evidence: Evidence) -> Advice | None:
     """It makes a node of a class that its file does not have."""
-    found = _MADE_OF_NOTHING.search(traceback_of(evidence))
+    traceback = traceback_of(evidence)
+    found = _MADE_OF_NOTHING.search(traceback)
     if found is None or found["made"] != found["unknown"]:
         return None
     file = f"{program.file or program.name}.py"
     return Advice(
         f"{file} makes a node of the class {found['made']}, and this class is not in the file (NameError).",
         f"Copy your class {found['made']} into {file}, above main, and write the file again.",
+        traceback,
     )
 
 

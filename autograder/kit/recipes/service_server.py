@@ -219,10 +219,12 @@ class Asks:
 
 def _returned_none(evidence: Evidence) -> Advice | None:
     """A bare TypeError out of nowhere: all that a notebook shows of it, where rclpy's own lines are left out."""
-    if traceback_of(evidence).strip() != "TypeError":
+    traceback = traceback_of(evidence)
+    if traceback.strip() != "TypeError":
         return None
     return Advice(
         "The service callback did not return the response: rclpy cannot send what came back, and the client waits in "
         "vain. A program ends with this error.",
         "End the callback with `return response`, on every way out.",
+        traceback,
     )

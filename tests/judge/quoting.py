@@ -1,0 +1,50 @@
+"""Whether the traceback on a card is of what the card is about, told from the evidence of a check.
+
+For any check with its evidence: one just made, one out of an appeal file, or one that was kept.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from autograder import exercises
+from autograder.judge.verdicts import trial
+from autograder.kit.evidence import Event, Evidence, Part, without_tracebacks
+
+if TYPE_CHECKING:
+    from autograder.verdict import Verdict
+
+
+def objection(verdict: Verdict, evidence: Evidence) -> str:
+    """What is wrong about the traceback on a card; empty where nothing is.
+
+    It must come from one run, and the diagnosis must follow from it: where the same is diagnosed without any traceback,
+    the line that the card quotes has nothing to do with it.
+    """
+    if not verdict.detail or verdict.diagnosis is None:
+        return ""
+    if not any(part.traceback.endswith(verdict.detail) for part in evidence):
+        return "the traceback on the card is of no single run"
+    exercise = exercises.get(verdict.exercise)
+    without = trial.judge(exercise, _without(evidence), verdict.seed).diagnosis
+    if without is None or without.key != verdict.diagnosis.key:
+        return ""
+    return (
+        f"{verdict.diagnosis.key} is found without the traceback, too, that the card quotes: {verdict.detail}"
+    )
+
+
+def _without(evidence: Evidence) -> Evidence:
+    """The same evidence, with no traceback in it."""
+    before = evidence.before and _without(evidence.before)
+    return replace(evidence, parts=[_quiet(part) for part in evidence], before=before)
+
+
+def _quiet(part: Part) -> Part:
+    return replace(part, events=[_told(event) for _, event in without_tracebacks(part.events)])
+
+
+def _told(event: Event) -> Event:
+    data: dict[str, Any] = {key: value for key, value in event.data.items() if key != "traceback"}
+    return replace(event, data=data)
