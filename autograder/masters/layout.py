@@ -47,6 +47,22 @@ def lab_name(master: Path) -> str:
     return master.parent.name
 
 
+def before_and_after(master: Path) -> tuple[Path | None, Path | None]:
+    """The masters that are read before and after ``master`` in its chapter; None at the chapter's ends."""
+    folder = master.parents[1]
+    labs = [
+        lab
+        for chapter in course.chapters(master.parents[3])
+        if chapter.folder == folder
+        for lab in chapter.labs
+    ]
+    found = [lab / LAB for lab in labs if (lab / LAB).is_file()]
+    if master not in found:
+        return None, None
+    here = found.index(master)
+    return (found[here - 1] if here else None), (found[here + 1] if here + 1 < len(found) else None)
+
+
 def chapter_path(root: Path, master: Path) -> Path:
     """Where the chapter notebook of ``master`` belongs."""
     return root / CHAPTERS / master.parents[1].name / f"{lab_name(master)}.ipynb"

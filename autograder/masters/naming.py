@@ -32,6 +32,12 @@ def last_heading(markdown: str) -> str | None:
     return headings[-1] if headings else None
 
 
+def title(master: str) -> str:
+    """The first heading in the text of a master: the title of its notebook."""
+    found = HEADING.search(master)
+    return found[1] if found else ""
+
+
 def slug(text: str) -> str:
     """``text`` in lower case, with dashes for all that is no letter and no digit."""
     return re.sub(r"[^a-z0-9]+", "-", text.lower())[:LONGEST].strip("-") or "cell"

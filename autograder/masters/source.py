@@ -17,6 +17,7 @@ from autograder.masters import naming
 from autograder.masters.checks import CheckCall, exercise_points, read_check
 from autograder.masters.copies import with_copies
 from autograder.masters.errors import CellError, MasterError
+from autograder.masters.layout import before_and_after, lab_name
 from autograder.masters.magics import has_magic
 from autograder.masters.parsing import Cell, CellRole, parse_master
 from autograder.masters.regions import find_model_answer, find_region, mentions_a_region
@@ -88,11 +89,23 @@ def named_cells(master: Path, *, points: Points = exercise_points) -> list[Named
     Raises:
         MasterError: As for :func:`source_notebook`.
     """
-    cells = with_copies(master, parse_master(master))
+    cells = [*with_copies(master, parse_master(master)), *_links(master)]
     named = list(_name_all(master, cells, points))
     _unique(master, named)
     _subjects_are_solutions(master, named)
     return named
+
+
+def _links(master: Path) -> Iterator[Cell]:
+    """The last cell of a notebook: links to those before and after it in the chapter, if there are any."""
+    ways = zip(("← Previous: {}", "Next: {} →"), before_and_after(master), strict=True)
+    links = [way.format(_link(other)) for way, other in ways if other is not None]
+    if links:
+        yield Cell(CellRole.TEXT, " · ".join(links), line=0, body_line=0)
+
+
+def _link(master: Path) -> str:
+    return f"[{naming.title(master.read_text(encoding='utf-8'))}]({lab_name(master)}.ipynb)"
 
 
 def _name_all(master: Path, cells: list[Cell], points: Points) -> Iterator[NamedCell]:

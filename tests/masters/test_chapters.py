@@ -144,6 +144,10 @@ def words(cells: list[nbformat.NotebookNode]) -> int:
 
 @each_master
 def test_it_ends_with_what_to_keep_and_where_to_go(master: Path) -> None:
-    *_, last = nbformat.read(chapter_path(ROOT, master), as_version=4).cells
+    *_, last, links = nbformat.read(chapter_path(ROOT, master), as_version=4).cells
     assert "https://docs.ros.org/en/jazzy/" in last.source
-    assert re.search(r"^(Next|Back to).*\.ipynb\)", last.source, flags=re.MULTILINE)
+    linked = [
+        chapter_path(ROOT, master).with_name(name) for name in re.findall(r"\((\S+\.ipynb)\)", links.source)
+    ]
+    assert linked
+    assert all(notebook.is_file() for notebook in linked)

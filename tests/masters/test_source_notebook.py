@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from autograder.masters.parsing import HEADER
 from autograder.masters.source import Points, source_notebook
 
 if TYPE_CHECKING:
@@ -106,3 +107,20 @@ def test_text_between_two_hints_ends_their_run(
     assert text.count("Hint 1 of 1.") == 2
     assert text.index("</details>") < text.index("In between.") < text.rindex("<details>")
     assert text.rindex("</details>") < text.index("At the end.")
+
+
+def test_the_last_cell_links_to_the_neighbours(course: Path, ten_points: Points) -> None:
+    chapter = course / "solutions/01_first"
+    for lab, title in (("lab_9_0", "Before it"), ("lab_9_2", "After it")):
+        (chapter / lab).mkdir()
+        (chapter / lab / "lab.md").write_text(f"{HEADER}# {title}\n")
+    (chapter / "chapter.toml").write_text('labs = ["lab_9_2", "lab_9_1", "lab_9_0"]')
+    last = {
+        lab: source_notebook(chapter / lab / "lab.md", points=ten_points).cells[-1].source
+        for lab in ("lab_9_2", "lab_9_1", "lab_9_0")
+    }
+    assert last == {
+        "lab_9_2": "Next: [Lab 9.1: Doubling](lab_9_1.ipynb) →",
+        "lab_9_1": "← Previous: [After it](lab_9_2.ipynb) · Next: [Before it](lab_9_0.ipynb) →",
+        "lab_9_0": "← Previous: [Lab 9.1: Doubling](lab_9_1.ipynb)",
+    }
