@@ -1,1 +1,1 @@
-"""The tests, and programs beside them: ``python -m tests.mutation`` and the like."""
+"""The tests, and programs beside them: ``python -m tests.measure mutants`` and the like."""

@@ -15,6 +15,7 @@ import autograder.exercises
 
 # First of all: it keeps nbformat from loading what takes a second, and not every test imports it before that.
 import autograder.grading  # noqa: F401
+from tests import tiers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -89,8 +90,30 @@ def pytest_xdist_auto_num_workers() -> int:
     return cores() + 1
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """The longest first."""
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """The tier."""
+    parser.addoption("--all", action="store_true", help="also the tests that are left to the nightly run")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Who names tests gets all of them. The processes of pytest-xdist inherit options and the day."""
+    tiers.day()
+    if config.args_source is not pytest.Config.ArgsSource.TESTPATHS and not hasattr(config, "workerinput"):
+        config.option.all = True
+
+
+def pytest_report_header(config: pytest.Config) -> str:
+    """Which tier this is, and how its draw is repeated."""
+    return "tier: all" if config.option.all else f"tier: short, as drawn by {tiers.DAY}={tiers.day()}"
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Those of this tier, the longest first."""
+    if not config.option.all:
+        due = [item.nodeid for item in items if item.get_closest_marker("due")]
+        left = tiers.left_to_all([item.nodeid for item in items], due)
+        config.hook.pytest_deselected(items=[item for item in items if item.nodeid in left])
+        items[:] = [item for item in items if item.nodeid not in left]
     items.sort(key=_rank)
 
 

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 from autograder import exercises
 from autograder.authoring.answer_tables import WORKSPACE, Listed, listed, settings
-from autograder.authoring.judging import verdict_of
+from autograder.authoring.judging import checked
 from autograder.authoring.workspace_answers import unpack
+from autograder.verdict import to_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -89,7 +90,7 @@ class Answer:
 
     def verdict(self, seed: str, *, warm: bool) -> bytes:
         """Judge it in this very process; the verdict as JSON."""
-        return verdict_of(self, seed, warm=warm)
+        return to_json(checked(self, seed, warm=warm)[0])
 
     def objection(self, verdict: Verdict) -> str:
         """What is not as expected, or an empty string."""

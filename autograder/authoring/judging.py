@@ -11,12 +11,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 from autograder.clean_stdout import private_stdout
-from autograder.verdict import State, Verdict, from_json, to_json
+from autograder.verdict import State, Verdict, from_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from autograder.authoring.answers import Answer
+    from autograder.judge.verdicts.trial import Checked
     from autograder.kit.model import Exercise
 
 LIMIT = 240.0
@@ -107,21 +108,21 @@ def _verdict_in_child(turn: Turn[T], *, warm: bool) -> bytes:
     return turn.subject.verdict(turn.seed, warm=warm)
 
 
-def verdict_of(answer: Answer, seed: str, *, warm: bool) -> bytes:
-    """Judge an answer of the bank in this process; the verdict as JSON."""
+def checked(answer: Answer, seed: str, *, warm: bool) -> tuple[Verdict, Checked | None]:
+    """Judge an answer of the bank in this process; the evidence, too, where the judge itself had no trouble."""
     from autograder import exercises
-    from autograder.judge.subjects.command import judged_here
+    from autograder.judge.subjects.command import checked_here
 
     exercise = exercises.get(answer.exercise)
     with tempfile.TemporaryDirectory(prefix="answer-") as folder:
         command = answer.unpack(Path(folder))
         if warm and answer.may_be_warm and not exercise.wraps_commands:
-            return to_json(_judged_warm(exercise, command, seed))
-        return to_json(judged_here(exercise, command, seed, None))
+            return _checked_warm(exercise, command, seed)
+        return checked_here(exercise, command, seed, None)
 
 
-def _judged_warm(exercise: Exercise, command: Sequence[str], seed: str) -> Verdict:
-    """The same as ``judged_here``, with the program in a fork of this process."""
+def _checked_warm(exercise: Exercise, command: Sequence[str], seed: str) -> tuple[Verdict, Checked | None]:
+    """The same as ``checked_here``, with the program in a fork of this process."""
     from autograder.authoring.warm_python import WarmPython, WarmScript
     from autograder.judge.bench.wire import JudgeFailed
     from autograder.judge.serving import domain
@@ -132,9 +133,10 @@ def _judged_warm(exercise: Exercise, command: Sequence[str], seed: str) -> Verdi
     try:
         with domain.lease() as domain_id:
             expected = reference.load(exercise.id)
-            return trial.check(exercise, subject, expected, seed=seed, domain_id=domain_id).verdict
+            found = trial.check(exercise, subject, expected, seed=seed, domain_id=domain_id)
+            return found.verdict, found
     except JudgeFailed as error:
-        return not_checked(exercise.id, exercise.title, exercise.points, str(error))
+        return not_checked(exercise.id, exercise.title, exercise.points, str(error)), None
 
 
 def warm_up() -> None:

@@ -1,4 +1,4 @@
-"""The whole bank, graded once: every attack is a student of one class, in one batch, beside two honest ones."""
+"""The bank, graded once: each attack of the session is a student of one class, in one batch, beside honest ones."""
 
 from __future__ import annotations
 
@@ -10,12 +10,14 @@ import pytest
 
 sys.path.append(str(Path(__file__).parent))  # not first: other folders have a conftest, too
 
-from attack_bank import attacks
 from attack_class import AttackClass, Traps
+
+from tests.tiers import asked_for
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from attack_bank import Attack
     from attack_class import Graded
 
 
@@ -27,9 +29,15 @@ def traps(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Traps]:
 
 
 @pytest.fixture(scope="session")
-def graded(tmp_path_factory: pytest.TempPathFactory, traps: Traps) -> Graded:
+def chosen(request: pytest.FixtureRequest) -> list[Attack]:
+    """The attacks of this session: those that tests ask for."""
+    return asked_for(request, "attack")
+
+
+@pytest.fixture(scope="session")
+def graded(tmp_path_factory: pytest.TempPathFactory, traps: Traps, chosen: list[Attack]) -> Graded:
     """The class after its batch."""
     made = AttackClass(tmp_path_factory.mktemp("attacked"), traps)
-    for attack in attacks():
+    for attack in chosen:
         made.hand_in(attack)
     return made.grade()

@@ -32,5 +32,7 @@ def test_an_honest_student_has_what_was_earned(student: str, graded: Graded) -> 
     assert graded.points(student) == HONEST[student], graded.rows.get(student)
 
 
-def test_the_batch_came_to_its_end_and_left_nothing_behind(graded: Graded, traps: Traps) -> None:
-    assert not general_objections(BANK, graded, traps), graded.output[-2000:]
+def test_the_batch_came_to_its_end_and_left_nothing_behind(
+    graded: Graded, traps: Traps, chosen: list[Attack]
+) -> None:
+    assert not general_objections(chosen, graded, traps), graded.output[-2000:]

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.verdict import Verdict, from_json
+from tests.tiers import asked_for
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,11 +25,10 @@ JOBS = 14
 @pytest.fixture(scope="session")
 def verdicts(request: pytest.FixtureRequest) -> Iterator[dict[str, Verdict]]:
     """The verdicts on all answers that this session asks for."""
-    asking = [item for item in request.session.items if "verdicts" in getattr(item, "fixturenames", ())]
-    names = [getattr(item, "callspec").params["answer"].name for item in asking]  # noqa: B009  (untyped in pytest)
-    program = Path(__file__).with_name("bank.py")
+    names = [answer.name for answer in asked_for(request, "answer")]
     process = subprocess.Popen(
-        [sys.executable, str(program), "--lines", "--warm", "--jobs", str(JOBS), *names],
+        [sys.executable, "-m", "tests.measure", "bank", "--lines", "--warm", "--jobs", str(JOBS), *names],
+        cwd=Path(__file__).parents[2],
         stdout=subprocess.PIPE,
         text=True,
         start_new_session=True,

@@ -105,13 +105,6 @@ def _search_path(cwd: Path | None) -> str | None:
     return os.environ.get("PATH") if cwd is None else f"{os.environ.get('PATH', '')}:{cwd}"
 
 
-def judged_here(
-    exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None, box: Box | None = None
-) -> Verdict:
-    """Judge a command in this very process, which is a fork made for it."""
-    return checked_here(exercise, command, seed, cwd, box)[0]
-
-
 def _packed(checked: Checked | None) -> bytes:
     from autograder.judge.verdicts import keeping
 
@@ -121,7 +114,7 @@ def _packed(checked: Checked | None) -> bytes:
 def checked_here(
     exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None, box: Box | None = None
 ) -> tuple[Verdict, Checked | None]:
-    """Like :func:`judged_here`, with the evidence; without it where the judge itself had trouble."""
+    """Judge a command in this very process, a fork made for it; no evidence where the judge itself had trouble."""
     from autograder.judge import settings
 
     settings.prepare_judge(boxed=box is not None)

@@ -1,4 +1,4 @@
-"""``python -m tests.run_all_again``: *Restart and Run All* in one student's folder, again and again, in real kernels.
+"""*Restart and Run All* in one student's folder, again and again, in real kernels.
 
 The solved notebooks are run in the order of the chapter, three times, and in two mixed orders, each notebook in a
 kernel of its own. After each pass the sources of the workspace must be those of the first, byte for byte, nothing else
@@ -8,7 +8,6 @@ processor.
 
 from __future__ import annotations
 
-import argparse
 import os
 import resource
 import subprocess
@@ -23,17 +22,17 @@ from typing import TYPE_CHECKING
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 
-from autograder import journal
+from autograder import course, journal
 from autograder.masters.layout import lab_name, masters
 from autograder.masters.source import source_notebook
 from autograder.ros_domain import DOMAIN_VARIABLE, claim_free_domain
 
 if TYPE_CHECKING:
+    import argparse
     from collections.abc import Mapping, Sequence
 
     from nbformat import NotebookNode
 
-ROOT = Path(__file__).resolve().parents[1]
 SOURCES = "ros2_ws/src"
 """Where the student's packages are, beside the notebooks."""
 LIMIT = 600
@@ -184,23 +183,18 @@ def _cpu_of_children() -> float:
     return used.ru_utime + used.ru_stime
 
 
-def main() -> int:
-    """Run; 1 where something was wrong, 2 where a name is unknown."""
-    parser = argparse.ArgumentParser(prog="python -m tests.run_all_again", description=__doc__)
-    parser.add_argument(
-        "only", nargs="*", help="names of notebooks, such as lab_1_1; all where none is given"
-    )
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of this program."""
+    parser.add_argument("only", nargs="*", help="names of notebooks, such as lab_1_1; all by default")
     parser.add_argument("--seed", type=int, default=0, help="what the mixed orders are drawn from")
-    wanted = parser.parse_args()
-    notebooks = {lab_name(master): source_notebook(master) for master in masters(ROOT)}
-    if unknown := [name for name in wanted.only if name not in notebooks]:
+
+
+def main(options: argparse.Namespace) -> int:
+    """Run; 1 where something was wrong, 2 where a name is unknown."""
+    notebooks = {lab_name(master): source_notebook(master) for master in masters(course.root())}
+    if unknown := [name for name in options.only if name not in notebooks]:
         print(f"there is no notebook {unknown[0]!r}. There are: {', '.join(notebooks)}.", file=sys.stderr)
         return 2
-    names = wanted.only or list(notebooks)
     with tempfile.TemporaryDirectory(prefix="student-") as folder:
-        wrong = again_and_again(notebooks, orders(names, wanted.seed), Path(folder))
-    return 1 if wrong else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+        passes = orders(options.only or list(notebooks), options.seed)
+        return 1 if again_and_again(notebooks, passes, Path(folder)) else 0

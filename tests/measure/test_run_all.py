@@ -1,4 +1,4 @@
-"""``python -m tests.run_all_again`` sees a workspace that changes, points that are lost and cells that fail.
+"""``python -m tests.measure run_all`` sees a workspace that changes, points that are lost and cells that fail.
 
 The notebooks of the chapter take too long to be run five times here. What they do to files, and only that, is done
 again and again in ``tests/masters/test_run_again.py``.
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from nbformat.v4 import new_code_cell, new_notebook
 
-from tests.run_all_again import Left, again_and_again, differences, orders
+from tests.measure.run_all import Left, again_and_again, differences, orders
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -1,4 +1,4 @@
-"""``python -m tests.compare_verdicts COMMIT_A COMMIT_B [PART ...]``: what the judge says otherwise of the bank.
+"""What the judge says otherwise of the bank in another commit.
 
 Each commit gets a work tree of its own, whose judge judges that tree's answers with the same seeds, both at the same
 time. Compared are the state, the points of each criterion and the diagnosis; with ``--texts`` also what the student is
@@ -11,7 +11,6 @@ where the commits or the answers cannot be found.
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import json
 import os
@@ -24,11 +23,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    import argparse
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from autograder.verdict import Verdict
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 JOBS = 4
 """Answers that are judged at once in each of the two trees."""
 SEEDS = 2
@@ -122,20 +122,16 @@ def judged(trees: Sequence[Path], parts: Sequence[str], seeds: Sequence[str], mo
     Raises:
         CannotCompare: A tree's judge ended with an error, which stands above.
     """
-    running = []
-    for tree in trees:
-        words = [sys.executable, "-P", str(Path(__file__).resolve()), "--judge-into", f"{tree}.lines"]
-        words += [
-            "--jobs",
-            str(more.jobs),
-            *(["--texts"] if more.texts else []),
-            "--seed",
-            *seeds,
-            "--",
-            *parts,
-        ]
-        env = os.environ | {"PYTHONPATH": str(tree)}
-        running.append(subprocess.Popen(words, cwd=tree, env=env, stdout=subprocess.DEVNULL))
+    orders = json.dumps({"parts": parts, "seeds": seeds, "jobs": more.jobs, "texts": more.texts})
+    running = [
+        subprocess.Popen(
+            [sys.executable, "-P", str(Path(__file__).resolve()), f"{tree}.lines", orders],
+            cwd=tree,
+            env=os.environ | {"PYTHONPATH": str(tree)},
+            stdout=subprocess.DEVNULL,
+        )
+        for tree in trees
+    ]
     codes = [process.wait() for process in running]
     if any(codes):
         raise CannotCompare("the judge of a tree ended with an error, which stands above")
@@ -160,17 +156,16 @@ def differing(first: Outcomes, second: Outcomes, names: Iterable[str]) -> list[s
     return [name for name in names if set(second[name].values()) - set(first[name].values())]
 
 
-def compare(commits: Sequence[str], parts: Sequence[str], more: Any) -> bool:
+def compare(more: Any) -> bool:
     """Judge the answers of two commits and print what is said otherwise; whether nothing is.
 
     Args:
-        commits: Both of them, as git names them.
-        parts: Parts of the names of answers; all where empty.
-        more: The options ``seeds``, ``jobs`` and ``texts``.
+        more: The options.
 
     Raises:
         CannotCompare: There is no such commit, or no such answer, or a tree's judge ended with an error.
     """
+    commits, parts = (more.first, more.second), more.only
     seeds = [f"compare-{number}" for number in range(more.seeds + AGAIN)]
     with tempfile.TemporaryDirectory(prefix="compare-") as folder, contextlib.ExitStack() as stack:
         trees = [
@@ -218,34 +213,24 @@ def told(first: Outcomes, second: Outcomes, doubtful: Sequence[str]) -> bool:
     return not differ and not gone
 
 
-def _arguments(words: Sequence[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="python -m tests.compare_verdicts", description=__doc__)
-    parser.add_argument("words", nargs="*", metavar="COMMIT_A COMMIT_B [PART ...]")
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of this program."""
+    parser.add_argument("first", metavar="COMMIT_A", help="such as HEAD~1")
+    parser.add_argument("second", metavar="COMMIT_B")
+    parser.add_argument("only", nargs="*", help="parts of the names of answers; all by default")
     parser.add_argument("--seeds", type=int, default=SEEDS, help=f"how often each is judged ({SEEDS})")
     parser.add_argument("--jobs", type=int, default=JOBS, help=f"judged at once in each tree ({JOBS})")
     parser.add_argument("--texts", action="store_true", help="compare what students are told, too")
-    parser.add_argument("--judge-into", type=Path, help=argparse.SUPPRESS)
-    parser.add_argument("--seed", nargs="*", default=[], help=argparse.SUPPRESS)
-    found = parser.parse_args(words)
-    if found.seeds < 1 or found.jobs < 1:
-        parser.error("--seeds and --jobs have to be 1 or more")
-    if not found.judge_into and len(found.words) < 2:
-        parser.error("two commits are needed, such as HEAD~1 HEAD")
-    return found
 
 
-def main(words: Sequence[str] | None = None) -> int:
-    """Run it; the exit code."""
-    found = _arguments(sys.argv[1:] if words is None else words)
-    if found.judge_into:
-        judge_here(found.judge_into, found.words, found.seed, found.jobs, texts=found.texts)
-        return 0
+def main(options: argparse.Namespace) -> int:
+    """Compare; 1 where something differs or is gone, 2 where the commits or the answers cannot be found."""
     try:
-        return 0 if compare(found.words[:2], found.words[2:], found) else 1
+        return 0 if compare(options) else 1
     except CannotCompare as error:
         print(error, file=sys.stderr)
         return 2
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    judge_here(Path(sys.argv[1]), **json.loads(sys.argv[2]))

@@ -1,10 +1,11 @@
-"""``python -m tests.mutation``: how many mutants of right answers the judge catches, and which survive."""
+"""How many mutants of right answers the judge catches, and which survive."""
 
 from __future__ import annotations
 
-import argparse
+import secrets
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -14,25 +15,30 @@ from tests.mutation.report import text
 from tests.mutation.results import Fate, Result
 from tests.mutation.run import chosen, run
 
+if TYPE_CHECKING:
+    import argparse
 
-def main() -> int:
-    """Judge mutants; 1 where one survives that is not entered as equivalent."""
-    parser = argparse.ArgumentParser(prog="python -m tests.mutation", description=__doc__)
-    parser.add_argument(
-        "only", nargs="*", help="parts of the ids of mutants, such as lab_1_2.talker or :number:"
-    )
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of this program."""
+    parser.add_argument("only", nargs="*", help="parts of the ids, such as lab_1_2.talker or :number:")
     parser.add_argument("--sample", type=int, metavar="N", help="only N mutants, of every exercise as many")
-    parser.add_argument("--seed", type=int, default=0, help="which mutants are in the sample")
+    parser.add_argument("--seed", type=int, help="which are in the sample; another one each time by default")
     parser.add_argument("--jobs", type=int, default=14, help="how many are judged at once")
     parser.add_argument("--repeat", type=int, default=1, help="with how many different inputs each is judged")
     parser.add_argument(
-        "--results", type=Path, metavar="FILE", help="keep results here, and go on with those it has"
+        "--results", type=Path, metavar="FILE", help="keep results, and go on with those it has"
     )
     parser.add_argument("--list", action="store_true", help="show the mutants, and judge nothing")
     parser.add_argument("--json", action="store_true", help="print the report as JSON")
-    options = parser.parse_args()
+
+
+def main(options: argparse.Namespace) -> int:
+    """Judge mutants; 1 where one survives that is not entered as equivalent."""
+    seed = secrets.randbelow(100_000) if options.seed is None else options.seed
+    print(f"seed {seed}", file=sys.stderr, flush=True)
     if options.list:
-        for mutant in chosen(options.only, options.sample, options.seed)[1]:
+        for mutant in chosen(options.only, options.sample, seed)[1]:
             print(mutant.id, equivalents.reason(mutant.id), mutant.difference(), "", sep="\n")
         return 0
     warm_up()
@@ -44,7 +50,7 @@ def main() -> int:
     found = run(
         options.only,
         size=options.sample,
-        seed=options.seed,
+        seed=seed,
         jobs=options.jobs,
         repeat=options.repeat,
         file=options.results,
@@ -52,7 +58,3 @@ def main() -> int:
     )
     print(msgspec.json.encode(found).decode() if options.json else text(found))
     return 1 if found.survivors or found.caught_equivalents else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -10,7 +10,8 @@ import pytest
 from autograder.authoring.answers import Answer, answers
 from autograder.verdict import Diagnosis, State, Verdict, to_json
 from benchmarks.machine import machine
-from tests import rates, soak, steady_class
+from tests.measure import rates, soak, steady_class
+from tests.measure.ends import Ends, Repeated
 from tests.mutation.report import Report, Survivor, Tally
 
 TODAY = rates.Measured("short", "2026-01-01", 2.0, "python -m tests.made_up")
@@ -46,31 +47,32 @@ def test_what_changed_and_what_survived_is_named() -> None:
     mutants = Report(
         99, {"lab_1_2.talker": Tally(9, 6, 1, 2, 0)}, (Survivor("x/y:z:1", 3, "", ("0",), 0),), ()
     )
+    ends = Ends()
+    for name, end in (
+        ("one", "failed, 0 of 10"),
+        ("one", "failed, 4 of 10"),
+        ("two", "passed"),
+        ("two", "passed"),
+    ):
+        ends.add(name, end)
     found = rates.Rates(
         machine(),
         bank=(TODAY, rates.Bank(10, 9, 20, 20, 19, 18, ("one: a correct answer got 3",))),
         mutants=(TODAY, mutants),
-        soak=(
-            TODAY,
-            soak.Soak(40, 21, 20, 8, 2, 0, 2.0, {"an answer": {"failed, 0 of 10": 1, "failed, 4 of 10": 1}}),
-        ),
-        again=(TODAY, steady_class.Steadiness(30, 6, 6, 240, 0, 2.0)),
+        soak=(TODAY, ends.result(2.0, "8 at a time")),
     )
     text = rates.markdown(found)
     assert "| right answers of the bank that are accepted | 9 of 10 (90.0%) |" in text
-    assert "| mutants of right answers that are rejected | 9 of 10 (90.0%) |" in text
+    assert "| mutants of right answers that are rejected, as they come | 9 of 12 (75.0%) |" in text
+    assert "| without those that were read and do what the task asks | 9 of 10 (90.0%) |" in text
     assert "12 of 99; short form" in text
-    assert (
-        "| 19 of 20 (95.0%) | `python -m tests.made_up`: 40 judgements, 8 at a time beside 2 busy loops;"
-        in text
-    )
-    assert "| 8 of 8 (100.0%) |" in text
-    assert "- mutant that survived: `x/y:z:1`" in text
-    assert "- changed in the soak: an answer: 1 times failed, 0 of 10; 1 times failed, 4 of 10" in text
+    assert "| 1 of 2 (50.0%) | `python -m tests.made_up`: 4 judgements, 8 at a time;" in text
+    assert "- mutant that survived, unread: `x/y:z:1`" in text
+    assert "- changed: one: 1 times failed, 0 of 10; 1 times failed, 4 of 10" in text
 
 
 def test_rates_are_kept_as_they_are(tmp_path: Path) -> None:
-    found = rates.Rates(machine(), soak=(TODAY, soak.Soak(40, 21, 20, 8, 2, 0, 2.0)))
+    found = rates.Rates(machine(), soak=(TODAY, Repeated(40, 21, 20, 2.0, "quietly")))
     rates.write(found, tmp_path / "rates.json")
     assert rates.read(tmp_path / "rates.json") == found
 

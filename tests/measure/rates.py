@@ -1,4 +1,4 @@
-"""``python -m tests.rates``: how often the judge is right and how often it says the same, measured and published.
+"""How often the judge is right and how often it says the same, measured and published.
 
 Judges the bank, a sample of mutants, the bank in a soak, and a class again and again; keeps the figures in
 ``docs/fairness.json`` and puts them into ``docs/fairness.md``. Each part runs as the command that stands in its row.
@@ -6,8 +6,8 @@ Judges the bank, a sample of mutants, the bank in a soak, and a class again and 
 
 from __future__ import annotations
 
-import argparse
 import datetime
+import secrets
 import subprocess
 import sys
 import time
@@ -22,19 +22,19 @@ from autograder.authoring.answers import answers
 from autograder.verdict import from_json
 from benchmarks.machine import Machine, machine
 from benchmarks.results import replace_between
+from tests.measure.ends import Repeated, in_words
 from tests.mutation.report import Report, Tally
-from tests.soak import Soak
-from tests.steady_class import Steadiness
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    import argparse
+    from collections.abc import Iterable
 
     from autograder.authoring.answers import Answer
     from autograder.verdict import Verdict
 
 PAGE = course.root() / "docs" / "fairness.md"
 RESULTS = PAGE.with_suffix(".json")
-BEGIN, END = "<!-- rates: written by tests.rates -->", "<!-- end of rates -->"
+BEGIN, END = "<!-- rates: written by tests.measure rates -->", "<!-- end of rates -->"
 
 
 @dataclass(frozen=True)
@@ -107,11 +107,11 @@ class Rates:
     machine: Machine
     bank: tuple[Measured, Bank] | None = None
     mutants: tuple[Measured, Report] | None = None
-    soak: tuple[Measured, Soak] | None = None
-    again: tuple[Measured, Steadiness] | None = None
+    soak: tuple[Measured, Repeated] | None = None
+    steady_class: tuple[Measured, Repeated] | None = None
 
 
-PARTS = ("bank", "mutants", "soak", "again")
+PARTS = ("bank", "mutants", "soak", "steady_class")
 
 
 class NotMeasured(RuntimeError):
@@ -128,19 +128,13 @@ def measured(part: str, form: Form) -> Any:
     Raises:
         NotMeasured: It could not be.
     """
-    commands: dict[str, list[str]] = {
-        "bank": ["tests/judge/bank.py", "--lines", "--warm", "--jobs", "14", *form.bank],
-        "mutants": ["-m", "tests.mutation", "--sample", str(form.mutants), "--json"],
-        "soak": ["-m", "tests.soak", "--judgements", str(form.judgements), "--json", *form.bank],
-        "again": ["-m", "tests.steady_class", "--times", str(form.times), "--json"],
+    options: dict[str, list[str]] = {
+        "bank": ["--lines", "--warm", *form.bank],
+        "mutants": ["--sample", str(form.mutants), "--seed", str(secrets.randbelow(100_000)), "--json"],
+        "soak": ["--judgements", str(form.judgements), "--json", *form.bank],
+        "steady_class": ["--times", str(form.times), "--json"],
     }
-    read: dict[str, Callable[[str], object]] = {
-        "bank": lambda said: bank_rates(dict(line.split(" ", 1) for line in said.splitlines())),
-        "mutants": lambda said: msgspec.json.decode(said, type=Report),
-        "soak": lambda said: msgspec.json.decode(said, type=Soak),
-        "again": lambda said: msgspec.json.decode(said, type=Steadiness),
-    }
-    command = commands[part]
+    command = ["-m", "tests.measure", part, *options[part]]
     print(f"{part}: python {' '.join(command)}", file=sys.stderr, flush=True)
     began = time.monotonic()
     done = subprocess.run(
@@ -152,7 +146,11 @@ def measured(part: str, form: Form) -> Any:
     minutes = (time.monotonic() - began) / 60
     told = " ".join(word for word in command if word not in ("--json", "--lines"))
     today = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
-    return Measured(form.name, today, minutes, f"python {told}"), read[part](done.stdout)
+    if part == "bank":
+        found: object = bank_rates(dict(line.split(" ", 1) for line in done.stdout.splitlines()))
+    else:
+        found = msgspec.json.decode(done.stdout, type=Report if part == "mutants" else Repeated)
+    return Measured(form.name, today, minutes, f"python {told}"), found
 
 
 def bank_rates(lines: dict[str, str], listed: Iterable[Answer] | None = None) -> Bank:
@@ -188,7 +186,7 @@ def markdown(rates: Rates) -> str:
     on = rates.machine
     lines = [
         f"Measured on {on.cores} cores with {on.memory_gib:g} GiB, {on.system}, CPython {on.python}, "
-        "by `python -m tests.rates`.",
+        "by `python -m tests.measure rates`.",
         "",
         "| what | rate | how it was measured |",
         "| --- | --- | --- |",
@@ -206,31 +204,30 @@ def markdown(rates: Rates) -> str:
     if rates.mutants:
         how, found = rates.mutants
         total = found.total
-        judged = total.killed + total.survived
-        sample = f"{how.command}: {judged + total.equivalent + total.not_checked} of {found.made}"
+        left = total.killed + total.survived
+        judged = left + total.equivalent
+        sample = replace(how, command=f"{how.command}: {judged + total.not_checked} of {found.made}")
         lines += [
             _row(
-                "mutants of right answers that are rejected",
-                _of(total.killed, judged),
-                replace(how, command=sample),
+                "mutants of right answers that are rejected, as they come", _of(total.killed, judged), sample
             ),
+            _row("without those that were read and do what the task asks", _of(total.killed, left), how),
             _row("rejected mutants with a specific diagnosis", _of(total.told, total.killed), how),
         ]
-        details += [f"- mutant that survived: `{survivor.id}`" for survivor in found.survivors]
-    if rates.soak:
-        how, soak = rates.soak
-        same = soak.repeated - len(soak.changed)
-        beside = f"{how.command}: {soak.judgements} judgements, {soak.jobs} at a time beside {soak.busy} busy loops"
-        what = "answers judged more than once under load, with the same points and diagnosis each time"
-        lines.append(_row(what, _of(same, soak.repeated), replace(how, command=beside)))
-        details += [f"- changed in the soak: {name}: {_ends(ends)}" for name, ends in soak.changed.items()]
-    if rates.again:
-        how, again = rates.again
-        number = again.verdicts // again.times if again.times else 0
-        sizes = f"{how.command}: {again.students} students, {again.assignments} assignments"
-        what = f"verdicts that stay the same when a class is graded {again.times} times"
-        lines.append(_row(what, _of(number - len(again.changed), number), replace(how, command=sizes)))
-        details += [f"- changed in the class: {name}: {_ends(ends)}" for name, ends in again.changed.items()]
+        details += [f"- mutant that survived, unread: `{survivor.id}`" for survivor in found.survivors]
+    for part, what in (
+        (
+            rates.soak,
+            "answers judged more than once under load, with the same points and diagnosis each time",
+        ),
+        (rates.steady_class, "verdicts that stay the same when a class is graded again and again"),
+    ):
+        if part:
+            how, ends = part
+            same = _of(ends.repeated - len(ends.changed), ends.repeated)
+            beside = f"{how.command}: {ends.judgements} judgements, {ends.how}"
+            lines.append(_row(what, same, replace(how, command=beside)))
+            details += [f"- changed: {name}: {in_words(counts)}" for name, counts in ends.changed.items()]
     if rates.mutants:
         lines += ["", *_by_exercise(rates.mutants[1].tallies)]
     return "\n".join([*lines, *(["", *details] if details else [])]) + "\n"
@@ -243,10 +240,6 @@ def _row(what: str, rate: str, how: Measured) -> str:
 
 def _of(some: int, all_: int) -> str:
     return f"{some} of {all_} ({some / all_:.1%})" if all_ else "none was judged"
-
-
-def _ends(ends: dict[str, int]) -> str:
-    return "; ".join(f"{number} times {end}" for end, number in ends.items())
 
 
 def _by_exercise(tallies: dict[str, Tally]) -> list[str]:
@@ -276,17 +269,18 @@ def read(path: Path) -> Rates:
     return msgspec.json.decode(path.read_bytes(), type=Rates)
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Measure, keep, put into the page; 1 where a part could not be measured."""
-    parser = argparse.ArgumentParser(prog="python -m tests.rates", description=__doc__)
-    parser.add_argument(
-        "parts", nargs="*", help=f"only these, the others as they are kept: {', '.join(PARTS)}"
-    )
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of this program."""
+    parser.add_argument("parts", nargs="*", metavar="PART", help=f"only these: {', '.join(PARTS)}")
     parser.add_argument("--short", action="store_true", help="minutes instead of three quarters of an hour")
     parser.add_argument("--output", type=Path, help="keep the figures here, and leave the page alone")
-    options = parser.parse_args(arguments)
+
+
+def main(options: argparse.Namespace) -> int:
+    """Measure, keep, put into the page; 1 where a part could not be measured, 2 where there is no such part."""
     if unknown := set(options.parts) - set(PARTS):
-        parser.error(f"no such part: {', '.join(sorted(unknown))}")
+        print(f"no such part: {', '.join(sorted(unknown))}", file=sys.stderr)
+        return 2
     output: Path = options.output or RESULTS
     rates = read(output) if output.exists() else Rates(machine())
     rates = replace(rates, machine=machine())
@@ -303,7 +297,3 @@ def main(arguments: Sequence[str] | None = None) -> int:
             replace_between(PAGE, BEGIN, END, markdown(rates))
     print(markdown(rates))
     return 1 if failed else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

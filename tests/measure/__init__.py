@@ -1,0 +1,1 @@
+"""Programs that measure the judge, as ``python -m tests.measure``."""

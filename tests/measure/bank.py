@@ -1,0 +1,66 @@
+"""The bank of right and wrong answers, each judged once, and what did not come out as expected.
+
+``--print lab_1_2.talker/wrong/counter_start`` prints the program of an answer instead, which may be stored as an edit
+(``autograder.authoring.answer_tables``). To judge answers again and again, under load: ``soak``.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from autograder.authoring.answers import COLD, Answer, answers, longest_first
+from autograder.authoring.judging import Turn, judge_all, warm_up
+from autograder.verdict import to_json
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Sequence
+
+    from autograder.verdict import Verdict
+
+
+def of_answers(parser: argparse.ArgumentParser, *, jobs: int = 14) -> None:
+    """The options of all programs that judge answers."""
+    parser.add_argument("only", nargs="*", help="parts of the names of answers, such as lab_1_4 or /wrong/")
+    parser.add_argument("--jobs", type=int, default=jobs, help="how many are judged at once")
+
+
+def chosen(only: Sequence[str]) -> list[Answer]:
+    """The answers with one of these parts in their names; all where there is none."""
+    return [answer for answer in answers() if not only or any(part in answer.name for part in only)]
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of this program."""
+    of_answers(parser)
+    parser.add_argument("--print", action="store_true", help="print the programs, judge none")
+    parser.add_argument(
+        "--warm", action="store_true", help=f"run all but one program in {COLD} in warm forks"
+    )
+    parser.add_argument("--lines", action="store_true", help="print each verdict as a line of JSON")
+
+
+def main(options: argparse.Namespace) -> int:
+    """Judge the bank; 1 where something is not as expected."""
+    wanted = chosen(options.only)
+    if options.print:
+        for answer in wanted:
+            print(f"# {answer.name}\n" * (len(wanted) > 1) + answer.text, end="")
+        return 0 if wanted else 1
+    objections = []
+
+    def done(turn: Turn[Answer], verdict: Verdict) -> None:
+        if options.lines:
+            print(turn.subject.name, to_json(verdict).decode(), flush=True)
+        elif objection := turn.subject.objection(verdict):
+            objections.append(objection)
+            print(f"{turn.subject.name}: {objection} ({verdict.seconds:.1f} s)", flush=True)
+
+    began = time.monotonic()
+    warm_up()
+    turns = [Turn(answer, "turn 0") for answer in longest_first(wanted)]
+    judge_all(turns, jobs=options.jobs, done=done, warm=options.warm)
+    if not options.lines:
+        print(f"{len(wanted)} answers in {time.monotonic() - began:.0f} s, {len(objections)} objections")
+    return 1 if objections else 0
