@@ -52,7 +52,7 @@ class _ForkedJudge:
             os.waitpid(self.pid, 0)
 
 
-def verdict_in_notebook(exercise_id: str, file: Path, seed: str, evidence: Path | None = None) -> bytes:
+def verdict_in_notebook(exercise_id: str, file: Path, seed: str) -> bytes:
     """Run a program that ends with its check; what the judge tells a grader of it, as JSON.
 
     Must run in a fork without threads of a process that is warm.
@@ -61,7 +61,6 @@ def verdict_in_notebook(exercise_id: str, file: Path, seed: str, evidence: Path 
         exercise_id: The exercise's id.
         file: The program.
         seed: What random inputs are drawn from.
-        evidence: Where to put what the judge hands over beside its verdict.
     """
     exercise = exercises.get(exercise_id)
     CommandSubject([])  # makes this process the one that gets the orphans
@@ -76,14 +75,11 @@ def verdict_in_notebook(exercise_id: str, file: Path, seed: str, evidence: Path 
     with tempfile.TemporaryDirectory(prefix="notebook-") as folder:
         try:
             with JudgeProcess(Path(folder) / "judge", seed=seed, start=start) as judge:
-                judge.keeps_evidence = evidence is not None
                 judge.open(exercise.id)
                 _run(warm, file, judge.socket_path, exercise.limit + SPARE, helpers)
                 report = judge.close_report()
         except JudgeDied as error:
             return to_json(not_checked(exercise.id, exercise.title, exercise.points, str(error)))
-    if evidence is not None:
-        evidence.write_bytes(report.evidence)
     if report.trouble:
         return to_json(not_checked(exercise.id, exercise.title, exercise.points, report.trouble))
     never_asked = Diagnosis(NEVER_ASKED, "The program ended before its check.")

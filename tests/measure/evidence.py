@@ -13,7 +13,7 @@ import hashlib
 import json
 import lzma
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,7 +24,7 @@ from autograder.appeals.replaying import CannotReplay, replay
 from autograder.authoring.answers import Answer, answers, longest_first
 from autograder.authoring.judging import Turn, checked, judge_all, warm_up
 from autograder.judge.verdicts.keeping import Kept, packed, plain, restored, unpack
-from autograder.verdict import to_json
+from autograder.verdict import State, to_json
 from tests.measure import bank, stimulus
 
 if TYPE_CHECKING:
@@ -85,6 +85,9 @@ class Seen:
         if found is not None:
             # When that was must not tell two makings of the same evidence apart.
             seen = msgspec.structs.replace(unpack(packed(found)), at=0.0)
+            again = replay(seen)
+            if replace(again.now, seconds=verdict.seconds) != verdict:
+                return to_json(replace(verdict, state=State.NOT_CHECKED, detail="; ".join(again.differences)))
             record = Record(self.name, program(self.answer), stimulus.digest(self.answer.exercise), seen)
             self.file.write_text(_line(record), encoding="utf-8")
         return to_json(verdict)

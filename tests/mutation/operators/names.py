@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from tests.mutation.code import Code, Edit, argument, called
+from tests.mutation.code import SAYS, Code, Edit, argument, called
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -76,10 +76,15 @@ def field_name(code: Code) -> Iterator[Edit]:
 
 
 def exchanged(code: Code) -> Iterator[Edit]:
-    """The first two arguments of a call, or the two sides of a sum, change places."""
+    """The first two arguments of a call change places.
+
+    Left out is the order of words in what is said, and that of two numbers, which are only ever added.
+    """
     for call in code.all(ast.Call):
         if len(call.args) >= 2 and not any(isinstance(value, ast.Starred) for value in call.args[:2]):
             first, second = call.args[:2]
+            if called(call) in (*SAYS, "format") or called(first) == called(second) == "int":
+                continue
             start, end = code.span(first)[0], code.span(second)[1]
             between = code.text[code.span(first)[1] : code.span(second)[0]]
             yield Edit(start, end, code.source(second) + between + code.source(first), code.where(call))

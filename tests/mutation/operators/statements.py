@@ -21,6 +21,8 @@ _EFFECTS = (
     *("cancel_goal", "cancel_goal_async", "get_result", "get_result_async"),
 )
 """Calls whose second time others can see. A second node, client or publisher that nobody uses is not seen."""
+_FREE_WORDS = ("flush", "args", "output")
+"""Named arguments that nobody has to give: how soon a line is written, what ``init`` reads, where output goes."""
 
 
 def dropped(code: Code) -> Iterator[Edit]:
@@ -102,10 +104,11 @@ def only_once(code: Code) -> Iterator[Edit]:
 
 
 def keyword_dropped(code: Code) -> Iterator[Edit]:
-    """A call without one of its named arguments."""
+    """A call without one of its named arguments that count."""
     for call in code.all(ast.Call):
         for keyword in call.keywords:
-            if keyword.arg is not None and called(call) not in ("dict", "Request", "Goal"):
+            counts = keyword.arg is not None and keyword.arg not in _FREE_WORDS
+            if counts and called(call) not in ("dict", "Request", "Goal"):
                 start, end = code.span(keyword)
                 while end < len(code.text) and code.text[end] in ", ":
                     end += 1
