@@ -223,8 +223,8 @@ def compare(path: Path, before: str = "", after: str = "") -> list[str]:
     Raises:
         GradingError: There are not two runs, or none of that name.
     """
+    from autograder.cards.readable import printable
     from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.reporting.report_table import printable
     from autograder.grading.table.differences import compare as compare_runs
 
     old, new, found = compare_runs(ClassDirectory(path).state, before, after)
@@ -237,8 +237,8 @@ def attempts_of(path: Path, student: str) -> list[str]:
     Raises:
         GradingError: It is no class, or nobody of that id was graded in it.
     """
+    from autograder.cards.readable import printable
     from autograder.grading.entering.attempts import read
-    from autograder.grading.reporting.report_table import printable
 
     return [printable(attempt.line()) for attempt in read(path, student)]
 

@@ -12,13 +12,13 @@ import pytest
 
 from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution
 from autograder.boxes.limits import Limits
+from autograder.cards.readable import printable
 from autograder.grading.classes.class_directory import reason_against_name
 from autograder.grading.classes.seeds import create_secret, read_secret, seed_for
 from autograder.grading.entering.journal import Journal, write_whole
 from autograder.grading.entering.points import points
 from autograder.grading.errors import DiskFull, is_disk_full
 from autograder.grading.reporting.report import Row, write_csv
-from autograder.grading.reporting.report_table import printable
 from autograder.grading.task import Task, decode_execution, decode_task, encode
 from autograder.verdict import State, Verdict
 

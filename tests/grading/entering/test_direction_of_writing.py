@@ -7,8 +7,7 @@ from typing import Any
 import nbformat
 import pytest
 
-from autograder.cards.readable import one_line
-from autograder.grading.reporting.report_table import printable
+from autograder.cards.readable import one_line, printable
 from autograder.grading.reporting.spreadsheet import defused
 from autograder.grading.returning.sanitize import harmless_markdown, make_harmless, visible
 
