@@ -1,4 +1,4 @@
-"""A cgroup for each submission, where the host lets us make one: it counts what nobody can hide.
+"""A cgroup for each submission, where the host lets us make one: it counts what nobody can hide, and has one share.
 
 Version 1 (one hierarchy for each controller) and version 2 (one for all) are both in use. Whether a process may be put
 into a new group is found out by putting one there, because permissions, delegation and read-only mounts all have a say.
@@ -20,6 +20,8 @@ from typing import TYPE_CHECKING, Self
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+_KINDS = ("memory", "pids", "cpu", "cpuacct")
+"""Version 2 has no ``cpuacct``: every group of it counts its processor time."""
 _PREFIX = "autograder-"
 _SURELY_LEFT = 60.0
 """Seconds after which an empty group is nobody's any more."""
@@ -40,7 +42,7 @@ class Controller:
 
 
 class Group:
-    """The groups of one submission.
+    """The groups of one submission. Together its processes have as much of the processors as one other group has.
 
     Args:
         memory_bytes: What all its processes may have together, files in memory included.
@@ -76,6 +78,17 @@ class Group:
         """Whether a member was refused a further process or thread."""
         return self._counted("pids", "pids.events", "pids.events", "max")
 
+    @property
+    def cpu_seconds(self) -> float | None:
+        """Processor time of all that were ever members, whoever has waited for them; None where nobody counts it."""
+        with contextlib.suppress(OSError, ValueError, IndexError):
+            if "cpuacct" in self._folders:
+                return int((self._folders["cpuacct"] / "cpuacct.usage").read_text()) / 1e9
+            for kind, folder in self._folders.items():
+                if self._controllers[kind].version == 2:
+                    return int((folder / "cpu.stat").read_text().split()[1]) / 1e6  # usage_usec is the first line
+        return None
+
     def close(self) -> None:
         """Take the groups away again, when no process is in them any more; may be called twice."""
         for folder in set(self._folders.values()):
@@ -104,12 +117,12 @@ class Group:
 
 @functools.cache
 def usable() -> Mapping[str, Controller]:
-    """The controllers ``memory`` and ``pids`` as far as groups can be made here, each with its place.
+    """The controllers of ``_KINDS`` as far as groups can be made here, each with its place.
 
     Takes away what an earlier grader left that was killed.
     """
     found = {}
-    for kind in ("memory", "pids"):
+    for kind in _KINDS:
         for controller in _candidates(kind, _text("/proc/self/cgroup"), _text("/proc/self/mountinfo")):
             _sweep(controller.base)
             if _can_hold_a_process(kind, controller):
@@ -121,6 +134,8 @@ def usable() -> Mapping[str, Controller]:
 def _settings(kind: str, version: int, memory_bytes: int, processes: int) -> Iterable[tuple[str, str]]:
     if kind == "pids":
         return [("pids.max", str(processes))]
+    if kind in ("cpu", "cpuacct"):
+        return []  # a new group has the same share as each other one: cpu.shares of 1024, cpu.weight of 100
     if version == 1:
         # Swap counts too, where it is counted at all; that limit may not be below the other one.
         return [

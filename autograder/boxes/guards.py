@@ -3,7 +3,8 @@
 With cgroups the operating system itself refuses a process or ends one that has too much. Without them a watch counts
 what it sees in the box's ``/proc`` several times a second and ends the box; what is faster than that is kept in bounds
 by limits on each single process. How much memory a process has had at most is seen later, too, so that it is no chance
-which of the two meets a process first. Processor time is always counted by the watch: it does no harm to be late there.
+which of the two meets a process first. The limit on processor time is always held by the watch: it does no harm to be
+late there.
 """
 
 from __future__ import annotations
@@ -129,7 +130,8 @@ class BoxGuard:
         if self._group.ran_out_of_memory:
             return Ended.OUT_OF_MEMORY
         use = use_of(self._first, None if self._memory else _memory_of)
-        if use.cpu_seconds > self._limits.cpu_seconds:
+        counted = self._group.cpu_seconds
+        if (use.cpu_seconds if counted is None else counted) > self._limits.cpu_seconds:
             return Ended.OUT_OF_CPU
         if use.files > self._limits.all_open_files:
             return Ended.TOO_MANY_FILES
@@ -261,6 +263,7 @@ def guards() -> Mapping[str, str]:
         "memory": _cgroup("memory") or watched,
         "processes": _cgroup("pids") or _processes_without(watched),
         "processor time": "looked at four times a second, and a limit on each process",
+        "share of the processors": _cgroup("cpu") or "none (no cgroup can be made here)",
         "disk": "a file system in memory, with a size and a number of files",
         "open files": "a limit on each process, and all together looked at four times a second",
     }

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
+import subprocess
+import sys
+import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import pytest
 
 from autograder.boxes import cgroups
 from autograder.boxes.cgroups import Controller
-
-if TYPE_CHECKING:
-    import pytest
 
 OLD_OWN = "4:memory:/user/ada\n3:cpu,cpuacct:/\n2:pids:/\n0::/\n"
 OLD_MOUNTS = """\
@@ -64,3 +67,35 @@ def test_what_an_earlier_grader_left_is_taken_away(tmp_path: Path, monkeypatch: 
     monkeypatch.setattr(cgroups, "_SURELY_LEFT", -1.0)
     cgroups._sweep(tmp_path)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["autograder-1-0", "mine"]
+
+
+BUSY = "import os, sys\nos.sched_setaffinity(0, {int(sys.argv[1])})\nprint(flush=True)\nwhile True: pass"
+
+
+@pytest.mark.skipif("cpu" not in cgroups.usable(), reason="this host lets us make no cgroups with a share")
+def test_many_processes_of_a_group_have_one_share(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On one processor, so that both groups want the same; what others want of it they have from both alike."""
+    processor = str(min(os.sched_getaffinity(0)))
+    with contextlib.ExitStack() as stack:
+        many, one = (stack.enter_context(cgroups.Group(1 << 30, 100)) for _ in range(2))
+        for group, number in ((many, 9), (one, 1)):
+            for _ in range(number):
+                busy = subprocess.Popen([sys.executable, "-S", "-c", BUSY, processor], stdout=subprocess.PIPE)
+                stack.callback(busy.communicate)
+                stack.callback(busy.kill)
+                assert busy.stdout is not None
+                busy.stdout.readline()
+                for procs in group.procs:
+                    Path(procs).write_text(str(busy.pid))
+        began = [group.cpu_seconds or 0.0 for group in (many, one)]
+        while (many.cpu_seconds or 0.0) - began[0] < 1.0:
+            time.sleep(0.05)
+        used = [(group.cpu_seconds or 0.0) - start for group, start in zip((many, one), began, strict=True)]
+        assert used[1] > used[0] / 3, "one process has a ninth of what nine have together"
+
+
+def test_version_2_counts_processor_time_in_every_group(tmp_path: Path) -> None:
+    with cgroups.Group(1 << 30, 100, {"pids": Controller(tmp_path, 2)}) as group:
+        folder = Path(group.procs[0]).parent
+        folder.joinpath("cpu.stat").write_text("usage_usec 2500000\nuser_usec 1\nsystem_usec 2\n")
+        assert group.cpu_seconds == 2.5
