@@ -213,8 +213,8 @@ def remark(part: Part) -> str:
     if not goes_on_waiting(part):
         return ""
     return (
-        "When nobody serves, your client says that it waits, and waits on. That is right here; a robot that must "
-        "not stand still for ever needs a limit as well, such as a count of the tries."
+        "When nobody serves, your client says again and again that it waits, and waits on. The task lets a program do "
+        "so; a robot that must not stand still for ever needs a limit as well, such as a count of the tries."
     )
 
 

@@ -18,6 +18,7 @@ from autograder.kit.goal_reports import (
     SERVED,
     aborted_as_seen,
     asked_for,
+    called_accepted,
     given_up,
     goals_as_seen,
     left_at_once,
@@ -42,8 +43,8 @@ def waits_for_nobody(evidence: Evidence) -> Advice | None:
     if not given_up(evidence).startswith("still waiting"):
         return None
     return Advice(
-        "When there is no action server, your client waits without end.",
-        "Give the wait a limit: `if not client.wait_for_server(timeout_sec=5.0):` say so and stop.",
+        f"When there is no action server, your client is {given_up(evidence)}.",
+        "Give the wait a limit of a few seconds: `if not client.wait_for_server(timeout_sec=5.0):` say so and stop.",
     )
 
 
@@ -141,6 +142,17 @@ def crashed_by_refusal(evidence: Evidence) -> Advice | None:
         "Look at goal_handle.accepted as soon as the answer to the goal is there. Where it is False, say so, as the "
         "task asks, and stop: there is no result to wait for.",
         crashed[0].traceback,
+    )
+
+
+def goes_on_after_refusal(evidence: Evidence) -> Advice | None:
+    """It calls a goal accepted that was refused."""
+    claim = called_accepted(evidence)
+    if not claim:
+        return None
+    return Advice(
+        f"The goal was rejected, and your client said “{claim}”: it went on as if the goal had been accepted.",
+        "Stop where `goal_handle.accepted` is False: below the line that says so, end with `return`.",
     )
 
 

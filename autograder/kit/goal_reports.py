@@ -51,6 +51,11 @@ _WAYS = ("log", "output", "subject")
 """The kinds of events in which something is said: on /rosout, printed, returned."""
 _ENDS = re2.compile(rf"(?i)\b(?:status_)?(?:{words.SUCCEEDED}|{'|'.join(_FAILURES)})\b")
 """The names of the ends that an accepted goal may have."""
+_ACCEPTED = re2.compile(
+    rf"(?i)(?:^\W*|\b(?:goal|it|ziel)\s+(?:is |was |has been |got |wurde )?){words.ACCEPTED}"
+    r"(?:\s*[.,;!…]|\s*:[-']?\)|\s+\w|\s*$)"
+)
+"""Not a question, and no name of a value that follows."""
 _TRACEBACK = "Traceback (most recent call last)"
 
 
@@ -218,6 +223,8 @@ def refused_as_seen(evidence: Evidence) -> str:
         return NO_GOAL if part.events else "not reached"
     # An empty list, as a function may return one, is no word.
     lines = [line for line in part.said(after=goal) if re2.search(r"\pL", line)]
+    if claim := called_accepted(evidence):
+        return f"“{claim}” about a goal that was rejected"
     said = [line for line in _new_words(lines, evidence.main) if not _tells_another(line, evidence)]
     raised = raised_on_purpose(part) and not _tells_another(last_line(part), evidence)
     if part.first("result_request") is not None:
@@ -232,6 +239,19 @@ def refused_as_seen(evidence: Evidence) -> str:
     if part.ending is None and evidence.main.ending is not None:
         return "said so, and did not end"
     return ""
+
+
+def called_accepted(evidence: Evidence) -> str:
+    """A line that calls the refused goal accepted, as it does where a goal was; empty where there is none."""
+    part = evidence.part(REFUSED)
+    goal = part.first("goal")
+    of_accepted = {shape(line) for line in evidence.main.said()}
+    said = part.said(after=goal) if goal is not None else []
+    return next((line for line in said if shape(line) in of_accepted and _says_accepted(line)), "")
+
+
+def _says_accepted(line: str) -> bool:
+    return words.flag(words.ACCEPTED, line) is True or _ACCEPTED.search(line) is not None
 
 
 def _tells_another(line: str, evidence: Evidence) -> bool:

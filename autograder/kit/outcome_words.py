@@ -12,6 +12,7 @@ import re2
 CANCELED = r"(?:cancel+ed|abgebrochen|annul\w*)"
 SUCCEEDED = r"(?:succeeded|success)"
 ABORTED = "aborted"
+ACCEPTED = r"(?:accepted|akzeptiert|angenommen|aceptad[ao])"
 DOUBTFUL = r"not |n't|refus|reject|fail|nicht|unable|could|instead|denied|unknown|expect|want|but|should"
 """Words of who says that something is otherwise than it was meant to be."""
 SUCCESS = r"succe|erfolg"

@@ -343,9 +343,9 @@ def waits_for_nobody(evidence: Evidence) -> Advice | None:
     if not part.events or part.ending is not None or giving_up.goes_on_waiting(part):
         return None
     return Advice(
-        "When the service is not there, your client waits without end.",
-        "Give the wait a limit: `if not client.wait_for_service(timeout_sec=5.0):` say so and stop. A while loop needs "
-        "a count.",
+        f"When the service is not there, your client is still waiting after {giving_up.GIVE_UP_LIMIT:g} s.",
+        "Give the wait a limit of a few seconds: `if not client.wait_for_service(timeout_sec=5.0):` say so and stop. A "
+        "while loop needs a count.",
     )
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from autograder.kit.crashes import traceback_of
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.goal_mistakes import crashed_by_refusal, refusal_not_reported
+from autograder.kit.goal_mistakes import crashed_by_refusal, goes_on_after_refusal, refusal_not_reported
 from autograder.kit.goal_reports import REFUSED, refused_as_seen
 
 REFERENCE = Reference("exercise_1_3.cancel", {})
@@ -57,6 +57,26 @@ def evidence(
 def test_a_refusal_is_told_in_words_of_no_other_run(refused: list[Event], wrong: str) -> None:
     seen = refused_as_seen(evidence(refused))
     assert seen.startswith(wrong) if wrong else seen == ""
+
+
+@pytest.mark.parametrize(
+    ("line", "claimed"),
+    [
+        ("Goal accepted :)", True),
+        ("accepted: True", True),
+        ("goal accepted = yes, asking for its result", True),
+        ("waiting for the goal to be accepted", False),
+        ("Goal accepted?", False),
+        ("accepted: False", False),
+        ("the goal was not accepted", False),
+    ],
+)
+def test_who_calls_a_refused_goal_accepted_has_not_told_of_the_refusal(line: str, claimed: bool) -> None:
+    refused = [say("Goal rejected :("), say(line), ASKED, Event(0.5, "subject", "returned")]
+    both = evidence(refused, canceled=line)
+    assert refused_as_seen(both).startswith(f"“{line}”") is claimed
+    assert (goes_on_after_refusal(both) is not None) is claimed
+    assert not refused_as_seen(evidence(refused)), "what is said of no accepted goal is no claim"
 
 
 def test_a_run_that_never_was_is_not_called_a_run_without_a_goal() -> None:

@@ -210,6 +210,7 @@ def unserved(bench: Bench, _: bool) -> None:
 
 _WHAT_IS_SAID = (
     ("refused_goal_used", goals.crashed_by_refusal),
+    ("refused_goal_used", goals.goes_on_after_refusal),
     ("result_of_rejected_goal", goals.result_of_rejected_goal),
     ("result_not_reported", goals.result_not_requested),
     ("status_misreported", goals.status_misreported),

@@ -216,6 +216,7 @@ MISTAKES = (
     Mistake("status_misreported", status_misreported),
     Mistake("status_not_reported", status_not_reported),
     Mistake("refused_goal_used", goal_mistakes.crashed_by_refusal),
+    Mistake("refused_goal_used", goal_mistakes.goes_on_after_refusal),
     Mistake("result_of_rejected_goal", goal_mistakes.result_of_rejected_goal),
     Mistake("refusal_not_reported", goal_mistakes.refusal_not_reported),
     Mistake("never_ended", goal_mistakes.never_ended),
