@@ -19,8 +19,7 @@ from autograder.masters.stubs import LeaveStubs
 def release_preprocessors() -> list[type[NbGraderPreprocessor]]:
     """The steps of nbgrader for a release, with :class:`LeaveStubs` in the place of ClearSolutions.
 
-    A class's ``nbgrader_config.py`` sets ``c.GenerateAssignment.preprocessors`` to
-    :class:`autograder.masters.release_steps.ReleaseSteps`; one that was made before 22 November 2026 sets it to this.
+    A class's ``nbgrader_config.py`` names them through :class:`autograder.masters.release_steps.ReleaseSteps`.
     """
     return [LeaveStubs if step is ClearSolutions else step for step in GenerateAssignment().preprocessors]
 

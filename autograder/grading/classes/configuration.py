@@ -20,22 +20,11 @@ if TYPE_CHECKING:
 
 _EXPORTER = "autograder.grading.exporter.SubmissionExporter"
 _STEP = "autograder.grading.preprocessors.WireExecute"
-_EARLIER_STEPS = [
-    _STEP,
-    "nbgrader.preprocessors.LimitOutput",
-    "nbgrader.preprocessors.SaveAutoGrades",
-    "nbgrader.preprocessors.AssignLatePenalties",
-    "nbgrader.preprocessors.CheckCellMetadata",
-]
-"""In classes made before November 2026, with the hook and the sanitizing step below."""
-
 _ANYTHING = object()
 _MAY_BE: Mapping[str, Mapping[str, tuple[Any, ...]]] = {
     "Autograde": {
         "exporter_class": (_EXPORTER,),
-        "autograde_preprocessors": ([_STEP], _EARLIER_STEPS),
-        "pre_convert_hook": ("autograder.grading.hooks.before_autograde",),
-        "sanitize_preprocessors": (["nbgrader.preprocessors.CheckCellMetadata"],),
+        "autograde_preprocessors": ([_STEP],),
     },
     "GenerateFeedback": {"exporter_class": ("autograder.grading.pages.FeedbackExporter",)},
     "HTMLExporter": {"filters": ({"markdown2html": "autograder.grading.pages.markdown_to_html"},)},

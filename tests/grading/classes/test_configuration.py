@@ -20,22 +20,6 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
-OF_AN_EARLIER_CLASS = """
-from autograder.masters.release import release_preprocessors
-c.GenerateAssignment.preprocessors = release_preprocessors()
-c.Autograde.exporter_class = "autograder.grading.exporter.SubmissionExporter"
-c.Autograde.pre_convert_hook = "autograder.grading.hooks.before_autograde"
-c.Autograde.sanitize_preprocessors = ["nbgrader.preprocessors.CheckCellMetadata"]
-c.Autograde.autograde_preprocessors = [
-    "autograder.grading.preprocessors.WireExecute",
-    "nbgrader.preprocessors.LimitOutput",
-    "nbgrader.preprocessors.SaveAutoGrades",
-    "nbgrader.preprocessors.AssignLatePenalties",
-    "nbgrader.preprocessors.CheckCellMetadata",
-]
-c.OverwriteCells.add_missing_cells = True
-"""
-
 
 def test_what_new_class_writes_is_honoured(tiny: TinyClass) -> None:
     check_configuration(ClassDirectory(tiny.path))
@@ -49,15 +33,6 @@ def test_who_reads_it_waits_for_no_import_of_nbgrader(tiny: TinyClass) -> None:
     command = [sys.executable, "-c", asked, str(tiny.path)]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert done.stdout.split() == []
-
-
-def test_a_class_that_was_made_before_is_graded_as_ever(tiny: TinyClass, fake_engine: FakeEngine) -> None:
-    tiny.configure(OF_AN_EARLIER_CLASS)
-    tiny.submit("ada", 4)
-    tiny.submit("ben", 5)
-    tiny.grade(students=["ada"])
-    nbgrader_autograde(tiny)
-    assert (tiny.scores("ada")[TALKER], tiny.scores("ben")[TALKER]) == (4, 5)
 
 
 @pytest.mark.parametrize(
