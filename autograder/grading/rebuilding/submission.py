@@ -12,6 +12,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 from autograder.boxes.execution import CellType
 from autograder.grading.collector import without_collector
+from autograder.regular_files import opened
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -98,9 +99,8 @@ def _opened(path: Path) -> Iterator[IO[bytes]]:
     """An ordinary file, open. It is looked at before (to open a device may do something) and after."""
     try:
         _check(path, path.lstat())
-        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
-        with os.fdopen(descriptor, "rb") as file:
-            _check(path, os.fstat(descriptor))
+        with opened(path) as file:
+            _check(path, os.fstat(file.fileno()))
             yield file
     except FileNotFoundError:
         raise UnreadableSubmission(

@@ -17,7 +17,8 @@ from autograder.messages import workspaces
 from autograder.messages.checks import Collect, FromNotebook, Sources
 from autograder.messages.lines import Hangup, Lines, NotUnderstood
 from autograder.messages.workspaces import Source
-from autograder.workspaces.sources.collecting import MAX_BYTES, MAX_FILES, BadSources, checked
+from autograder.workspaces.sources.collecting import MAX_BYTES, MAX_FILES, check_path, checked
+from autograder.workspaces.sources.tree import BadSources
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -159,7 +160,8 @@ class PathSubject(InOwnProcesses):
             return [], "a file has not the form of one"
         wrong = "".join(c for c in said.trouble[:500] if c.isprintable())
         try:
-            self._path = checked([Source(said.path)])[0].path
+            check_path(said.path)
+            self._path = said.path
             return checked(sources), wrong
         except BadSources as error:
             return [], wrong or str(error)

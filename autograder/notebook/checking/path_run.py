@@ -12,8 +12,9 @@ from autograder.messages.checks import Exited, Output, Sources
 from autograder.messages.workspaces import Source
 from autograder.short_lines import short_lines
 from autograder.workspaces.running.own_session import OwnSession
-from autograder.workspaces.sources.collecting import BadSources, collect_launch, collect_workspace
+from autograder.workspaces.sources.collecting import collect_launch, collect_workspace
 from autograder.workspaces.sources.finding import workspace_of
+from autograder.workspaces.sources.tree import BadSources
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

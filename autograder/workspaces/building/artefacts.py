@@ -1,47 +1,78 @@
-"""What a build has made, taken over as data: regular files, folders, and links that stay inside."""
+"""What a build has made, taken over as data: regular files and folders, and nothing else.
+
+Outside a box nothing that a box has made may be more than bytes. A link of the archive (a library has some, from its
+name to the name with its version) becomes a copy of the file that it names: who reads the folder later follows none.
+"""
 
 from __future__ import annotations
 
 import io
 import os
+import shutil
 import tarfile
 from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 MAX_FILES = 5_000
 MAX_BYTES = 64_000_000
 MAX_NAME = 240
 """Bytes of each part of a path."""
+MAX_DEPTH = 24
+"""Parts of a path."""
+MAX_LINKS = 8
+"""Links that lead from one to the next."""
 
 
 class BadArtefacts(ValueError):
     """An archive that is none, or that holds what no build of a workspace makes."""
 
 
-def unpack(archive: bytes, folder: Path) -> None:
+def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> int:
     """Write an archive of a build's install folder.
 
     Args:
         archive: A tar file that may be anything: whoever was built could have written it.
         folder: A folder that is not there yet.
+        most: Bytes that all files may have together.
+
+    Returns:
+        The bytes that they have.
 
     Raises:
-        BadArtefacts: It has entries that lead out of the folder, devices, or too much of anything. What was
-            written until then is left behind.
+        BadArtefacts: It has entries that lead out of the folder, links to anything but one of its files, devices, or
+            too much of anything. What was written until then is left behind.
     """
     folder.mkdir(mode=0o755)
     number = size = 0
+    links: dict[PurePosixPath, PurePosixPath] = {}
     try:
         with tarfile.open(fileobj=io.BytesIO(archive), mode="r:") as tar:
             for member in tar:
                 number += 1
                 size += max(member.size, 0)
-                if number > MAX_FILES or size > MAX_BYTES:
-                    raise BadArtefacts("the build made more than a workspace has")
-                _take(tar, member, folder)
+                _check_room(number, size, most)
+                if member.issym():
+                    links[PurePosixPath(*_parts(member.name))] = _target(member)
+                else:
+                    _take(tar, member, folder)
+        for link in links:
+            size += _copy(link, links, folder)
+            _check_room(number, size, most)
     except (tarfile.TarError, OSError, ValueError, RecursionError, MemoryError, OverflowError) as error:
         if isinstance(error, BadArtefacts):
             raise
         raise BadArtefacts(f"what the build made cannot be read: {error}") from error
+    return size
+
+
+def _check_room(number: int, size: int, most: int) -> None:
+    if number > MAX_FILES or size > most:
+        raise BadArtefacts(
+            f"the build made too much: {MAX_FILES} files and folders, and {most // 1000} kB are left for it"
+        )
 
 
 def _take(tar: tarfile.TarFile, member: tarfile.TarInfo, folder: Path) -> None:
@@ -49,24 +80,15 @@ def _take(tar: tarfile.TarFile, member: tarfile.TarInfo, folder: Path) -> None:
     if member.isdir():
         place.mkdir(parents=True, exist_ok=True)
         return
-    # Each folder comes before what is in it. One that is a link by now would lead somewhere else.
-    if any(parent.is_symlink() for parent in _between(place, folder)) or os.path.lexists(place):
-        raise BadArtefacts(f"{member.name!r} is there twice or lies behind a link")
+    if os.path.lexists(place):
+        raise BadArtefacts(f"{member.name!r} is there twice")
     place.parent.mkdir(parents=True, exist_ok=True)
-    if member.issym():
-        _check_link(member)
-        place.symlink_to(member.linkname)
-    elif member.type in (tarfile.REGTYPE, tarfile.AREGTYPE):
-        source = tar.extractfile(member)
-        assert source is not None
-        place.write_bytes(source.read())
-        place.chmod(0o755 if member.mode & 0o100 else 0o644)
-    else:
+    if member.type not in (tarfile.REGTYPE, tarfile.AREGTYPE):
         raise BadArtefacts(f"{member.name!r} is neither a file nor a folder")
-
-
-def _between(place: Path, folder: Path) -> list[Path]:
-    return [parent for parent in place.parents if parent != folder and parent.is_relative_to(folder)]
+    source = tar.extractfile(member)
+    assert source is not None
+    place.write_bytes(source.read())
+    place.chmod(0o755 if member.mode & 0o100 else 0o644)
 
 
 def _parts(name: str) -> tuple[str, ...]:
@@ -76,23 +98,40 @@ def _parts(name: str) -> tuple[str, ...]:
         path.is_absolute()
         or "\0" in name
         or ".." in parts
+        or len(parts) > MAX_DEPTH
         or any(len(os.fsencode(p)) > MAX_NAME for p in parts)
     ):
         raise BadArtefacts(f"{name[:80]!r} is no path inside the install folder")
     return parts
 
 
-def _check_link(member: tarfile.TarInfo) -> None:
-    target = PurePosixPath(member.linkname)
-    inside = os.path.normpath(PurePosixPath(member.name).parent / target)
-    if target.is_absolute() or inside.startswith("..") or "\0" in member.linkname:
+def _target(member: tarfile.TarInfo) -> PurePosixPath:
+    """Where a link leads. Read as text, which is exact: nothing in the folder is a link."""
+    inside = os.path.normpath(PurePosixPath(*_parts(member.name)).parent / member.linkname)
+    if inside.startswith(("..", "/")) or "\0" in inside:
         raise BadArtefacts(f"{member.name!r} leads out of the install folder")
+    return PurePosixPath(inside)
+
+
+def _copy(link: PurePosixPath, links: Mapping[PurePosixPath, PurePosixPath], folder: Path) -> int:
+    """Put the file that a link names, perhaps by way of other links, in the link's place; its size in bytes."""
+    target = link
+    for _ in range(MAX_LINKS):
+        target = links.get(target, target)
+    place, source = folder / link, folder / target
+    if target in links or not source.is_file():
+        raise BadArtefacts(f"{str(link)!r} is a link to no file of the build's")
+    if os.path.lexists(place):
+        raise BadArtefacts(f"{str(link)!r} is there twice")
+    place.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copy(source, place)
+    return place.stat().st_size
 
 
 def rename_paths(folder: Path, old: str, new: str) -> None:
     """Replace one path by another in the text files of a folder (setup scripts, what CMake and setuptools wrote)."""
     for root, _, names in os.walk(folder):
         for file in (Path(root, name) for name in names):
-            content = b"" if file.is_symlink() else file.read_bytes()
+            content = file.read_bytes()
             if old.encode() in content and b"\0" not in content:
                 file.write_bytes(content.replace(old.encode(), new.encode()))

@@ -66,7 +66,7 @@ class Entry:
 
     def finish(self) -> None:
         """Let the build count from now on."""
-        (self.folder / _MARKER).touch()
+        (self.folder / _MARKER).write_text(self.folder.name, encoding="utf-8")
 
 
 def root() -> Path:
@@ -103,7 +103,15 @@ def is_ones_own(folder: Path) -> bool:
 
 def is_complete(key: str, base: Path) -> bool:
     """Whether there is a finished entry, without waiting for anybody who makes it."""
-    return (base / key / _MARKER).is_file()
+    return _is_of(key, base / key / _MARKER)
+
+
+def _is_of(key: str, marker: Path) -> bool:
+    """Whether the marker was written for a build of this key, and not for one whose folder has another name since."""
+    try:
+        return marker.read_text(encoding="utf-8") == key
+    except (OSError, UnicodeDecodeError):
+        return False
 
 
 @contextlib.contextmanager
@@ -128,7 +136,7 @@ def entry(key: str, base: Path | None = None, cancelled: Callable[[], bool] | No
         _end_builder(lock)
         folder = base / key
         marker = folder / _MARKER
-        complete = marker.is_file() and is_ones_own(folder)
+        complete = _is_of(key, marker) and is_ones_own(folder)
         if complete:
             os.utime(marker)
         else:

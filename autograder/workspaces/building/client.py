@@ -15,6 +15,7 @@ from autograder.messages.workspaces import Build as BuildOrder
 from autograder.messages.workspaces import BuildAnswer, BuildDone, BuildFailed, Piece
 from autograder.workspaces.building import artefacts
 from autograder.workspaces.sources import collecting
+from autograder.workspaces.sources.tree import BadSources
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -43,7 +44,7 @@ def ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) -> 
     try:
         collected = collecting.collect_workspace(found.workspace)
         lines = Lines.to(socket, LIMIT)
-    except (collecting.BadSources, Hangup):
+    except (BadSources, Hangup):
         return None
     with contextlib.closing(lines), contextlib.suppress(Hangup, NotUnderstood, artefacts.BadArtefacts):
         top = found.workspace.resolve().name

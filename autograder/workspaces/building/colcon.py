@@ -7,6 +7,7 @@ import shutil
 import sys
 import time
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import re2
@@ -17,11 +18,11 @@ from autograder.workspaces.building.failures import telling_line
 from autograder.workspaces.building.result import Build
 from autograder.workspaces.running.own_session import OwnSession
 from autograder.workspaces.running.prefixes import without_workspaces
-from autograder.workspaces.sources.packages import BadPackage, key, needed, survey
+from autograder.workspaces.sources.packages import key, needed, sources_of, survey
+from autograder.workspaces.sources.tree import BadSources
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
-    from pathlib import Path
 
     from autograder.workspaces.building.result import Targets
     from autograder.workspaces.sources.packages import Package
@@ -55,12 +56,12 @@ def _build(found: Build, targets: Targets | None) -> Build:
     chosen, found = choose(found, targets)
     if found.trouble:
         return found
-    workspace = found.workspace
+    src = found.workspace / "src"
     try:
-        sources = key(workspace / "src", chosen)
-    except BadPackage as error:
+        tree = sources_of(src, chosen)
+    except BadSources as error:
         return replace(found, trouble="bad_package", line=str(error))
-    with cache.entry(sources) as entry:
+    with cache.entry(key(tree, *command(moved(chosen, src, Path("src")), Path()))) as entry:
         install = entry.folder / "install"
         if entry.complete:
             return replace(found, ok=True, install=install, seconds=time.monotonic() - began, reused=True)
@@ -69,9 +70,11 @@ def _build(found: Build, targets: Targets | None) -> Build:
             if graders.ok:
                 entry.finish()
             return graders
-        log = _colcon(workspace, chosen, entry)
+        tree.write(entry.folder / "src")
+        log = _colcon(found.workspace, moved(chosen, src, entry.folder / "src"), entry)
         if log is None:
-            shutil.rmtree(entry.folder / "build", ignore_errors=True)
+            for made in ("src", "build"):
+                shutil.rmtree(entry.folder / made, ignore_errors=True)
             entry.finish()
             return replace(found, ok=True, install=install, seconds=time.monotonic() - began)
     return failed(replace(found, seconds=time.monotonic() - began), log)
@@ -127,6 +130,17 @@ def choose(found: Build, targets: Targets | None) -> tuple[list[Package], Build]
     return [], replace(found, trouble="bad_package", line=found.unusable[0])
 
 
+def moved(packages: Iterable[Package], src: Path, there: Path) -> list[Package]:
+    """The packages as they are found where their sources are written again.
+
+    Args:
+        packages: The packages.
+        src: The folder that they are in.
+        there: The other folder.
+    """
+    return [replace(package, folder=there / package.folder.relative_to(src)) for package in packages]
+
+
 def command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()) -> list[str]:
     """Colcon's command line for these packages alone; ``build``, ``install`` and ``log`` come into the folder.
 
@@ -158,6 +172,7 @@ def _colcon(workspace: Path, packages: Sequence[Package], entry: cache.Entry) ->
         said, late = colcon.collect(LIMIT, sys.maxsize)
         code = colcon.exit_code()
     output = "\n".join(said.decode("utf-8", "replace").splitlines())
+    output = output.replace(str(entry.folder / "src"), str(workspace / "src"))
     if late:
         return f"{output}\nerror: the build did not end within {LIMIT:g} s"
     return None if code == 0 else output

@@ -13,6 +13,7 @@ from autograder.workspaces.building.colcon import look
 from autograder.workspaces.building.trusted import BuildTookTooLong
 from autograder.workspaces.sources import collecting
 from autograder.workspaces.sources.finding import WORKSPACE
+from autograder.workspaces.sources.tree import BadSources, Tree
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -43,15 +44,15 @@ def serve_builds(lines: Lines, builds: TrustedBuilds, folder: Path, cancelled: C
     try:
         order = lines.hear(Build)
         if not 0 <= order.count <= collecting.MAX_FILES:
-            raise collecting.BadSources("there is too much in src")
+            raise BadSources("there is too much in src")
         taken = [lines.hear(Source) for _ in range(order.count)]
-        collecting.write(collecting.checked(taken), tree)
-        top = collecting.checked([Source(order.path)])[0].path
+        collecting.check_path(order.path)
+        Tree(tuple(collecting.checked(taken))).write(tree)
         only = set(order.only)
-    except (collecting.BadSources, NotUnderstood) as error:
+    except (BadSources, NotUnderstood) as error:
         lines.say(NotBuilt(str(error)))
         return
-    found = look(tree / top)
+    found = look(tree / order.path)
     made = found
     if not found.trouble:
         try:

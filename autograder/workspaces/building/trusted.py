@@ -1,6 +1,6 @@
 """A build that a grade may rest on: made in a box of its own from the sources alone, taken over as data.
 
-What comes of a box depends on the sources and on the tools, whose fingerprint is the key, so it may be used again
+What comes of a box depends on the bytes that it gets and on the tools. Their hash is the key, so it may be used again
 for the same sources, whoever hands them in. No box can write to the cache.
 
 Packages that hold interfaces and nothing else are often the same but for comments and spaces. When a second one comes
@@ -10,33 +10,31 @@ serves all that are to come.
 
 from __future__ import annotations
 
-import hashlib
 import shutil
-import tempfile
 import time
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.workspaces.building import artefacts, cache
 from autograder.workspaces.building.alone import or_alone
-from autograder.workspaces.building.colcon import choose, command, failed
+from autograder.workspaces.building.colcon import choose, command, failed, moved
 from autograder.workspaces.grading.jobs import BUILD_SECONDS, BuildJob
 from autograder.workspaces.running.plans import course_interfaces
-from autograder.workspaces.sources.interface_packages import DEFINITIONS, holds_only_interfaces, simplify
-from autograder.workspaces.sources.packages import BadPackage, Package, key
+from autograder.workspaces.sources.interface_packages import DEFINITIONS, holds_only_interfaces, simplified
+from autograder.workspaces.sources.packages import key, sources_of, state
+from autograder.workspaces.sources.tree import BadSources
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from autograder.workspaces.building.result import Build, Targets
     from autograder.workspaces.grading.jobs import Built, Jobs
+    from autograder.workspaces.sources.packages import Package
+    from autograder.workspaces.sources.tree import Tree
 
 ROOM = 16_000_000
 """Bytes for all builds of one notebook together; an interface package has 1.3 million, a Python package far less."""
-FORMAT = "2"
-"""Part of every key: change it when what is kept of a build changes."""
 MAX_LINE = 1_000
 """Characters of a line of a build's output that are looked at."""
 ONLY_PYTHON = (
@@ -55,17 +53,23 @@ class BuildTookTooLong(RuntimeError):
 
 
 @dataclass(frozen=True)
-class _Staged:
-    """Sources as they are built.
+class _Order:
+    """A build that is ordered.
 
     Attributes:
-        src: Where they are.
-        packages: The packages there.
-        key: Stands for them and for the tools.
+        tree: What the box gets.
+        packages: The packages in it; their folders are relative to the place of the build.
+        cmake: More arguments for CMake.
+        variables: More variables of the box's environment.
+        hidden: What the box must not find of the environment.
+        key: Stands for all this and for the tools.
     """
 
-    src: Path
-    packages: tuple[Package, ...]
+    tree: Tree
+    packages: Sequence[Package]
+    cmake: Sequence[str]
+    variables: Mapping[str, str]
+    hidden: Sequence[Path]
     key: str
 
 
@@ -119,46 +123,49 @@ class TrustedBuilds:
         if found.trouble:
             return found
         try:
-            with self._staged(found, chosen, name) as staged, self._simplified(found, chosen, name) as simple:
-                made = self._built(found, staged, simple, name, cancelled)
-        except BadPackage as error:
+            tree = sources_of(found.workspace / "src", chosen)
+            simple = simplified(tree) if all(map(holds_only_interfaces, chosen)) else None
+            order, shared = (self._order(one, found, chosen, name) if one else None for one in (tree, simple))
+            assert order is not None
+            made = self._built(found, order, shared, name, cancelled)
+        except BadSources as error:
             return replace(found, trouble="bad_package", line=str(error))
         except cache.GivenUp as error:
             return replace(found, trouble="build", line=str(error))  # which nobody will read
         return replace(made, seconds=time.monotonic() - began)
 
     def _built(
-        self, found: Build, staged: _Staged, simple: _Staged | None, name: str, cancelled: Callable[[], bool]
+        self, found: Build, order: _Order, shared: _Order | None, name: str, cancelled: Callable[[], bool]
     ) -> Build:
-        for one in (staged, simple):
-            if one is not None and (made := self._kept(found, one)) is not None:
+        for one in (order, shared):
+            if one is not None and (made := self._kept(found, one.key)) is not None:
                 return made
-        met = self._folder / f"{simple.key}.met" if simple is not None else None
-        if simple is not None and met is not None and met.exists():
-            made = self._make(found, simple, name, cancelled)
+        met = self._folder / f"{shared.key}.met" if shared is not None else None
+        if shared is not None and met is not None and met.exists():
+            made = self._make(found, shared, name, cancelled)
             if made.ok:
                 return made
-        made = self._make(found, staged, name, cancelled)
+        made = self._make(found, order, name, cancelled)
         if made.ok and met is not None:
             met.touch()
         return made
 
-    def _kept(self, found: Build, staged: _Staged) -> Build | None:
+    def _kept(self, found: Build, key: str) -> Build | None:
         """What is there already; None where it is not, or is just being made."""
-        if not cache.is_complete(staged.key, self._folder):
+        if not cache.is_complete(key, self._folder):
             return None
-        with cache.entry(staged.key, self._folder) as entry:
+        with cache.entry(key, self._folder) as entry:
             if not entry.complete:
                 return None
             return replace(found, ok=True, install=entry.folder / "install", reused=True)
 
-    def _make(self, found: Build, staged: _Staged, name: str, cancelled: Callable[[], bool]) -> Build:
-        with cache.entry(staged.key, self._folder, cancelled) as entry:
+    def _make(self, found: Build, order: _Order, name: str, cancelled: Callable[[], bool]) -> Build:
+        with cache.entry(order.key, self._folder, cancelled) as entry:
             install = entry.folder / "install"
             made = replace(found, ok=True, install=install, reused=entry.complete)
             if entry.complete:
                 return made
-            built = self._run(staged, entry.folder, name, cancelled)
+            built = self._run(order, entry.folder, name, cancelled)
             if built.late:
                 raise BuildTookTooLong(
                     f"a build did not end within {BUILD_SECONDS:g} s; is the machine too busy?"
@@ -166,64 +173,36 @@ class TrustedBuilds:
             log = self._log(built, name, entry.folder)
             if built.returncode != 0 or built.archive is None:
                 return failed(found, log)
-            # Before it is written: what is in the cache stays there for a while, and others need the room, too.
-            if len(built.archive) > self._room:
-                error = f"error: the builds of one notebook may take {ROOM // 10**6} MB together, and these take more"
-                return failed(found, f"{log}\n{error}")
-            self._room -= len(built.archive)
             try:
-                artefacts.unpack(built.archive, install)
+                # What is in the cache stays there for a while, and others need the room, too.
+                self._room -= artefacts.unpack(built.archive, install, self._room)
             except artefacts.BadArtefacts as error:
                 return failed(found, f"{log}\nerror: {error}")
             entry.finish()
             return made
 
-    def _run(self, staged: _Staged, entry: Path, name: str, cancelled: Callable[[], bool]) -> Built:
+    def _run(self, order: _Order, entry: Path, name: str, cancelled: Callable[[], bool]) -> Built:
         place = self._jobs.place(name, entry)
-        shutil.copytree(staged.src, entry / "src", dirs_exist_ok=True)
-        seen = [
-            replace(package, folder=place / "src" / package.folder.relative_to(staged.src))
-            for package in staged.packages
-        ]
-        light = _are_light(staged.packages)
-        words = command(seen, place, ONLY_PYTHON if light else ())
-        hidden = _hidden_from(staged.packages)
+        order.tree.write(entry / "src")
+        words = command(moved(order.packages, Path("src"), place / "src"), place, order.cmake)
         try:
-            variables = ONLY_FAST_DDS if light else {}
-            return self._jobs.build(BuildJob(name, entry, words, variables, cancelled, hidden))
+            return self._jobs.build(BuildJob(name, entry, words, order.variables, cancelled, order.hidden))
         finally:
             shutil.rmtree(entry / "src", ignore_errors=True)
 
-    @contextmanager
-    def _staged(self, found: Build, chosen: Sequence[Package], name: str) -> Iterator[_Staged]:
-        """A copy of what is to be built, with its key."""
-        src = Path(tempfile.mkdtemp(prefix="stage-", dir=self._folder))
-        try:
-            moved = []
-            for package in chosen:
-                folder = src / package.folder.relative_to(found.workspace / "src")
-                shutil.copytree(package.folder, folder, dirs_exist_ok=True)
-                moved.append(replace(package, folder=folder))
-            yield _Staged(src, tuple(moved), self._key(src, moved, name))
-        finally:
-            shutil.rmtree(src, ignore_errors=True)
-
-    @contextmanager
-    def _simplified(self, found: Build, chosen: Sequence[Package], name: str) -> Iterator[_Staged | None]:
-        """The same in a form that all share which mean the same; None where there is no such form."""
-        if not all(holds_only_interfaces(package) for package in chosen):
-            yield None
-            return
-        with self._staged(found, chosen, name) as staged:
-            for package in staged.packages:
-                simplify(package.folder)
-            yield replace(staged, key=self._key(staged.src, staged.packages, name))
-
-    def _key(self, src: Path, packages: Sequence[Package], name: str) -> str:
-        light = "".join(ONLY_PYTHON) if _are_light(packages) else ""
-        hidden = map(str, _hidden_from(packages))
-        words = (FORMAT, type(self._jobs).__name__, name, light, *hidden, key(src, packages))
-        return hashlib.sha256("\0".join(words).encode()).hexdigest()
+    def _order(self, tree: Tree, found: Build, chosen: Sequence[Package], name: str) -> _Order:
+        cmake, variables = (ONLY_PYTHON, ONLY_FAST_DDS) if _are_light(chosen) else ((), {})
+        hidden = _hidden_from(chosen)
+        packages = moved(chosen, found.workspace / "src", Path("src"))
+        words = (
+            type(self._jobs).__name__,
+            name,
+            *command(packages, Path(), cmake),
+            *(f"{variable}={value}" for variable, value in variables.items()),
+            *(f"hidden {path}" for path in hidden),
+            *(f"{path} {state(str(path))}" for path in course_interfaces() if path not in hidden),
+        )
+        return _Order(tree, packages, cmake, variables, hidden, key(tree, *words))
 
     def _log(self, built: Built, name: str, entry: Path) -> str:
         """The output as text, cut to what can be looked at in no time whatever it is."""

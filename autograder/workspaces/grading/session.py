@@ -25,6 +25,7 @@ from autograder.workspaces.running.prefixes import relocated, with_prefixes
 from autograder.workspaces.running.reporting import built_line, found_line, no_sources_line
 from autograder.workspaces.sources import collecting
 from autograder.workspaces.sources.finding import WORKSPACE, workspace_of
+from autograder.workspaces.sources.tree import BadSources, Tree
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -80,7 +81,8 @@ class Session:
         """
         first = self._lines.hear(messages.Check)
         runner = exercises.get(first.exercise).runner
-        trouble = self._take_sources(first.count) or first.trouble
+        wrong = self._take_sources(first)
+        trouble = first.trouble or wrong
         self._lines.say(messages.Ready())
         variables = {**self._variables, "ROS_DOMAIN_ID": str(first.domain)}
         while True:
@@ -94,15 +96,16 @@ class Session:
             else:
                 self._lines.say(messages.Stopped(order.run))
 
-    def _take_sources(self, count: int) -> str:
+    def _take_sources(self, check: messages.Check) -> str:
         """Write down what was submitted; what is wrong with it, if anything is."""
         self._tree.mkdir()
         try:
-            if count > collecting.MAX_FILES:
-                raise collecting.BadSources("there is too much in src")
-            taken = [self._lines.hear(messages.Source) for _ in range(count)]
-            collecting.write(collecting.checked(taken), self._tree)
-        except collecting.BadSources as error:
+            if check.count > collecting.MAX_FILES:
+                raise BadSources("there is too much in src")
+            taken = [self._lines.hear(messages.Source) for _ in range(check.count)]
+            collecting.check_path(check.path)
+            Tree(tuple(collecting.checked(taken))).write(self._tree)
+        except BadSources as error:
             return str(error)
         except NotUnderstood:
             return "a file has not the form of one"

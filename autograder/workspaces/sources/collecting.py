@@ -6,13 +6,11 @@ their number, their size and their names have to be harmless.
 
 from __future__ import annotations
 
-import os
-import stat
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from autograder.messages.workspaces import Source
-from autograder.workspaces.sources.packages import NOT_SOURCES
+from autograder.workspaces.sources.tree import BadSources, is_source, read, read_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -31,10 +29,6 @@ MAX_DEPTH = 16
 """Parts of a path."""
 LAUNCH_COMPANIONS = (".py", ".xml", ".yaml", ".yml", ".json", ".txt")
 """How the names of files end that a launch file may need beside it."""
-
-
-class BadSources(ValueError):
-    """Sources that cannot be taken. The message is for a student."""
 
 
 def collect_workspace(workspace: Path) -> list[Source]:
@@ -65,22 +59,24 @@ def collect_launch(file: Path, workspace: Path | None) -> tuple[str, list[Source
     file = file.resolve()
     if workspace is not None and file.is_relative_to(workspace.resolve()):
         inside = f"{workspace.resolve().name}/{file.relative_to(workspace.resolve()).as_posix()}"
-        near = [] if "/src/" in inside else [source for source in [_file(file, inside)] if source]
-        return inside, _bounded([*collect_workspace(workspace), *near])
+        near = [] if "/src/" in inside else [read_file(file, inside, MAX_FILE)]
+        return inside, _bounded([*collect_workspace(workspace), *filter(None, near)])
     beside = sorted(other for other in file.parent.iterdir() if other.suffix in LAUNCH_COMPANIONS)
-    sources = [source for other in beside if (source := _file(other, other.name)) is not None]
+    sources = filter(None, (read_file(other, other.name, MAX_FILE) for other in beside))
     return file.name, _bounded([*sources, *(collect_workspace(workspace) if workspace else [])])
 
 
 def checked(sources: Iterable[Source]) -> list[Source]:
     """The sources, once nothing about them can do harm: names, number, sizes; none of them twice.
 
+    What is no source by its name is left out here once more: no box is to see what no key has in it.
+
     Raises:
         BadSources: Something could.
     """
     taken: dict[str, Source] = {}
     for source in sources:
-        _check_path(source.path)
+        check_path(source.path)
         if source.path in taken:
             raise BadSources(f"{source.path} is there twice")
         taken[source.path] = source
@@ -88,22 +84,15 @@ def checked(sources: Iterable[Source]) -> list[Source]:
         above = (str(parent) for parent in PurePosixPath(path).parents)
         if any(taken[name].data is not None for name in above if name in taken):
             raise BadSources(f"{path} lies in a file")
-    return _bounded(list(taken.values()))
+    return [source for source in _bounded(list(taken.values())) if is_source(source.path)]
 
 
-def write(sources: Iterable[Source], folder: Path) -> None:
-    """Write checked sources into a new folder that nobody else can write to."""
-    for source in sources:
-        path = folder / source.path
-        if source.data is None:
-            path.mkdir(parents=True, exist_ok=True)
-            continue
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(source.data)
-        path.chmod(0o755 if source.executable else 0o644)
+def check_path(path: str) -> None:
+    """Look at a path that somebody else has named.
 
-
-def _check_path(path: str) -> None:
+    Raises:
+        BadSources: It leads out of a workspace, or is too long or too strange to be shown.
+    """
     parts = path.split("/")
     shown = repr(path[:80])
     encoded = path.encode("utf-8", "surrogatepass")
@@ -123,34 +112,9 @@ def _tree(folder: Path, name: str) -> Iterator[Source]:
         return
     yield Source(name)
     # A package in place of a workspace is a mistake that has its own name: show that it is one.
-    if (package := _file(folder / "package.xml", f"{name}/package.xml")) is not None:
+    if (package := read_file(folder / "package.xml", f"{name}/package.xml", MAX_FILE)) is not None:
         yield package
-    src = folder / "src"
-    for root, folders, files in os.walk(src, followlinks=False):
-        folders[:] = sorted(f for f in folders if f not in NOT_SOURCES and not Path(root, f).is_symlink())
-        inside = f"{name}/{Path(root).relative_to(folder).as_posix()}"
-        yield Source(inside)
-        for file in sorted(files):
-            if (
-                not file.endswith(".pyc")
-                and (source := _file(Path(root, file), f"{inside}/{file}")) is not None
-            ):
-                yield source
-
-
-def _file(file: Path, name: str) -> Source | None:
-    """One regular file; None for what is none, so that no pipe or device is ever opened."""
-    try:
-        found = file.lstat()
-        if not stat.S_ISREG(found.st_mode):
-            return None
-        if found.st_size > MAX_FILE:
-            raise BadSources(
-                f"{name} has more than {MAX_FILE // 1000} kB: a workspace for a check holds text"
-            )
-        return Source(name, file.read_bytes(), bool(found.st_mode & stat.S_IXUSR))
-    except OSError:
-        return None
+    yield from read(folder / "src", f"{name}/src", MAX_FILE)
 
 
 def _bounded(sources: list[Source]) -> list[Source]:

@@ -7,15 +7,17 @@ that it means the same; where it is not, it stays as it is, and the package is b
 from __future__ import annotations
 
 from itertools import pairwise
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 import re2
+from msgspec.structs import replace
+
+from autograder.workspaces.sources.tree import Tree
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
-
+    from autograder.messages.workspaces import Source
     from autograder.workspaces.sources.packages import Package
 
 DEFINITIONS = (".msg", ".srv", ".action")
@@ -40,29 +42,20 @@ def holds_only_interfaces(package: Package) -> bool:
     )
 
 
-def simplify(folder: Path) -> None:
-    """Rewrite the texts of such a package, so that those that mean the same are the same.
-
-    Args:
-        folder: A copy of its folder.
-    """
-    for path in folder.rglob("*"):
-        if path.name in _PROSE and path.parent == folder:
-            path.write_text("")
-        elif path.suffix in DEFINITIONS:
-            _rewrite(path, simple_definition)
-        elif path.name == "CMakeLists.txt":
-            _rewrite(path, simple_cmake)
-        elif path.name == "package.xml":
-            _rewrite(path, simple_package_xml)
+def simplified(tree: Tree) -> Tree:
+    """The sources of such packages with other texts, so that those that mean the same are the same."""
+    return Tree(tuple(replace(source, data=_simple(source)) for source in tree.sources))
 
 
-def _rewrite(path: Path, simple: Callable[[str], str]) -> None:
+def _simple(source: Source) -> bytes | None:
+    path = PurePosixPath(source.path)
+    if source.data is None or path.name in _PROSE:
+        return None if source.data is None else b""
+    rewrite = simple_definition if path.suffix in DEFINITIONS else _SIMPLE_FORMS.get(path.name)
     try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError):
-        return
-    path.write_text(simple(text), encoding="utf-8")
+        return rewrite(source.data.decode()).encode() if rewrite else source.data
+    except UnicodeDecodeError:
+        return source.data
 
 
 def simple_definition(text: str) -> str:
@@ -125,3 +118,6 @@ def _element(element: ElementTree.Element) -> str:
         part.text = part.text.strip() if part.text else None
         part.tail = None
     return ElementTree.tostring(element, encoding="unicode")
+
+
+_SIMPLE_FORMS = {"CMakeLists.txt": simple_cmake, "package.xml": simple_package_xml}

@@ -8,7 +8,6 @@ import functools
 import hashlib
 import os
 import shutil
-import stat
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,24 +16,26 @@ from xml.etree import ElementTree
 
 import re2
 
+from autograder.workspaces.sources.tree import BadSources, Tree, is_source, read
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
+
+    from autograder.messages.workspaces import Source
 
 MAX_FILES = 5_000
 MAX_BYTES = 100_000_000
 """Files and bytes of sources beyond which something else than a workspace was named."""
-FORMAT = "1"
+FORMAT = "3"
 """Part of every key: change it when what is kept of a build changes."""
 
-NOT_SOURCES = {"__pycache__", ".git", ".ipynb_checkpoints", ".pytest_cache", ".mypy_cache", ".ruff_cache"}
-"""Folders that tools leave among sources."""
 _HIDING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 _TOOLS = ("colcon_core-", "colcon_cmake-", "colcon_ros-", "setuptools-", "cmake-")
 _ENVIRONMENT = ("CC", "CXX", "CFLAGS", "CXXFLAGS", "LDFLAGS", "CMAKE_GENERATOR", "RMW_IMPLEMENTATION")
 
 
 class BadPackage(ValueError):
-    """A package.xml that cannot be used, or sources that are no workspace's. The message is for a student."""
+    """A package.xml that cannot be used. The message is for a student."""
 
 
 @dataclass(frozen=True)
@@ -122,30 +123,37 @@ def needed(packages: Iterable[Package], targets: Iterable[str]) -> list[Package]
     return [package for package in there if package.name in wanted]
 
 
-def key(src: Path, packages: Iterable[Package] | None = None) -> str:
-    """What a build of these sources is known by: their bytes, and everything that builds them.
+def sources_of(src: Path, packages: Iterable[Package]) -> Tree:
+    """All that a build of packages gets to see, read once.
 
     Args:
-        src: Where the sources are.
-        packages: Those that are built; None for all there is in ``src``.
+        src: Where they are.
+        packages: Those that are built.
 
     Raises:
-        BadPackage: There is far too much in ``src``.
+        BadSources: There is far too much.
     """
-    digest = hashlib.sha256("\0".join((FORMAT, *toolchain())).encode())
-    total = 0
-    folders = [src] if packages is None else sorted(package.folder for package in packages)
-    for number, file in enumerate(file for folder in folders for file in _files(folder)):
-        content = file.read_bytes()
-        total += len(content)
-        if number >= MAX_FILES or total > MAX_BYTES:
-            raise BadPackage(
-                f"{src} holds more than {MAX_FILES} files or {MAX_BYTES // 10**6} MB: is it a workspace?"
-            )
-        executable = bool(file.stat().st_mode & stat.S_IXUSR)
-        name = file.relative_to(src).as_posix().encode("utf-8", "surrogateescape")
-        digest.update(b"%d %d %d\0" % (len(name), executable, len(content)) + name + content)
-    return digest.hexdigest()
+    sources: list[Source] = []
+    size = 0
+    for folder in sorted(package.folder for package in packages):
+        for source in read(folder, folder.relative_to(src).as_posix(), MAX_BYTES):
+            sources.append(source)
+            size += len(source.data or b"")
+            if len(sources) > MAX_FILES or size > MAX_BYTES:
+                raise BadSources(
+                    f"{src} holds more than {MAX_FILES} files or {MAX_BYTES // 10**6} MB: is it a workspace?"
+                )
+    return Tree(tuple(sources))
+
+
+def key(tree: Tree, *words: str) -> str:
+    """What a build is known by: everything that is built, and everything that builds it.
+
+    Args:
+        tree: What is built.
+        words: How it is built, such as the command.
+    """
+    return hashlib.sha256("\0".join((FORMAT, tree.digest, *toolchain(), *words)).encode()).hexdigest()
 
 
 def toolchain() -> tuple[str, ...]:
@@ -158,8 +166,8 @@ def toolchain() -> tuple[str, ...]:
         sys.version,
         sys.prefix,
         *_tools(),
-        *(f"{program} {_state(program)}" for program in programs),
-        f"ros {_state(str(Path(sys.prefix, 'share', 'rosidl_default_generators', 'package.xml')))}",
+        *(f"{program} {state(program)}" for program in programs),
+        f"ros {state(str(Path(sys.prefix, 'share', 'rosidl_default_generators', 'package.xml')))}",
         os.environ.get("ROS_DISTRO", ""),
         *variables,
     )
@@ -179,7 +187,8 @@ def _tools() -> tuple[str, ...]:
     return tuple(sorted(e for e in entries if e.startswith(_TOOLS) and e.endswith(("dist-info", "egg-info"))))
 
 
-def _state(file: str) -> str:
+def state(file: str) -> str:
+    """What tells a file of the tools from a later one of the same name; empty where there is none."""
     try:
         found = Path(file).stat()
     except OSError:
@@ -187,17 +196,9 @@ def _state(file: str) -> str:
     return f"{found.st_size} {found.st_mtime_ns}"
 
 
-def _files(src: Path) -> Iterator[Path]:
-    for root, folders, names in os.walk(src, followlinks=False):
-        folders[:] = sorted(name for name in folders if name not in NOT_SOURCES)
-        for name in sorted(names):
-            file = Path(root, name)
-            if not name.endswith(".pyc") and file.is_file():
-                yield file
-
-
 def _package_files(src: Path) -> Iterator[Path]:
     for root, folders, names in os.walk(src):
+        folders[:] = filter(is_source, folders)
         if any(name in names for name in _HIDING):
             folders[:] = []
         elif "package.xml" in names:

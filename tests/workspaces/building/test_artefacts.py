@@ -26,17 +26,21 @@ def packed(*members: tuple[str, bytes, str, int]) -> bytes:
     return file.getvalue()
 
 
-def test_files_folders_and_inner_links_come_through(tmp_path: Path) -> None:
+def test_files_and_folders_come_through_and_links_to_files_as_copies(tmp_path: Path) -> None:
     unpack(
         packed(
             ("./pkg", tarfile.DIRTYPE, "", 0),
             ("./pkg/lib/run", tarfile.REGTYPE, "", 3),
-            ("./pkg/link", tarfile.SYMTYPE, "lib/run", 0),
+            ("./pkg/first", tarfile.SYMTYPE, "second", 0),
+            ("./pkg/second", tarfile.SYMTYPE, "./lib/../lib/run", 0),
         ),
         tmp_path / "install",
     )
-    assert (tmp_path / "install" / "pkg" / "link").read_bytes() == b"xxx"
-    assert (tmp_path / "install" / "pkg" / "lib" / "run").stat().st_mode & 0o777 == 0o755
+    for name in ("first", "second", "lib/run"):
+        file = tmp_path / "install" / "pkg" / name
+        assert file.read_bytes() == b"xxx"
+        assert file.stat().st_mode & 0o777 == 0o755
+        assert not file.is_symlink()
 
 
 @pytest.mark.parametrize(
@@ -47,6 +51,12 @@ def test_files_folders_and_inner_links_come_through(tmp_path: Path) -> None:
         [("a/../../x", tarfile.REGTYPE, "", 1)],
         [("a", tarfile.SYMTYPE, "/etc", 0)],
         [("a", tarfile.SYMTYPE, "../../etc", 0)],
+        [("b", tarfile.SYMTYPE, "c", 0), ("c", tarfile.DIRTYPE, "", 0), ("a", tarfile.SYMTYPE, "b/../../etc", 0)],
+        [("c/b", tarfile.SYMTYPE, ".", 0), ("a", tarfile.SYMTYPE, "c/b/../../outside", 0)],
+        [("b", tarfile.DIRTYPE, "", 0), ("a", tarfile.SYMTYPE, "b", 0)],
+        [("a", tarfile.SYMTYPE, "nothing", 0)],
+        [("a", tarfile.SYMTYPE, "b", 0), ("b", tarfile.SYMTYPE, "a", 0)],
+        [("c/x", tarfile.REGTYPE, "", 1), ("b", tarfile.SYMTYPE, "c", 0), ("a", tarfile.SYMTYPE, "b/x", 0)],
         [("a", tarfile.SYMTYPE, "b", 0), ("a/x", tarfile.REGTYPE, "", 1)],
         [("b", tarfile.DIRTYPE, "", 0), ("a", tarfile.SYMTYPE, "b", 0), ("a/x", tarfile.REGTYPE, "", 1)],
         [("a", tarfile.SYMTYPE, "x", 0), ("a", tarfile.REGTYPE, "", 1)],
@@ -54,24 +64,30 @@ def test_files_folders_and_inner_links_come_through(tmp_path: Path) -> None:
         [("a", tarfile.FIFOTYPE, "", 0)],
         [("a", tarfile.CHRTYPE, "", 0)],
         [("a" * 250, tarfile.REGTYPE, "", 1)],
+        [("a/" * 40 + "x", tarfile.REGTYPE, "", 1)],
     ],
     ids=[
-        "absolute", "above", "through above", "absolute link", "link above", "behind a dead link", "behind a link",
-        "through a link", "hard link", "pipe", "device", "long name",
+        "absolute", "above", "through above", "absolute link", "link above", "above by way of a link",
+        "out by way of a link", "link to a folder", "dead link", "circle", "by way of a link", "behind a dead link",
+        "behind a link", "through a link", "hard link", "pipe", "device", "long name", "deep",
     ],
 )  # fmt: skip
 def test_what_leads_out_is_refused(members: list[tuple[str, bytes, str, int]], tmp_path: Path) -> None:
+    (tmp_path / "outside").write_text("x = a.b:c")
     with pytest.raises(BadArtefacts):
         unpack(packed(*members), tmp_path / "install")
-    assert {path.name for path in tmp_path.iterdir()} == {"install"}
+    assert {path.name for path in tmp_path.iterdir()} == {"install", "outside"}
+    assert not [path for path in (tmp_path / "install").rglob("*") if path.is_symlink()]
 
 
 def test_too_much_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(artefacts, "MAX_BYTES", 10)
-    with pytest.raises(BadArtefacts, match="more than"):
-        unpack(packed(("a", tarfile.REGTYPE, "", 11)), tmp_path / "bytes")
+    with pytest.raises(BadArtefacts, match="too much"):
+        unpack(packed(("a", tarfile.REGTYPE, "", 11)), tmp_path / "bytes", most=10)
+    copies = [(name, tarfile.SYMTYPE, "a", 0) for name in "bcd"]
+    with pytest.raises(BadArtefacts, match="too much"):
+        unpack(packed(("a", tarfile.REGTYPE, "", 3), *copies), tmp_path / "copies", most=10)
     monkeypatch.setattr(artefacts, "MAX_FILES", 2)
-    with pytest.raises(BadArtefacts, match="more than"):
+    with pytest.raises(BadArtefacts, match="too much"):
         unpack(packed(*((name, tarfile.DIRTYPE, "", 0) for name in "abc")), tmp_path / "files")
 
 

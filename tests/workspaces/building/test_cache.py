@@ -31,6 +31,15 @@ def test_an_interrupted_entry_does_not_count(empty_cache: Path) -> None:
         assert not entry.complete
 
 
+def test_an_entry_counts_for_the_key_that_it_was_built_for_alone(empty_cache: Path) -> None:
+    fill("a")
+    (empty_cache / "a").rename(empty_cache / "b")
+    assert not cache.is_complete("b", empty_cache)
+    with cache.entry("b") as entry:
+        assert not entry.complete
+        assert list(entry.folder.iterdir()) == []
+
+
 def test_what_a_killed_builder_left_is_removed(empty_cache: Path) -> None:
     (empty_cache / "a").mkdir(parents=True)
     empty_cache.chmod(0o700)
@@ -134,7 +143,7 @@ def test_the_oldest_go_first_and_those_in_use_stay(empty_cache: Path) -> None:
     for number, key in enumerate("abc"):
         fill(key, size=100)
         os.utime(empty_cache / key / "complete", (number, number))
-    assert cache.make_room(empty_cache, limit=200) == ["a"]
+    assert cache.make_room(empty_cache, limit=250) == ["a"]
     fill("d", size=1000)
     assert cache.make_room(empty_cache, limit=0) == ["b", "c"]
     assert (empty_cache / "d").is_dir()

@@ -214,6 +214,6 @@ def test_the_builds_of_one_notebook_have_so_much_room_and_no_more(
     assert first.ok
     second = made(narrow, workspace, "# other sources\n")
     assert not second.ok
-    assert "16 MB together" in second.log
+    assert "kB are left for it" in second.log
     assert sum(file.stat().st_size for file in cache.rglob("*") if file.is_file()) < 450_000
     assert made(TrustedBuilds(cache, jobs), workspace).ok  # somebody else has room

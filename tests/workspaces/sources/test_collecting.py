@@ -12,8 +12,8 @@ import pytest
 from autograder.messages.lines import Lines, NotUnderstood, encode
 from autograder.messages.workspaces import Source
 from autograder.workspaces.sources import collecting
-from autograder.workspaces.sources.collecting import BadSources
-from autograder.workspaces.sources.packages import key
+from autograder.workspaces.sources.packages import find_packages, sources_of
+from autograder.workspaces.sources.tree import BadSources, Tree
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -31,8 +31,9 @@ def test_what_is_collected_builds_the_same(workspace: Path, tmp_path: Path) -> N
     setup = workspace / "src" / "tiny_pkg" / "setup.py"
     setup.chmod(0o755)
     sent = [sent_over(encode(source)) for source in collecting.collect_workspace(workspace)]
-    collecting.write(collecting.checked(sent), tmp_path / "there")
-    assert key(tmp_path / "there" / "ros2_ws" / "src") == key(workspace / "src")
+    Tree(tuple(collecting.checked(sent))).write(tmp_path / "there")
+    here, there = workspace / "src", tmp_path / "there" / "ros2_ws" / "src"
+    assert sources_of(there, find_packages(there)) == sources_of(here, find_packages(here))
 
 
 def test_links_pipes_and_what_tools_leave_are_left_out(workspace: Path) -> None:

@@ -12,9 +12,9 @@ from autograder.workspaces.sources.interface_packages import (
     simple_cmake,
     simple_definition,
     simple_package_xml,
-    simplify,
+    simplified,
 )
-from autograder.workspaces.sources.packages import find_packages, key
+from autograder.workspaces.sources.packages import find_packages, sources_of
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from made_workspaces import CMAKE, DEFINITION, INTERFACE_PACKAGE_XML, interface_package
@@ -117,10 +117,9 @@ def test_a_package_xml_that_says_something_else_stays_different(text: str) -> No
 def test_two_packages_that_differ_in_comments_have_one_key(tmp_path: Path) -> None:
     for name in "ab":
         interface_package(tmp_path / name / "my_robot_interfaces", comment=f"# {name}\n")
-    assert key(tmp_path / "a") != key(tmp_path / "b")
-    for name in "ab":
-        simplify(tmp_path / name / "my_robot_interfaces")
-    assert key(tmp_path / "a") == key(tmp_path / "b")
+    one, other = (sources_of(tmp_path / name, find_packages(tmp_path / name)) for name in "ab")
+    assert one != other
+    assert simplified(one) == simplified(other)
 
 
 @pytest.mark.parametrize(

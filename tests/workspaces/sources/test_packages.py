@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.workspaces.sources import packages
+from autograder.workspaces.sources.tree import BadSources
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -35,35 +36,39 @@ def test_an_ignored_package_is_none(workspace: Path) -> None:
     assert [package.name for package in packages.find_packages(workspace / "src")] == ["tiny_pkg"]
 
 
+def key_of(src: Path) -> str:
+    return packages.key(packages.sources_of(src, packages.find_packages(src)))
+
+
 def test_the_key_is_of_bytes_names_and_bits(workspace: Path) -> None:
     src = workspace / "src"
     module = src / "tiny_pkg" / "tiny_pkg" / "hello.py"
-    keys = [packages.key(src)]
+    keys = [key_of(src)]
     module.write_text(module.read_text() + "\n")
-    keys.append(packages.key(src))
+    keys.append(key_of(src))
     module.chmod(0o755)
-    keys.append(packages.key(src))
+    keys.append(key_of(src))
     module.rename(module.with_name("hallo.py"))
-    keys.append(packages.key(src))
+    keys.append(key_of(src))
     assert len(set(keys)) == 4
 
 
 def test_what_python_and_jupyter_leave_behind_is_no_source(workspace: Path) -> None:
     src = workspace / "src"
-    before = packages.key(src)
+    before = key_of(src)
     for name in ("__pycache__", ".ipynb_checkpoints"):
         (src / "tiny_pkg" / name).mkdir()
         (src / "tiny_pkg" / name / "left.py").write_text("left")
-    assert packages.key(src) == before
+    assert key_of(src) == before
 
 
 def test_the_toolchain_is_in_the_key(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    before = packages.key(workspace / "src")
+    before = key_of(workspace / "src")
     monkeypatch.setenv("CXXFLAGS", "-O0")
-    assert packages.key(workspace / "src") != before
+    assert key_of(workspace / "src") != before
 
 
 def test_far_too_much_is_refused(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(packages, "MAX_BYTES", 100)
-    with pytest.raises(packages.BadPackage, match="is it a workspace"):
-        packages.key(workspace / "src")
+    monkeypatch.setattr(packages, "MAX_FILES", 2)
+    with pytest.raises(BadSources, match="is it a workspace"):
+        key_of(workspace / "src")
