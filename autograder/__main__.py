@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from pathlib import Path
 
+TERMINATED = 143
+"""What a shell says of a program that SIGTERM ended: 128 and the signal's number."""
+
 
 def main() -> None:
-    """Run the command line; a closed pipe and Ctrl-C end it quietly."""
+    """Run the command line; a closed pipe, Ctrl-C and SIGTERM end it quietly, with all that it has started."""
     from autograder.cli import cli
 
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))
     try:
         cli()
     except BrokenPipeError:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import multiprocessing
+import os
 import select
 import tempfile
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 from autograder.clean_stdout import private_stdout
+from autograder.parent_death import die_with_parent
 from autograder.verdict import State, Verdict, from_json
 
 if TYPE_CHECKING:
@@ -163,5 +165,6 @@ def busy_loops(number: int) -> Iterator[None]:
 
 
 def _busy() -> None:
+    die_with_parent(os.getppid())
     while True:
         pass

@@ -10,13 +10,16 @@ import sys
 import time
 import traceback
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
+from autograder.judge.subjects.command_subject import kill_leftovers
 from autograder.judge.verdicts.deciding import SIGNAL
+from autograder.parent_death import die_with_parent
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+_ENDINGS = (signal.SIGINT, signal.SIGTERM)
 LAST_WORDS = 2.0
 """Seconds of wall time that a judge has for its verdict once its time is over."""
 
@@ -52,9 +55,17 @@ class Child:
         self._deadline = time.monotonic() + limit
         self._received = bytearray()
         self.reading, writing = os.pipe()
+        parent = os.getpid()
+        # What a handler raises within Python's own hooks at a fork is lost, and a Ctrl-C with it.
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, _ENDINGS)
         self.pid = os.fork()
         if self.pid == 0:
             signal.signal(SIGNAL, signal.SIG_IGN)
+            for ending in _ENDINGS:
+                signal.signal(ending, _leave)
+            die_with_parent(parent, signal.SIGTERM)
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        if self.pid == 0:
             for descriptor in close:
                 os.close(descriptor)
             _run(work, writing)
@@ -115,6 +126,12 @@ class Child:
             os.close(self.reading)
         except (ProcessLookupError, ChildProcessError, OSError):
             pass
+
+
+def _leave(*_: object) -> NoReturn:
+    """End at once, with everything that a subject has started: nobody wants a verdict any more."""
+    kill_leftovers()
+    os._exit(1)
 
 
 def _run(work: Callable[[], bytes], writing: int) -> None:

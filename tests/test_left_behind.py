@@ -1,0 +1,53 @@
+"""Ctrl-C, TERM and a crash of a command end everything that it has started."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder import course
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+pytestmark = [
+    pytest.mark.ros,
+    pytest.mark.slow,
+    pytest.mark.skipif(sys.platform != "linux", reason="only Linux adopts orphans"),
+]
+PROGRAM = """
+import subprocess, time
+subprocess.Popen(["sleep", "7656.5"], start_new_session=True)
+time.sleep(600)
+"""
+COURSE = [sys.executable, "-m", "autograder"]
+COMMANDS = {
+    "check": (
+        "sleep 7656.5",
+        [*COURSE, "check", "lab_1_2.talker", "--", sys.executable, "{folder}/program.py"],
+    ),
+    "demo": ("running.worker", [*COURSE, "demo", "{folder}/class"]),
+    "execute": ("running.worker", [*COURSE, "execute", "lab_1_2", "--reports", "{folder}/reports"]),
+    "bank": ("talker.answers", [sys.executable, "tests/judge/bank.py", "lab_1_2.talker", "--busy", "1"]),
+}
+"""By name: what the command line of a process has that shows that it is in its middle, and how it is called."""
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("ending", ["SIGINT", "SIGTERM", "SIGKILL"])
+def test_everything_ends_with_the_command(name: str, ending: str, tmp_path: Path) -> None:
+    (tmp_path / "program.py").write_text(PROGRAM)
+    word, command = COMMANDS[name]
+    words = [part.replace("{folder}", str(tmp_path)) for part in command]
+    done = subprocess.run(
+        [sys.executable, "tests/left_behind.py", ending, word, *words],
+        cwd=course.root(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout
