@@ -37,7 +37,7 @@ APART = ("tests/test_recording.py", "tests/authoring/test_new_exercise.py")
 LONGEST = (
     "tests/judge/test_bank.py",
     "tests/attacks",
-    "tests/appeals/test_every_exercise.py",
+    "tests/execution/test_notebooks.py",
     "tests/grading/cluster/test_cluster.py",
     "tests/grading/classes/test_sample_class.py",
     "tests/test_recording.py",

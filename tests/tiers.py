@@ -13,16 +13,50 @@ from datetime import UTC, datetime
 from random import Random
 from typing import TYPE_CHECKING, Any
 
+import pytest
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
-
-    import pytest
 
 DAY = "COURSE_TEST_DAY"
 """The variable that repeats the draw of a day, such as ``2026-11-23``."""
 
-NIGHTLY: dict[str, str] = {}
-"""Beginnings of the ids of tests that only ``--all`` runs, and why that is enough."""
+NIGHTLY = (
+    # Killed and interrupted: each kills a whole batch, again and again.
+    "tests/grading/test_killed.py",
+    "tests/grading/test_interrupt.py",
+    "tests/grading/running/test_workers.py::test_a_killed_batch",
+    "tests/grading/running/test_workers.py::test_ctrl_c",
+    "tests/grading/running/test_workers.py::test_fork_servers_that_die",
+    # Servers of others, which few classes use.
+    "tests/grading/cluster/test_cluster.py",
+    "tests/grading/cluster/test_cluster_worker.py",
+    "tests/grading/test_postgresql.py",
+    # What is measured, and again and again.
+    "tests/benchmarks/test_short_run.py",
+    "tests/measure/test_compare.py::test_two_commits_are_judged_each_by_its_own_judge",
+    "tests/mutation/test_mutation.py::test_a_sample_of_mutants_is_caught",
+    "tests/grading/rebuilding/test_course_version.py::test_a_changed_byte_in_any_of_them_moves_it",
+    # A chapter and an exercise of somebody else's.
+    "tests/test_second_chapter.py",
+    "tests/test_adding_an_exercise.py",
+    # A browser, but for the first minutes and for texts that nobody may trust.
+    "tests/browser/test_accessibility.py",
+    "tests/browser/test_autograde_button.py",
+    "tests/browser/test_course_page.py",
+    "tests/browser/test_lab_1_2.py",
+    "tests/browser/test_narrow.py",
+    "tests/browser/test_opening.py",
+    "tests/browser/test_the_day.py",
+    "tests/browser/test_watch.py",
+    # Builds of workspaces, of which the first and the failing one stay.
+    "tests/workspaces/building/test_colcon.py::test_a_changed_byte_is_another_build",
+    "tests/workspaces/building/test_colcon.py::test_what_an_earlier_build_left_behind_has_no_part_in_it",
+    "tests/workspaces/building/test_colcon.py::test_a_merged_install_is_left_alone",
+    "tests/workspaces/building/test_colcon.py::test_packages_of_others_stay",
+    "tests/workspaces/building/test_colcon.py::test_what_a_package_depends_on_may_fail",
+)
+"""Beginnings of the ids of tests that only ``--all`` runs."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +91,11 @@ def drawn(names: Iterable[str], number: int) -> set[str]:
     """So many of these names, other ones each day."""
     listed = sorted(names)
     return set(Random(f"{day()} {listed[0]}").sample(listed, min(number, len(listed)))) if listed else set()
+
+
+def due(value: Any, name: str, changed: bool) -> Any:
+    """A value for a test that runs in each tier where something that it depends on has changed."""
+    return pytest.param(value, id=name, marks=[pytest.mark.due] if changed else [])
 
 
 def asked_for(request: pytest.FixtureRequest, parameter: str) -> list[Any]:

@@ -10,17 +10,13 @@ import pytest
 from autograder import exercises
 from autograder.authoring.answers import Answer, answers
 from tests.measure import evidence
+from tests.tiers import due
 
 if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 BANK = list(answers())
-
-
-def judged_itself(answer: Answer) -> object:
-    """One whose evidence was seen by another scenario or bench is judged itself in each tier."""
-    marks = [pytest.mark.due] if evidence.is_of_another_bench(answer) else []
-    return pytest.param(answer, marks=marks, id=answer.name)
+JUDGED = [due(answer, answer.name, evidence.is_of_another_bench(answer)) for answer in BANK]
 
 
 @pytest.mark.parametrize("exercise_id", exercises.all_ids())
@@ -31,7 +27,7 @@ def test_what_was_seen_of_each_answer_is_judged_right(exercise_id: str) -> None:
 
 @pytest.mark.ros
 @pytest.mark.slow
-@pytest.mark.parametrize("answer", map(judged_itself, BANK))
+@pytest.mark.parametrize("answer", JUDGED)
 def test_answer_is_judged_right(answer: Answer, verdicts: dict[str, Verdict]) -> None:
     verdict = verdicts[answer.name]
     assert answer.objection(verdict) == "", verdict.detail
