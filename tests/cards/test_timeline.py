@@ -60,23 +60,23 @@ def test_samples_are_legible(verdict: Verdict, width: int) -> None:
         assert_legible(picture(part, width), width)
 
 
-@pytest.mark.parametrize("seed", range(60))
-def test_any_traffic_is_legible(seed: int) -> None:
-    chance = random.Random(seed)
-    scale = chance.choice([0.001, 0.1, 1.0, 30.0])
-    moments = tuple(
-        Moment(
-            t=chance.choice([0.0, 5.0]) * scale + chance.random() * scale,
-            lane=chance.choice(["/chatter", "add_two_ints", "log", "fibonacci/_action/feedback"]),
-            direction=chance.choice(["from_subject", "to_subject", "note"]),
-            label=chance.choice(
-                ["sum = 3", "Hello, world! 12", "service not available, waiting again...", ""]
-            ),
+def test_any_traffic_is_legible() -> None:
+    for seed in range(60):
+        chance = random.Random(seed)
+        scale = chance.choice([0.001, 0.1, 1.0, 30.0])
+        moments = tuple(
+            Moment(
+                t=chance.choice([0.0, 5.0]) * scale + chance.random() * scale,
+                lane=chance.choice(["/chatter", "add_two_ints", "log", "fibonacci/_action/feedback"]),
+                direction=chance.choice(["from_subject", "to_subject", "note"]),
+                label=chance.choice(
+                    ["sum = 3", "Hello, world! 12", "service not available, waiting again...", ""]
+                ),
+            )
+            for _ in range(chance.randint(1, 60))
         )
-        for _ in range(chance.randint(1, 60))
-    )
-    for part in traffic(moments, at_most=60).parts:
-        assert_legible(picture(part, WIDTH), WIDTH)
+        for part in traffic(moments, at_most=60).parts:
+            assert_legible(picture(part, WIDTH), WIDTH)
 
 
 def marks_of(part: Part, width: int = WIDTH) -> list[Mark]:
@@ -129,28 +129,30 @@ def test_time_that_stands_still_has_an_order_and_no_seconds() -> None:
     assert drawn.lanes[0].marks[2].tooltip.startswith("no. 3 on /chatter")
 
 
-@pytest.mark.parametrize("seed", range(40))
-def test_what_the_story_hangs_on_is_always_labelled(seed: int) -> None:
-    chance = random.Random(seed)
-    moments = tuple(
-        sorted(
-            (
-                Moment(
-                    t=chance.choice([0.0, 1.0, chance.random() * 3]),
-                    lane=chance.choice(["/fibonacci", "log"]),
-                    direction="from_subject",
-                    label=(words := chance.choice(["goal 20", "cancel request", "CANCELED [0, 1, 1]", "…"])),
-                    key=words != "…",
-                )
-                for _ in range(chance.randint(2, 50))
-            ),
-            key=lambda moment: moment.t,
+def test_what_the_story_hangs_on_is_always_labelled() -> None:
+    for seed in range(40):
+        chance = random.Random(seed)
+        moments = tuple(
+            sorted(
+                (
+                    Moment(
+                        t=chance.choice([0.0, 1.0, chance.random() * 3]),
+                        lane=chance.choice(["/fibonacci", "log"]),
+                        direction="from_subject",
+                        label=(
+                            words := chance.choice(["goal 20", "cancel request", "CANCELED [0, 1, 1]", "…"])
+                        ),
+                        key=words != "…",
+                    )
+                    for _ in range(chance.randint(2, 50))
+                ),
+                key=lambda moment: moment.t,
+            )
         )
-    )
-    for part in traffic(moments, at_most=20).parts:
-        assert_legible(picture(part, HALF_WIDTH), HALF_WIDTH)
-        for moment, mark in zip(part.moments, marks_of(part, HALF_WIDTH), strict=True):
-            assert mark.label == moment.label or not moment.key
+        for part in traffic(moments, at_most=20).parts:
+            assert_legible(picture(part, HALF_WIDTH), HALF_WIDTH)
+            for moment, mark in zip(part.moments, marks_of(part, HALF_WIDTH), strict=True):
+                assert mark.label == moment.label or not moment.key
 
 
 def test_draws_an_uncrowded_axis_true_to_time() -> None:
