@@ -10,7 +10,6 @@ from __future__ import annotations
 import ast
 import functools
 import hashlib
-import inspect
 import sys
 from dataclasses import fields, is_dataclass
 from enum import Enum
@@ -49,7 +48,7 @@ def digest(exercise_id: str) -> str:
     said = [
         reference.digest(exercise_id),
         repr((exercise.second_look, exercise.limit)),
-        _text_of(trial.look),
+        _plain(_nodes(trial.__file__)[f"def {trial.look.__code__.co_firstlineno}"]),
         *_files(JUDGE + (WORKSPACES if exercise.runner else ())),
         *sorted(reached.texts),
     ]
@@ -105,25 +104,39 @@ class _Reached:
             self.texts.add(f"{name} = {_word(value)}")
 
     def _add_function(self, function: FunctionType, owner: Any) -> None:
-        if _is_ours(function.__module__):
+        if hasattr(function, "__wrapped__"):
+            self.add(function.__wrapped__, owner=owner)
+        if _is_ours(function.__globals__["__name__"]):
             names = dict(function.__globals__)
             for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
                 names[name] = cell.cell_contents
             self._add_code(function, names, owner)
 
     def _add_code(self, value: Any, names: dict[str, Any], owner: Any) -> None:
-        self.texts.add(_text_of(value))
-        nodes = list(ast.walk(_node(value)))
+        node = _node(value)
+        if node is None:
+            return  # made by another program, such as a dataclass's __init__: what it was made of counts
+        self.texts.add(f"{value.__module__}.{value.__qualname__}: {_plain(node)}")
+        nodes = list(ast.walk(node))
         used = {one.id: names[one.id] for one in nodes if isinstance(one, ast.Name) and one.id in names}
         attributes = {one.attr for one in nodes if isinstance(one, ast.Attribute)}
         for name, found in used.items():
             if not _has_parts(found):
                 self.add(found, name)
-        for whole in filter(_has_parts, (owner, *used.values())):
+        wholes = [whole for whole in (owner, *used.values()) if _has_parts(whole)]
+        for whole in wholes:  # which grows
             for name in attributes:
-                found = vars(whole).get(name, inspect.getattr_static(whole, name, None))
-                if found is not None:
-                    self.add(found, name, whole)
+                for found in _attributes(whole, name):
+                    if not _has_parts(found):
+                        self.add(found, name, whole)
+                    elif not any(found is other for other in wholes):
+                        wholes.append(found)
+
+
+def _attributes(whole: Any, name: str) -> list[Any]:
+    """What something is, or may be, by the name of an attribute: also what a subclass has in place of it."""
+    places = [whole, *type(whole).__mro__] if not isinstance(whole, ModuleType) else [whole]
+    return [vars(place)[name] for place in places if name in getattr(place, "__dict__", ())]
 
 
 def _inside(value: Any) -> Sequence[Any] | None:
@@ -173,30 +186,31 @@ def _word(value: Any) -> str:
     return f"{name} {getattr(value, 'pattern', '')}"
 
 
-def _text_of(value: Any) -> str:
-    return f"{value.__module__}.{value.__qualname__}: {_plain(_node(value))}"
-
-
-def _node(value: Any) -> ast.AST:
-    """The piece of a syntax tree that a function or class was made of."""
-    at = value.__code__.co_firstlineno if isinstance(value, FunctionType) else value.__qualname__
-    return _nodes(sys.modules[value.__module__].__file__ or "")[at]
+def _node(value: Any) -> ast.AST | None:
+    """The piece of a syntax tree that a function or class was made of; None where it stands in no file."""
+    if isinstance(value, type):
+        return _nodes(sys.modules[value.__module__].__file__ or "").get(value.__qualname__)
+    code = value.__code__
+    if not Path(code.co_filename).is_file():
+        return None
+    return _nodes(code.co_filename)[
+        f"{'lambda' if value.__name__ == '<lambda>' else 'def'} {code.co_firstlineno}"
+    ]
 
 
 @functools.cache
-def _nodes(file: str) -> dict[int | str, ast.AST]:
+def _nodes(file: str) -> dict[str, ast.AST]:
     """Functions by their first line, lambdas in one line taken together, and classes by their names."""
-    found: dict[int | str, ast.AST] = {}
+    found: dict[str, ast.AST] = {}
     for node, name in _named(ast.parse(Path(file).read_text(encoding="utf-8")), ""):
         if isinstance(node, ast.ClassDef):
             found[name] = node
         elif isinstance(node, ast.Lambda):
-            before = found.get(node.lineno)
-            found[node.lineno] = (
-                ast.Tuple([before, node], ast.Load()) if isinstance(before, ast.expr) else node
-            )
+            others = found.setdefault(f"lambda {node.lineno}", ast.Tuple([], ast.Load()))
+            assert isinstance(others, ast.Tuple)
+            others.elts.append(node)
         elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
-            found[min((node.lineno, *(one.lineno for one in node.decorator_list)))] = node
+            found[f"def {min((node.lineno, *(one.lineno for one in node.decorator_list)))}"] = node
     return found
 
 

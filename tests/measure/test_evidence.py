@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-import ast
+import importlib.util
 import lzma
+import subprocess
+import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -113,23 +115,87 @@ def test_evidence_depends_on_the_scenario_and_not_on_what_is_said(monkeypatch: p
     assert stimulus.digest.__wrapped__(ID) != before
 
 
+SCENARIO = """
+import contextlib
+
+WAIT, OTHER = 1.5, 2.5
+KINDS = {"first": (lambda: 11)}
+
+class Base:
+    def drive(self):
+        return "base"
+
+class Times:
+    def __init__(self):
+        self.pace = 3.5
+
+class Recipe(Base):
+    def __init__(self):
+        self.times = Times()
+
+    def drive(self):
+        "Said well."
+        return super().drive(), self.times.pace
+
+    def judges(self):
+        return "not asked"
+
+recipe = Recipe()
+
+@contextlib.contextmanager
+def held():
+    yield 4.5
+
+@print
+def criterion():
+    return "what is said"
+
+def scenario():
+    with held():
+        return WAIT, recipe.drive(), KINDS  # why
+"""
+
+
+def reached(text: str, folder: Path) -> set[str]:
+    file = folder / f"made_up_{len(list(folder.iterdir()))}.py"  # no bytecode of another one is taken for it
+    file.write_text(text, encoding="utf-8")
+    spec = importlib.util.spec_from_file_location("autograder.kit.made_up", file)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(sys.modules, spec.name, module)
+        spec.loader.exec_module(module)
+        stimulus._nodes.cache_clear()
+        found = stimulus._Reached()
+        found.add(module.scenario)
+    return found.texts
+
+
 @pytest.mark.parametrize(
-    ("text", "counts"),
+    ("old", "new", "counts"),
     [
-        ('def look():\n    """Said better."""\n    return 1  # why\n', False),
-        ("@says('in other words')\ndef look():\n    return 1\n", False),
-        ("def look():\n    return 2\n", True),
+        ("1.5", "1.6", True),
+        ("3.5", "3.6", True),
+        ("4.5", "4.6", True),
+        ("11", "12", True),
+        ('"base"', '"other"', True),
+        ("2.5", "2.6", False),
+        ("Said well.", "Said better.", False),
+        ("# why", "# because", False),
+        ("not asked", "never asked", False),
+        ("what is said", "in other words", False),
     ],
 )
-def test_comments_and_what_students_read_do_not_count(text: str, counts: bool) -> None:
-    usual = stimulus._plain(ast.parse("def look():\n    return 1\n"))
-    assert (stimulus._plain(ast.parse(text)) != usual) == counts
+def test_what_a_scenario_refers_to_counts_and_nothing_else(
+    old: str, new: str, counts: bool, tmp_path: Path
+) -> None:
+    assert old in SCENARIO
+    usual = reached(SCENARIO, tmp_path)
+    assert (reached(SCENARIO.replace(old, new), tmp_path) != usual) == counts
 
 
 def test_the_digest_is_the_same_in_each_process() -> None:
-    import subprocess
-    import sys
-
     program = f"from tests.measure import stimulus; print(stimulus.digest({ID!r}))"
     said = {
         subprocess.run(
