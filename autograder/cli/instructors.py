@@ -40,10 +40,11 @@ def hand_out(place: Path, as_zip: bool, with_solutions: bool) -> None:
 @_only_assignments
 def new_class(folder: Path, assignments: tuple[str, ...]) -> None:
     """Make an nbgrader course directory in FOLDER, ready for submissions."""
-    from autograder import course, grading
+    from autograder import course
+    from autograder.grading.classes import new_class as classes
 
     with grading_errors():
-        made = grading.new_class(folder, course.root(), assignments=assignments)
+        made = classes.new_class(folder, course.root(), assignments=assignments)
     click.echo(made.summary())
 
 
@@ -52,10 +53,11 @@ def new_class(folder: Path, assignments: tuple[str, ...]) -> None:
 @_only_assignments
 def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
     """Bring the sources of the class FOLDER to what the course says now; the old ones are kept."""
-    from autograder import course, grading
+    from autograder import course
+    from autograder.grading.following.renewing import renew
 
     with grading_errors():
-        for line in grading.renew_class(folder, course.root(), assignments=assignments):
+        for line in renew(folder, course.root(), assignments):
             click.echo(line)
 
 
@@ -83,10 +85,18 @@ def collect(folder: Path, files: tuple[Path, ...], assignment: str, timezone: st
 
     Exit code 0: everything has its place; 2: the lines say what has not, and why.
     """
-    from autograder import grading
+    from zoneinfo import ZoneInfo
 
+    from autograder.grading.collecting import collect as collecting
+    from autograder.grading.collecting.showing import show
+
+    try:
+        zone = ZoneInfo(timezone) if timezone else None
+    except (ValueError, OSError, LookupError):
+        fail(f"There is no time zone {timezone!r}. A name looks like Europe/Berlin.")
     with grading_errors():
-        report = grading.collect(folder, files, assignment=assignment, timezone=timezone, form=form or "")
+        report = collecting.collect(folder, files, assignment=assignment, zone=zone, form=form or "")
+    show(report)
     sys.exit(report.exit_code)
 
 
@@ -126,28 +136,37 @@ def grade(
     dry_run: bool,
 ) -> None:
     """Grade what was submitted in the class directory FOLDER."""
-    from autograder import grading
+    from autograder.grading import batch
+    from autograder.grading.running import sandboxing
 
     if scheduler is not None and jobs is not None:
         fail("--jobs is for this machine; each worker of a cluster has its own: autograder worker --jobs")
+    if unsafe_no_sandbox:
+        sandboxing.switch_off(folder)
     try:
         with grading_errors():
-            report = grading.grade(
+            report = batch.grade(
                 folder,
                 assignments=assignments,
                 students=students,
                 again=again,
                 jobs=jobs,
-                unsafe_no_sandbox=unsafe_no_sandbox,
                 scheduler=scheduler,
                 dry_run=dry_run,
-                as_json=as_json,
             )
     except KeyboardInterrupt:
         click.echo(
             "autograder: stopped. What was graded is kept; the same command goes on from there.", err=True
         )
         sys.exit(INTERRUPTED)
+    if as_json:
+        from autograder.grading.reporting.report_json import report_json
+
+        click.echo(report_json(report))
+    else:
+        from autograder.grading.reporting.report_table import show
+
+        show(report)
     sys.exit(report.exit_code)
 
 
@@ -167,10 +186,14 @@ def export(
     folder: Path, to: str, assignments: tuple[str, ...], into: Path | None, output: Path | None
 ) -> None:
     """Write the gradebook's points, and the feedback as a zip, in the form that an LMS takes."""
-    from autograder import grading
+    from autograder.grading.exporting import export as exporting
 
     with grading_errors():
-        grading.export_points(folder, to, assignments=assignments, into=into, folder=output)
+        done = exporting.export(folder, to, assignments=assignments, into=into, folder=output)
+    for file, purpose in done.files:
+        click.echo(f"{file}\n    {purpose}")
+    for notice in done.notices:
+        click.echo(f"note: {notice}")
 
 
 @click.command()
@@ -181,10 +204,10 @@ def export(
 )
 def report(folder: Path, without_names: bool, output: Path | None) -> None:
     """Write one page about the class FOLDER: points, mistakes, exercises, who is where."""
-    from autograder import grading
+    from autograder.grading.overview.page import write_report
 
     with grading_errors():
-        click.echo(grading.write_report(folder, names=not without_names, to=output))
+        click.echo(write_report(folder, names=not without_names, to=output))
 
 
 @click.command()
@@ -200,10 +223,18 @@ def similar(folder: Path, assignment: str, output: Path | None) -> None:
 
     Exit code 0: all was compared; 2: the lines say what was not, and why.
     """
-    from autograder import grading
+    from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.errors import clear_disk_errors
+    from autograder.grading.similarity.finding import find_similar
+    from autograder.grading.similarity.page import write_page
+    from autograder.grading.similarity.showing import show
 
     with grading_errors():
-        found = grading.similar(folder, assignment, to=output)
+        directory = ClassDirectory(folder)
+        with clear_disk_errors(directory.path):
+            found = find_similar(directory, assignment)
+            page = write_page(found, output)
+    show(found, page)
     sys.exit(found.exit_code)
 
 
@@ -216,11 +247,15 @@ def compare(folder: Path, before: str, after: str) -> None:
 
     BEFORE and AFTER are runs, by the times in the first line that this prints.
     """
-    from autograder import grading
+    from autograder.cards.readable import printable
+    from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.table import differences
 
     with grading_errors():
-        for line in grading.compare(folder, before, after):
-            click.echo(line)
+        old, new, found = differences.compare(ClassDirectory(folder).state, before, after)
+    click.echo(f"{old} → {new}: {len(found)} results differ")
+    for difference in found:
+        click.echo(printable(difference.line()))
 
 
 @click.command()
@@ -228,11 +263,12 @@ def compare(folder: Path, before: str, after: str) -> None:
 @click.argument("student")
 def attempts(folder: Path, student: str) -> None:
     """Say what came of each time that STUDENT was graded in the class FOLDER."""
-    from autograder import grading
+    from autograder.cards.readable import printable
+    from autograder.grading.entering.attempts import read
 
     with grading_errors():
-        for line in grading.attempts_of(folder, student):
-            click.echo(line)
+        for attempt in read(folder, student):
+            click.echo(printable(attempt.line()))
 
 
 @click.command()
@@ -251,10 +287,10 @@ def appeal(folder: Path, student: str, exercise: str, output: Path | None) -> No
     What the student wrote, what was expected, what the judge saw, what it decided, and with which course. The file is
     JSON to read, and `./course replay` judges it again.
     """
-    from autograder import grading
+    from autograder.grading.appealing.appeal import write_appeal
 
     with grading_errors():
-        click.echo(grading.appeal(folder, student, exercise, to=output))
+        click.echo(write_appeal(folder, student, exercise, output))
 
 
 @click.command()
@@ -283,10 +319,10 @@ def worker(scheduler: str | None, jobs: int | None, name: str | None, unsafe_no_
 @click.argument("folder", type=click.Path(path_type=Path), default=Path("demo-class"))
 def demo(folder: Path) -> None:
     """Make a sample class, grade it and show the result."""
-    from autograder import grading
+    from autograder.grading.classes import sample_class
 
     with grading_errors():
-        report = grading.demo(folder)
+        report = sample_class.demo(folder)
     sys.exit(report.exit_code)
 
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from click.testing import CliRunner
 
-from autograder import grading
 from autograder.cli import cli
+from autograder.grading import batch
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,7 +19,7 @@ def test_it_says_what_was_kept_and_how_to_go_on(tmp_path: Path, monkeypatch: pyt
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(grading, "grade", interrupted)
+    monkeypatch.setattr(batch, "grade", interrupted)
     result = CliRunner().invoke(cli, ["grade", str(tmp_path)])
     assert result.exit_code == 130
     assert "goes on from there" in result.output

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from autograder.cards.readable import one_line
+from autograder.grading.entering.journal import write_whole
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.similarity.pairs import LEAST_SHARE, SHORTEST
 from autograder.grading.similarity.passages import own_words
@@ -15,11 +16,12 @@ from autograder.page_templates import page_templates
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from pathlib import Path
 
     from autograder.grading.similarity.finding import Similar
     from autograder.grading.similarity.pairs import Pair
 
-NAME = "similar.html"
+_NAME = "similar.html"
 _LONGEST_NAME = 200
 
 
@@ -41,6 +43,24 @@ class _Shown:
     percent: str
     shared: int
     sides: tuple[_Side, _Side]
+
+
+def write_page(found: Similar, to: Path | None = None) -> Path:
+    """Write the page about the close pairs of a class.
+
+    Args:
+        found: What was found.
+        to: The file; ``similar.html`` in the class by default.
+
+    Returns:
+        The absolute path of the file.
+
+    Raises:
+        OSError: It could not be written.
+    """
+    to = (to or found.path / _NAME).absolute()
+    write_whole(to, page(found).encode())
+    return to
 
 
 def page(found: Similar) -> str:

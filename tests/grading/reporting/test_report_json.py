@@ -6,8 +6,9 @@ import json
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from click.testing import CliRunner
 
-from autograder import grading
+from autograder.cli import cli
 from autograder.grading.running import sandboxing
 
 if TYPE_CHECKING:
@@ -16,22 +17,21 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
 
-def said(tiny: TinyClass, capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
-    grading.grade(tiny.path, as_json=True)
-    printed: dict[str, Any] = json.loads(capsys.readouterr().out)
+def said(tiny: TinyClass) -> dict[str, Any]:
+    result = CliRunner().invoke(cli, ["grade", str(tiny.path), "--json"])
+    printed: dict[str, Any] = json.loads(result.stdout)
     return printed
 
 
 def test_it_is_one_object_with_submissions_and_totals(
     tiny: TinyClass,
     fake_engine: FakeEngine,
-    capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(sandboxing, "require", lambda _: None)
     tiny.submit("ada", 10, 4)
     tiny.submit("ben", "'die'")
-    first = said(tiny, capsys)
+    first = said(tiny)
     assert [(one["student"], one["score"], one["max_score"]) for one in first["submissions"]] == [
         ("ada", 14.0, 20.0),
         ("ben", 10.0, 20.0),
@@ -43,4 +43,4 @@ def test_it_is_one_object_with_submissions_and_totals(
     totals = first["totals"]
     assert (totals["executed"], totals["reused"], totals["written"], totals["score"]) == (2, 0, 2, 24.0)
     assert set(first["timings"]) >= {"boxes", "students", "judge", "gradebook", "feedback", "last_ended"}
-    assert said(tiny, capsys)["totals"]["reused"] == 1
+    assert said(tiny)["totals"]["reused"] == 1
