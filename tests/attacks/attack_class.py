@@ -56,8 +56,11 @@ class Traps:
             "home": "canary-of-the-home-folder-c20d44",
             "neighbour": "canary-of-the-neighbour-b7731e",
             "solution": "canary-of-the-solution-5e1f0c",
+            "entry points": "canary.of_the:entry_points_04d1",
         }
         (self.home / ".ssh" / "id_rsa").write_text(self.secrets["home"])
+        (self.home / "entry_points.txt").write_text(f"simple_node = {self.secrets['entry points']}\n")
+        os.mkfifo(self.home / "pipe")
         self.visitors: list[str] = []
         self._open = contextlib.ExitStack()
         self.tcp_port = self._listen(socket.socket(), ("127.0.0.1", 0))

@@ -15,6 +15,7 @@ import queue
 import signal
 import sys
 import threading
+import time
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -48,6 +49,8 @@ if TYPE_CHECKING:
 
 JUDGE = "autograder.judge.serving.process:JudgeProcess"
 SOCKET_VARIABLE = "AUTOGRADER_JUDGE_SOCKET"
+LAST_SECONDS = 10.0
+"""Seconds that a worker has to end in good order once its grader is gone; a grader that lives gives it less."""
 MOST_EVIDENCE = 4_000_000
 """Bytes of evidence of one notebook, as much as ten checks can have; that of later checks is not kept."""
 
@@ -208,7 +211,11 @@ def _imported(name: str) -> Any:
 
 
 def _lines() -> Iterator[bytes]:
-    """Tasks as they come. When the grader goes away in the middle of one, end this process."""
+    """Tasks as they come. When the grader goes away, end this process; in the middle of a task by force, if it must be.
+
+    The end of standard input is the one sign of it: the system sends its own (PR_SET_PDEATHSIG) when the thread ends that
+    has started this process, and in a grader threads come and go.
+    """
     lines: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
     idle = threading.Event()
 
@@ -218,6 +225,10 @@ def _lines() -> Iterator[bytes]:
         lines.put(None)
         if not idle.is_set():
             os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(LAST_SECONDS)
+        # Something waits for what does not come, and so does whoever would tidy up.
+        end_descendants()
+        os._exit(1)
 
     threading.Thread(target=read, daemon=True).start()
     while True:

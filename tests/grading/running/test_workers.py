@@ -199,3 +199,35 @@ def test_fork_servers_that_die_are_started_anew(tiny: TinyClass, with_fake_judge
     _, said = batch.communicate(timeout=180)
     assert batch.returncode == 0, said.decode()
     assert tiny.scores("ada") == {TALKER: 10, LISTENER: 9}
+
+
+WORKER = """
+import signal, sys, time
+from autograder.grading.running import worker
+worker.LAST_SECONDS = 0.5
+signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
+for line in worker._lines():
+    print("at work", flush=True)
+    try:
+        time.sleep(3600)
+    finally:
+        open(sys.argv[1]).read()  # who is to tidy up waits, too
+"""
+
+
+def test_a_worker_that_waits_for_what_never_comes_ends_with_its_batch(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    worker = subprocess.Popen(
+        [sys.executable, "-c", WORKER, str(tmp_path / "pipe")], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    )
+    try:
+        assert worker.stdin
+        assert worker.stdout
+        worker.stdin.write(b"a task\n")
+        worker.stdin.flush()
+        assert worker.stdout.readline() == b"at work\n"
+        worker.stdin.close()
+        assert worker.wait(60.0) == 1
+    finally:
+        worker.kill()
+        worker.wait()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import os
 import sys
 import tarfile
 import tempfile
@@ -23,6 +24,7 @@ from autograder.workspaces.grading import service, session
 from autograder.workspaces.grading.jobs import BuildJob, Built, ProgramJob
 from autograder.workspaces.grading.plain_jobs import PlainProgram
 from autograder.workspaces.grading.service import ServiceSockets, WorkspaceService
+from autograder.workspaces.running.prefixes import LIBRARY
 from autograder.workspaces.sources import collecting
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -42,6 +44,7 @@ class FakeJobs:
         self.environment: Mapping[str, str] = {"PATH": "/usr/bin:/bin"}
         self.builds: list[list[str]] = []
         self.sources: list[str] = []
+        self.boxes: list[set[tuple[str, int, bytes]]] = []
         self.commands: list[Sequence[str]] = []
         self.built = Built(
             0, b"all is well\n", _packed("my_robot_pkg/lib/my_robot_pkg/simple_node", "my_robot_pkg/share/x")
@@ -58,6 +61,16 @@ class FakeJobs:
     def build(self, job: BuildJob) -> Built:
         self.builds.append(sorted(path.name for path in (job.entry / "src").iterdir()))
         self.sources.append("".join(path.read_text() for path in job.entry.rglob("*") if path.is_file()))
+        self.boxes.append(
+            {
+                (
+                    str(path.relative_to(job.entry)),
+                    path.stat().st_mode,
+                    path.read_bytes() if path.is_file() else b"",
+                )
+                for path in (job.entry / "src").rglob("*")
+            }
+        )
         self.waiting(job.cancelled)
         return self.built
 
@@ -221,6 +234,32 @@ def test_an_archive_that_leads_out_is_a_failed_build(
     assert reports(judge.run())[-1]["trouble"] == "build"
 
 
+def test_no_link_that_a_build_has_made_leads_to_a_pipe_of_the_host(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path, tmp_path: Path
+) -> None:
+    """Read as text it stays inside; followed, its second part leads to the top of the folder, and on from there."""
+    os.mkfifo(tmp_path / "pipe")
+    deep, file = "/".join("d" * 17), io.BytesIO()
+    with tarfile.open(fileobj=file, mode="w") as tar:
+        for name, target in (
+            ("my_robot_pkg/share/x", ""),
+            (f"my_robot_pkg/{LIBRARY}/z.egg-info/{deep}/b", "../" * 21),
+            (
+                f"my_robot_pkg/{LIBRARY}/z.egg-info/entry_points.txt",
+                f"{deep}/b/" + "../" * 17 + f"{tmp_path}/pipe"[1:],
+            ),
+        ):
+            link = tarfile.TarInfo(name)
+            link.type, link.linkname = (tarfile.SYMTYPE if target else tarfile.REGTYPE), target
+            tar.addfile(link)
+    jobs.built = Built(0, b"", file.getvalue())
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    told = reports(judge.run())[-1]
+    assert told["trouble"] == "build"
+    assert "link" in told["line"]
+
+
 def test_the_same_sources_are_built_once_for_all(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:
     for _ in range(2):
         judge = FakeJudge(sockets)
@@ -235,6 +274,45 @@ def test_the_same_sources_are_built_once_for_all(sockets: ServiceSockets, jobs: 
     judge.check(lab)
     judge.run()
     assert len(jobs.builds) == 2
+
+
+PACKAGE = "ros2_ws/src/my_robot_pkg"
+
+
+@pytest.mark.parametrize(
+    "odd",
+    [
+        messages.Source(f"{PACKAGE}/setuptools.pyc", b"x"),
+        messages.Source(f"{PACKAGE}/__pycache__/setup.cpython-311.pyc", b"x"),
+        messages.Source(f"{PACKAGE}/.git/hooks.py", b"x"),
+        messages.Source(f"{PACKAGE}/setuptools.pyc/__init__.py", b"x"),
+        messages.Source(f"{PACKAGE}/empty"),
+        messages.Source(f"{PACKAGE}/empty.pyc"),
+        messages.Source(f"{PACKAGE}/.hidden", b""),
+        messages.Source(f"{PACKAGE}/SETUP.py", b""),
+        messages.Source(f"{PACKAGE}/run.sh", b"", executable=True),
+        messages.Source("ros2_ws/src/setup.cfg", b"x"),
+        messages.Source("ros2_ws/src/colcon.meta", b"x"),
+        messages.Source("ros2_ws/build/my_robot_pkg/x", b"x"),
+    ],
+    ids=lambda source: source.path.removeprefix("ros2_ws/"),
+)
+def test_who_shares_a_build_has_given_the_very_same_to_its_box(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path, odd: messages.Source
+) -> None:
+    plain = collecting.collect_workspace(lab)
+    for sent in ([*plain, odd], plain):
+        judge = FakeJudge(sockets)
+        judge.lines.say(messages.Check("lab_1_1.hello", 7, "ros2_ws", len(sent)))
+        for source in sent:
+            judge.lines.say(source)
+        judge.lines.hear(messages.Ready)
+        assert reports(judge.run())[-1]["built"]
+        judge.lines.close()
+    inside = f"/{odd.path.removeprefix('ros2_ws/')}"
+    seen = any(f"/{path}".startswith(inside) for path, _, _ in jobs.boxes[0])
+    assert len(jobs.boxes) == (2 if seen else 1)
+    assert not seen or jobs.boxes[0] != jobs.boxes[1]
 
 
 def test_what_is_not_needed_is_not_built(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:
