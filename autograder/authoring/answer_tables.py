@@ -60,6 +60,7 @@ class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         why: Why it is right, or what is seen of the mistake.
         diagnosis: The most useful key of ``docs/mistakes.md``; empty for a right answer.
         also: Keys that are right, too.
+        says: Words that its card must say, where the key alone does not name what to mend.
         command: What runs it, where it is not what runs all of the folder.
         base: The right answer that it changes, a file of the folder ``right``; empty for a whole program and for a
             workspace, which changes that of the folder.
@@ -71,6 +72,7 @@ class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     why: str
     diagnosis: str = ""
     also: tuple[str, ...] = ()
+    says: str = ""
     command: tuple[str, ...] = ()
     base: str = ""
     shows: str = ""

@@ -34,6 +34,7 @@ class Answer:
         diagnoses: The keys that are right; empty for a correct answer.
         base: The workspace that the answer changes; None for a program.
         edit: Its entry in a table, where the program is stored there.
+        says: Words that the diagnosis must say.
     """
 
     exercise: str
@@ -42,6 +43,7 @@ class Answer:
     diagnoses: tuple[str, ...]
     base: Path | None = None
     edit: Listed | None = None
+    says: str = ""
 
     @property
     def name(self) -> str:
@@ -102,7 +104,10 @@ class Answer:
             return f"a wrong answer is {verdict.state}"
         if verdict.score >= verdict.max_score:
             return "a wrong answer got full marks"
-        return "" if key in self.diagnoses else f"diagnosed as {key}, not as {' or '.join(self.diagnoses)}"
+        if key not in self.diagnoses:
+            return f"diagnosed as {key}, not as {' or '.join(self.diagnoses)}"
+        words = f"{verdict.diagnosis.text} {verdict.diagnosis.next_step}" if verdict.diagnosis else ""
+        return "" if self.says in words else f"its card does not say “{self.says}”, but: {words}"
 
 
 def answers(of: Sequence[str] = ()) -> Iterator[Answer]:
@@ -123,7 +128,8 @@ def answers(of: Sequence[str] = ()) -> Iterator[Answer]:
             command = (_PROGRAMS.get(first, first), *rest)
             diagnoses = (one.entry.diagnosis, *one.entry.also) if one.entry.diagnosis else ()
             base = folder / usual.base if one.file.suffix == WORKSPACE else None
-            yield Answer(exercise_id, one.file, command, diagnoses, base, one if one.entry.change else None)
+            edit = one if one.entry.change else None
+            yield Answer(exercise_id, one.file, command, diagnoses, base, edit, one.entry.says)
 
 
 def named(name: str) -> Answer:

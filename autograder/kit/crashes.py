@@ -1,301 +1,20 @@
-"""Mistakes that a Python traceback gives away: pattern, cause, next step.
-
-The patterns are what rclpy 7.1 and Python say; each was reproduced. The order matters: the first that fits
-wins.
-"""
+"""Mistakes that are told from a traceback: which one counts, which mistake it shows, and what to do about it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.kit.known_crashes import KNOWN
 from autograder.kit.meant_errors import meant
 from autograder.kit.model import Advice, Mistake
+from autograder.kit.python_errors import meaning
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence
-
-
-@dataclass(frozen=True)
-class Crash:
-    """A known traceback.
-
-    Attributes:
-        key: The mistake's name.
-        pattern: Found in the traceback (multi-line search); its groups may be named in ``text``.
-        text: What happened and why.
-        next_step: What to do now.
-    """
-
-    key: str
-    pattern: str
-    text: str
-    next_step: str
-
-
-KNOWN = (
-    Crash(
-        "syntax_error",
-        r"^\s*(?:SyntaxError|IndentationError|TabError): (?P<what>.*)$",
-        "Python could not read the program: {what}.",
-        "Go to the line that the message names; a bracket, a quote, a colon or the indentation is off there "
-        "or just "
-        "before it.",
-    ),
-    Crash(
-        "init_twice",
-        r"Context\.init\(\) must only be called once",
-        "rclpy.init() was called although ROS was already started.",
-        "Call rclpy.init() once per process. In a notebook start_ros() has done it: leave rclpy.init() out.",
-    ),
-    Crash(
-        "not_initialized",
-        r"NotInitializedException|rclpy\.init has not been called|context (?:must be initialized|is not valid)"
-        # An executor that was made before: spinning makes one.
-        r"|guard_condition\.py\".*\n.*self\._context\.handle",
-        "The node was made before ROS was started, or after it was shut down.",
-        "Call rclpy.init() first (in a notebook: start_ros()) and make nodes only after it.",
-    ),
-    Crash(
-        "super_init_missing",
-        r"no attribute '_(?:Node__|default_callback_group|parameter|context|logger|handle)"
-        r"|rclpy/node\.py\".*\n(?: .*\n){1,2}AttributeError: '\w+' object has no attribute '_"
-        r"|descriptor '__init__' (?:requires|of) .*'super'",
-        "The class uses the Node before the Node was set up: super().__init__('a_name') is missing or comes "
-        "too late.",
-        "Make super().__init__('your_node_name') the first line of __init__.",
-    ),
-    Crash(
-        "newer_api",
-        # Of rclpy 7.2 and later: contexts and entities for `with`, more names, arithmetic with durations.
-        r"\b(?:init\(|with \().*\n(?:[ ~^]*\n)?"
-        r"(?:TypeError: 'NoneType' object does not support the (?:asynchronous )?context manager protocol"
-        r"|AttributeError: __a?enter__)"
-        r"|^ +(?:async )?with .*\n(?:[ ~^]*\n)?TypeError: '(?:\w*(?:Node|Talker|Listener|Publisher|Subscriber|Server)"
-        r"|Subscription|Client|Service|Timer)' object does not support the (?:asynchronous )?context manager protocol"
-        r"|ImportError: cannot import name '(?:MessageInfo|TimerInfo|InitContextManager|EventsExecutor|AsyncNode)' "
-        r"from 'rclpy"
-        r"|has no attribute 'get_(?:clients|servers)_info_by_service'"
-        r"|TypeError: unsupported operand type\(s\) for [-+*/]+: 'Duration' and",
-        "This is written for a newer ROS 2 than Jazzy, which the course uses: Jazzy's rclpy does not know it yet.",
-        "Look for pages about Jazzy. Write rclpy.init() as a line of its own, without `with`, and make the node in the "
-        "next line; in a notebook, start_ros() has called rclpy.init() already.",
-    ),
-    Crash(
-        "handle_overwritten",
-        r"'method' object does not support the context manager protocol|handle cannot be modified",
-        "A method or attribute of your node is called handle, a name that Node itself needs.",
-        "Rename it, for example to handle_message.",
-    ),
-    Crash(
-        "node_attribute_overwritten",
-        r"property '(?P<name>\w+)' of '\w+' object has no setter|can't set attribute '?(?P<other>\w*)",
-        "Your class assigns to a name that Node already uses for something else ({name}).",
-        "Give your attribute another name, for example my_{name} or {name}_.",
-    ),
-    Crash(
-        "qos_arguments_swapped",
-        r"Expected QoSProfile or int",
-        "The arguments of create_publisher or create_subscription are in the wrong order.",
-        "The order is create_publisher(Type, 'topic', 10) and create_subscription(Type, 'topic', callback, "
-        "10).",
-    ),
-    Crash(
-        "qos_depth_missing",
-        r"missing \d+ required positional arguments?: .*'?qos_profile",
-        "The queue size is missing.",
-        "Add it as the last argument: create_publisher(Type, 'topic', 10), create_subscription(Type, "
-        "'topic', "
-        "callback, 10).",
-    ),
-    Crash(
-        "builtin_callback",
-        r"no signature found for builtin",
-        "A builtin such as list.append or deque.append was given as a callback; rclpy cannot look at its "
-        "arguments.",
-        "Wrap it: lambda msg: my_list.append(msg).",
-    ),
-    Crash(
-        "callback_signature",
-        r"TypeError: (?:[\w.<>]+\.)?(?P<class>\w+)\.(?P<method>\w+)\(\) takes 0 positional arguments but \d+ w",
-        "The method {method} of {class} has no parameter self, but Python hands the object itself to every method.",
-        "Write self first between its parentheses: def {method}(self).",
-    ),
-    Crash(
-        "callback_signature",
-        r"^ +.*(?:add_done_callback|create_(?:timer|subscription|service)|ActionServer|\w*callback=).*\.\w+\(\)[,)].*\n"
-        r"(?:[ ~^]*\n)?TypeError: (?:[\w.<>]+\.)?(?P<method>\w+)\(\) missing \d+ required positional arguments?: ",
-        "The parentheses after {method} call it on the spot, without what ROS would give it. It is not handed over.",
-        "Write the name without parentheses, as in add_done_callback(self.{method}): ROS calls it when it is time.",
-    ),
-    Crash(
-        "callback_signature",
-        r"create_subscription\([^,\n]*,[^,\n]*, *(?:callback *= *)?(?P<name>[\w.]+)\(\)(?:.*\n)+"
-        r".*callback should be either",
-        "{name}() calls the method on the spot, so the subscription was given what it returned, and not the method.",
-        "Pass the method itself, without parentheses after it: {name}.",
-    ),
-    Crash(
-        "callback_signature",
-        r"create_subscription\([^,\n]*,[^,\n]*, *(?:callback *= *)?self\.(?P<name>\w+) *[,)](?:.*\n)+"
-        r".*callback should be either",
-        "The callback {name} takes the wrong number of arguments: a subscription hands it the message.",
-        "Write one parameter for the message besides self: def {name}(self, message).",
-    ),
-    Crash(
-        "callback_signature",
-        # Raised where rclpy calls the callback; a notebook's traceback leaves rclpy's own lines out.
-        r"(?:\A|rclpy/(?:executors|task|event_handler|action/client|action/server)\.py\".*\n(?: .*\n){1,2})"
-        r"TypeError: (?P<what>.*positional argument.*)",
-        "A callback takes the wrong number of arguments: {what}.",
-        "Change what stands between its parentheses where it is defined. Besides self, a timer's callback takes "
-        "nothing and a subscription's takes the message.",
-    ),
-    Crash(
-        "callback_signature",
-        r"Expected .* callback|[Cc]allback should be either|callback.*(?:takes|missing) .*positional argument",
-        "A callback has the wrong form: it was called on the spot (cb() instead of cb), or it takes the "
-        "wrong number "
-        "of arguments.",
-        "Pass the function itself, without parentheses after it. Besides self, a timer's callback takes nothing and a "
-        "subscription's takes the message.",
-    ),
-    Crash(
-        "timer_callback_called",
-        r"'NoneType' object is not callable",
-        "The timer got what the callback returned (None) instead of the callback.",
-        "Write the method's name without parentheses, as in create_timer(0.5, self.say_hello): ROS calls it, not you.",
-    ),
-    Crash(
-        "request_not_instantiated",
-        r"(?:Service|Action|Interface)\w* classes can not be instantiated",
-        "A service or action type itself cannot be made: it is only the name for its parts.",
-        "Make its part: AddTwoInts.Request(), Fibonacci.Goal().",
-    ),
-    Crash(
-        "raw_value_published",
-        r"TypeError: Expected <class '[\w.]+\.msg\.\w+\.(?P<type>\w+)'>, got <class '(?:\w+\.)*(?P<got>\w+)'>",
-        "What your code published is of the type {got}; a message of the type {type} is expected.",
-        "Make the message first, msg = {type}(), fill its field and publish that: publish(msg).",
-    ),
-    Crash(
-        "raw_value_published",
-        r"publish_feedback\((?:.*\n)+TypeError:?\s*\z",
-        "A bare value was sent where feedback is expected.",
-        "Make the feedback first (feedback = Fibonacci.Feedback()), fill its field and send that.",
-    ),
-    Crash(
-        "raw_value_published",
-        r"send_goal(?:_async)?\((?:.*\n)+TypeError:?\s*\z",
-        "A bare value was sent where a goal is expected.",
-        "Make the goal first (goal = Fibonacci.Goal()), fill its field and send that.",
-    ),
-    Crash(
-        "raw_value_published",
-        r"call(?:_async)?\((?:.*\n)+TypeError:?\s*\z",
-        "A bare value was sent where a request is expected.",
-        "Make the request first (request = AddTwoInts.Request()), fill its fields and send that.",
-    ),
-    Crash(
-        "raw_value_published",
-        r"[Ee]xpected (?:<class )?'?[\w.]*(?:String|Int\d+|Message)\b.*got|TypeError: Expected [\w/.<>' ]+, got"
-        r"|publish\((?:.*\n)+TypeError:?\s*\z",
-        "A bare value was sent where a message is expected.",
-        "Make the message first, fill its field and send that.",
-    ),
-    Crash(
-        "result_missing",
-        r"The 'result' field must be a sub message of type '\w+_Result'",
-        "The execute callback of an action server returned no result.",
-        "End it with `return result`, a Fibonacci.Result() with its field filled, also where the goal is canceled.",
-    ),
-    Crash(
-        "field_type",
-        r"field must be a sub message of type 'Vector3'"
-        r"|publish\(msg\)\n(?:[ ~^]*\n)?AttributeError: '(?:float|int)' object has no attribute 'x'",
-        "A part of a message that has three numbers got a single one.",
-        "Name the number that you mean: x, y or z, as in command.linear.x = 0.5.",
-    ),
-    Crash(
-        "field_type",
-        r"The '(?P<field>\w+)' field must be of type 'float'",
-        "The field {field} of a message takes a decimal number, and got something else.",
-        "Write the number with a point and without quotation marks: 0.5, and 1.0 in place of 1. "
-        "float(...) makes one of a text.",
-    ),
-    Crash(
-        "field_type",
-        r"The '(?P<field>\w+)' (?:field|numpy\.ndarray) must|bad argument type for built-in operation"
-        r"|must be an integer in \[|AssertionError: The '"
-        r"|SystemError: <(?:function|class|built-in).*returned (?:a result with an exception|NULL)",
-        "A field of a message got a value of the wrong type.",
-        "Convert it before you assign: int(...) for an int64, str(...) for a string. Command-line arguments "
-        "are text.",
-    ),
-    Crash(
-        "field_typo",
-        r"AttributeError: 'Twist' object has no attribute '(?P<name>\w+)'",
-        "A Twist has no field of the name {name}: it has two parts, linear and angular, and each has the numbers x, y "
-        "and z.",
-        "Name the part, too: command.linear.x is the speed straight ahead, command.angular.z the turn to the left.",
-    ),
-    Crash(
-        "field_typo",
-        r"AttributeError: '\w+_FeedbackMessage' object has no attribute '(?P<name>\w+)'",
-        "The message has no field of the name {name}.",
-        "In an action's feedback callback the fields are one level down: msg.feedback.partial_sequence.",
-    ),
-    Crash(
-        "field_typo",
-        r"AttributeError: '(?:String|U?Int\d+|Vector3"
-        r"|\w+_(?:Request|Response|Goal|Result|Feedback))' object has no attribute '(?P<name>\w+)'"
-        r"|Invalid arguments passed to constructor: '?(?P<keyword>\w+(?:, \w+)*)",
-        "The message has no field of the name {name}{keyword}.",
-        "Look the fields up with `ros2 interface show` and spell the name exactly so.",
-    ),
-    Crash(
-        "callback_returned_none",
-        r"(?:send_response|service_send_response)(?:.*\n)+TypeError",
-        "A service callback returned nothing.",
-        "End the callback with `return response`.",
-    ),
-    Crash(
-        "executor_not_kept",
-        r"'NoneType' object has no attribute '(?:spin\w*|add_node|create_task)'",
-        "node.executor is None: a node holds its executor only weakly, and nobody else kept this one.",
-        "Keep the executor in a variable, executor = SingleThreadedExecutor(), and call executor.spin() on "
-        "that.",
-    ),
-    Crash(
-        "result_read_too_early",
-        r"'NoneType' object has no attribute '(?:sum|result|accepted|status|sequence|cancel_goal_async|"
-        r"get_result_async|goals_canceling)'",
-        "The answer was read before it was there: future.result() is None until the future is done.",
-        "Wait first: spin_until_future_complete(node, future, timeout_sec=5.0), or go on in "
-        "future.add_done_callback(...).",
-    ),
-    Crash(
-        "module_not_found",
-        r"ModuleNotFoundError: No module named '(?P<name>[\w.]+)'",
-        "Python does not find the module {name}.",
-        "Is the name right? Compare it with the import in the lab's text (.msg, .srv, .action). "
-        "Packages of your own workspace need `colcon build` and `source install/setup.bash` first.",
-    ),
-    Crash(
-        "nested_spin",
-        r"[Ee]xecutor is already spinning|generator already executing",
-        "A callback spins although its own executor is spinning already.",
-        "Never call spin or spin_until_future_complete inside a callback; use add_done_callback or await.",
-    ),
-    Crash(
-        "not_written",
-        r"NotImplementedError",
-        "The part that you are to write is still open.",
-        "Find the TODO and write it; the hints below it open one at a time.",
-    ),
-)
+    from autograder.kit.known_crashes import Crash
 
 
 _NO_CRASH = re2.compile(
@@ -323,7 +42,7 @@ def _recogniser(crash: Crash) -> Mistake:
         found = compiled.search(traceback)
         if found is None:
             return None
-        words = {name: value or "" for name, value in found.groupdict().items()}
+        words = meaning(traceback)._asdict() | {name: said or "" for name, said in found.groupdict().items()}
         return Advice(crash.text.format(**words), crash.next_step.format(**words), traceback)
 
     return Mistake(crash.key, recognise, certain=True)
@@ -339,6 +58,17 @@ def what_and_where(traceback: str) -> str:
     return f"{last[0].strip()}{where}"
 
 
+def raised(how: str, traceback: str) -> Advice:
+    """The advice for an exception that has no name of its own here.
+
+    Args:
+        how: What came of it, for the beginning of the sentence.
+        traceback: Its traceback.
+    """
+    why, next_step = meaning(traceback)
+    return Advice(f"{how}: {what_and_where(traceback)}{why and f'. {why}'}", next_step, traceback)
+
+
 _FRAME = re2.compile(r'(?m)^ +File "(?P<file>[^"\n]*)", line (?P<line>\d+), in (?P<function>[^\n]*)$')
 _LIBRARY = re2.compile(r"/python3(?:\.\d+)?/(?P<below>[^/]*)|/rclpy/|^<frozen")
 
@@ -351,11 +81,7 @@ def _crashed(evidence: Evidence) -> Advice | None:
     traceback = traceback_of(evidence)
     if not traceback:
         return None
-    return Advice(
-        f"The program stopped with an exception: {what_and_where(traceback)}",
-        "Read the traceback from the bottom: the last line says what, the lines above say where.",
-        traceback,
-    )
+    return raised("The program stopped with an exception", traceback)
 
 
 def _exception_in_callback(evidence: Evidence) -> Advice | None:
@@ -363,12 +89,8 @@ def _exception_in_callback(evidence: Evidence) -> Advice | None:
     spun = any(p.first("subject", "constructed") for p in evidence if p.ending and p.ending.name == "raised")
     if not traceback or not (spun or "rclpy/executors.py" in traceback):
         return None
-    return Advice(
-        f"A callback raised an exception, which ends the spinning and with it everything else: "
-        f"{what_and_where(traceback)}",
-        "Read the traceback from the bottom: the last line says what, the lines above it where. Mend the line that is "
-        "yours.",
-        traceback,
+    return raised(
+        "A callback raised an exception, which ends the spinning and with it everything else", traceback
     )
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit import common_mistakes as common
-from autograder.kit.crashes import traceback_of
+from autograder.kit.crashes import raised, traceback_of
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.goals_seen import ABORTED, CANCELED, all_goals, servers, status_text
 from autograder.kit.hangs import HANGS
@@ -170,9 +170,4 @@ def _exception_in_execute(evidence: Evidence) -> Advice | None:
     traceback = traceback_of(evidence)
     if not traceback or not any(seen.status == ABORTED for part in evidence for seen in all_goals(part)):
         return None
-    last = next((line for line in reversed(traceback.splitlines()) if line.strip()), "")
-    return Advice(
-        f"The execute callback raised an exception, so rclpy aborted the goal: {last.strip()}",
-        "Read the traceback from the bottom: the last line says what, the line above it where. Mend that line.",
-        traceback,
-    )
+    return raised("The execute callback raised an exception, so rclpy aborted the goal", traceback)

@@ -315,8 +315,10 @@ class Hears:
         if len(seen.claims(self.expected(evidence))) < 4 and part.of("unanswered"):
             return None
         return Advice(
-            "Your node is at work and has its publisher, but nothing is ever published on it.",
-            "Does your timer's callback, or your loop, really call publish(msg)? A log line is no message.",
+            "Your node is at work and has its publisher, but nothing is published on it while the check listens.",
+            f"Is there a timer, and is its period in seconds: {reference_period(evidence.reference):g}, and not "
+            f"{1000 * reference_period(evidence.reference):g}? Then look into its callback, or your loop: does it come "
+            "to publish(msg)? A log line is no message.",
         )
 
     def _wrong_rate(self, evidence: Evidence) -> Advice | None:

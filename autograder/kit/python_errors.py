@@ -1,0 +1,267 @@
+"""What Python's own errors mean in a beginner's node, and what to do: one row for each way in which Python says it.
+
+The rows were made from what Python 3.11 and 3.12 and rclpy 7.1 print. The first one that fits wins.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import re2
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+class Meaning(NamedTuple):
+    """What an error means.
+
+    Attributes:
+        why: What is wrong, in a sentence; it may be empty.
+        next_step: What to do now.
+    """
+
+    why: str
+    next_step: str
+
+
+Row = tuple[str, str, str]
+"""A pattern that is searched in a traceback, and the two texts, which may name its groups."""
+
+_MARKS = r"\n(?:[ ~^]*\n)?"
+"""From a line of code to what Python says of it: perhaps a line of marks below the code."""
+_OWN = r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute '(?P<name>\w+)'"
+_READS = r"^(?:SyntaxError|IndentationError|TabError): "
+
+READING: Sequence[Row] = (
+    (
+        rf"{_READS}expected ':'",
+        "A colon is missing.",
+        "Write a colon at the end of that line: class, def, if, else, for, while, try and with all end with one.",
+    ),
+    (
+        rf"{_READS}expected an indented block after (?P<what>.*) on line (?P<line>\d+)",
+        "The lines that belong to the {what} are not indented.",
+        "Indent by four spaces what belongs below line {line}.",
+    ),
+    (
+        rf"{_READS}unexpected indent",
+        "That line begins further to the right than the one above it, and nothing above it opens a block.",
+        "Let it begin below the first letter of the line above.",
+    ),
+    (
+        rf"{_READS}unindent does not match",
+        "That line begins between two levels of indentation.",
+        "Let it begin exactly below the line that it belongs to: four spaces for each level.",
+    ),
+    (
+        rf"{_READS}inconsistent use of tabs",
+        "Some lines begin with tabs and others with spaces.",
+        "Delete what that line begins with, and indent by four spaces for each level.",
+    ),
+    (
+        rf"{_READS}'(?P<sign>.)' was never closed",
+        "The bracket {sign} is opened and never closed.",
+        "Count the brackets of that line, and close this one.",
+    ),
+    (
+        rf"{_READS}unmatched '(?P<sign>.)'",
+        "There is one {sign} too many.",
+        "Count the brackets of that line.",
+    ),
+    (
+        rf"{_READS}(?:unterminated|EOL while scanning|f-string: expecting)",
+        "A string does not end.",
+        "Close it with the quotation mark that it begins with, and each {{ in an f-string with a }}.",
+    ),
+    (
+        rf"{_READS}invalid (?:non-printable )?character '?(?P<sign>[^']*)",
+        "That line has a character of a word processor or a web page in it.",
+        "Type the line yourself: quotation marks are ' or \" and a minus is -.",
+    ),
+    (
+        rf"{_READS}.*Maybe you meant '=='",
+        "One = gives a variable a value; to compare takes two.",
+        "Write == in a condition. Left of a single = stands the name that is to get the value.",
+    ),
+    (
+        rf"{_READS}.*forgot a comma",
+        "Two things stand beside each other, and nothing joins them.",
+        "Write a comma between them, or close the bracket or the quotation mark before.",
+    ),
+    (
+        rf"{_READS}Missing parentheses in call to 'print'",
+        "This is Python 2.",
+        "Write print(...), with parentheses.",
+    ),
+    (
+        rf"{_READS}'return' outside function",
+        "That line is not inside a method any more.",
+        "Indent it as the other lines of its method.",
+    ),
+    (
+        _READS,
+        "",
+        "Go to the line that the message names; a bracket, a quote, a colon or the indentation is off there or just "
+        "before it.",
+    ),
+)
+"""What Python says of a text that it cannot read."""
+
+RUNNING: Sequence[Row] = (
+    (
+        rf"^ +self\.(?P<name>\w+) == .*{_MARKS}AttributeError: '[A-Z]\w*' object has no attribute",
+        "Two equals signs compare, so self.{name} gets no value.",
+        "Write a single one: self.{name} = ...",
+    ),
+    (
+        rf"^{_OWN}\. Did you mean: '(?P<meant>\w+)'",
+        "{class} has nothing called {name}, and has {meant}.",
+        "If that is what you mean, write {meant}. If {name} is a value of your own, set self.{name} in __init__.",
+    ),
+    (
+        r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>(?:create|declare|get)_\w+)'",
+        "A node has no method {name}.",
+        "Compare the spelling: create_publisher, create_subscription, create_timer, create_service, create_client, "
+        "get_logger.",
+    ),
+    (
+        rf"^ +.*(?:create_\w+|ActionServer|ActionClient|\w*callback\w*)\(?.*self\..*{_MARKS}{_OWN}",
+        "{class} has no method {name} at this line.",
+        "Does def {name} stand in the class, spelled the same? Let it begin below the d of def __init__, four spaces "
+        "from the margin: further to the right it is only a part of the method above.",
+    ),
+    (
+        r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute 'publish'",
+        "A node cannot publish by itself: its publisher does.",
+        "Keep what create_publisher returns, self.publisher = self.create_publisher(...), and call "
+        "self.publisher.publish(msg).",
+    ),
+    (
+        rf"^{_OWN}",
+        "Nothing has set self.{name} so far.",
+        "Set it in __init__, above the line that needs it, and write self. before it there, too: a variable without "
+        "self. is forgotten at the end of its method. Is it a method? Then compare its name, and its indentation.",
+    ),
+    (
+        r"AttributeError: '(?:builtin_function_or_method|function|method)' object has no attribute '(?P<name>\w+)'",
+        "Before .{name} stands a method that was not called.",
+        "Write the parentheses after it, as in self.get_logger().info(...).",
+    ),
+    (
+        r"AttributeError: 'NoneType' object has no attribute '(?P<name>\w+)'",
+        "What stands before .{name} is None: it was not filled yet, or a function that should give it has no return.",
+        "Look where it gets its value, and whether that line has run before this one.",
+    ),
+    (
+        r"AttributeError: partially initialized module '(?P<name>[\w.]+)'",
+        "A file of yours is called like the module {name}, and Python imports that instead.",
+        "Give your file another name.",
+    ),
+    (
+        r"AttributeError: module '(?P<module>[\w.]+)' has no attribute '(?P<name>\w+)'",
+        "The module {module} has nothing called {name}.",
+        "Compare the name with the lab's text, letter by letter.",
+    ),
+    (
+        r"^(?:UnboundLocalError: )(?:cannot access local variable|local variable) '(?P<name>\w+)'",
+        "Without self. before it, {name} is a variable of this method alone, and has no value yet.",
+        "Is it a value of the node? Then write self.{name}, here and wherever it is used.",
+    ),
+    (
+        r"^NameError: name '(?P<name>[A-Z]\w*)' is not defined",
+        "Python does not know {name}: it was never imported or defined, or the cell that does so has not run.",
+        "Compare the spelling. Run the notebook's cells from the top; a program needs the import in its own file.",
+    ),
+    (
+        r"^NameError: name '(?P<name>\w+)' is not defined",
+        "Python does not know {name}.",
+        "Does it belong to your node, a value or a method of its own? Then write self.{name}. Otherwise compare the "
+        "spelling, and run the notebook's cells from the top: one of them may define it.",
+    ),
+    (
+        r"^TypeError: (?:can only concatenate str|unsupported operand type\(s\) for \+=?: '(?:int|float|str)' and "
+        r"'(?:int|float|str)')",
+        "A string and a number are added.",
+        "To join them to a string, write f'... {{number}}'. To add numbers, make one of the string first: int(...).",
+    ),
+    (
+        r"^TypeError: '[<>]=?' not supported between instances of '\w+' and '\w+'",
+        "Two things that have no order are compared, such as a string with a number.",
+        "Make a number of the string first: int(...) or float(...).",
+    ),
+    (
+        r"^TypeError: float\(\) argument must be a string or a real number, not '(?:method|function)'",
+        "The timer got the method where the period belongs.",
+        "First the seconds, then the method: create_timer(0.5, self.say_hello).",
+    ),
+    (
+        r"timer period must be non-negative",
+        "The period of a timer is less than 0.",
+        "Give it in seconds: create_timer(0.5, self.say_hello).",
+    ),
+    (
+        r"^TypeError: '(?P<kind>int|float|str|list|String|Publisher|Timer|Client|Service)' object is not callable",
+        "A {kind} is called as if it were a method: perhaps a value of yours has the name of a method.",
+        "Leave out the parentheses, or give the value another name.",
+    ),
+    (
+        r"^TypeError: (?:\w+\.)?publish\(\) missing",
+        "publish was called without a message.",
+        "Write the message between its parentheses: publish(msg).",
+    ),
+    (
+        r"^TypeError: (?:String|Twist|Vector3|U?Int\d+|Float\d+|Bool"
+        r"|\w+_(?:Request|Response|Goal|Result|Feedback))\.__init__\(\) takes 1 positional argument",
+        "A message takes its fields by their names.",
+        "Name the field between the parentheses, as in String(data='hello'), or set it in the next line.",
+    ),
+    (
+        r"^TypeError: spin\(\) missing 1 required positional argument: 'node'",
+        "rclpy.spin has to know which node it spins.",
+        "Write rclpy.spin(node).",
+    ),
+    (
+        r"Invalid(?:Topic|Service|Node|Namespace)\w*NameException|InvalidNamespaceException",
+        "A name in ROS has letters, digits and underscores only, and no digit at its beginning.",
+        "Change the name: my_topic, in place of `my topic` or `my-topic`.",
+    ),
+    (
+        r"ParameterNotDeclaredException",
+        "A parameter is read that the node has not declared.",
+        "Declare it in __init__, with its default: self.declare_parameter('name', 1.0).",
+    ),
+    (
+        r"^RecursionError",
+        "A method calls itself again and again.",
+        "Let ROS call a callback: hand it to a timer or a subscription, and do not call it inside itself.",
+    ),
+    (
+        r"^IndexError: list index out of range",
+        "The list is shorter than that: its first element has the number 0, and the last one len(...) - 1.",
+        "Look how many elements it has before you take one.",
+    ),
+    (
+        r"",
+        "",
+        "Read the traceback from the bottom: the last line says what, the lines above it where. Mend the line that is "
+        "yours.",
+    ),
+)
+"""What Python says of a program that runs."""
+
+
+def meaning(traceback: str) -> Meaning:
+    """What the error at the end of a traceback means."""
+    for pattern, why, next_step in (*READING, *RUNNING):
+        found = _compiled(pattern).search(traceback)
+        if found is not None:
+            words = {name: value or "" for name, value in found.groupdict().items()}
+            return Meaning(why.format(**words), next_step.format(**words))
+    raise AssertionError("the last row fits everything")
+
+
+@cache
+def _compiled(pattern: str) -> Any:
+    return re2.compile(f"(?m){pattern}")

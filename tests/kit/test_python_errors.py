@@ -1,0 +1,51 @@
+"""What Python says of a beginner's slip, and what the card makes of it."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.kit.crashes import CRASHES, OTHER_CRASHES
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+
+SAID = {
+    "AttributeError: 'Talker' object has no attribute 'count'": "Set it in __init__",
+    "AttributeError: 'Talker' object has no attribute 'cuont'. Did you mean: 'count'?": "write count.",
+    "AttributeError: 'Talker' object has no attribute 'create_timr'": "Compare the spelling: create_publisher",
+    "AttributeError: 'function' object has no attribute 'info'": "Write the parentheses after it",
+    "NameError: name 'count' is not defined": "Then write self.count",
+    "NameError: name 'count' is not defined. Did you mean: 'self.count'?": "Then write self.count",
+    "NameError: name 'String' is not defined": "Run the notebook's cells from the top",
+    "NameError: name 'linear' is not defined": "command.linear.x = 0.5",
+    "UnboundLocalError: cannot access local variable 'i' where it is not associated with a value": "write self.i",
+    "UnboundLocalError: local variable 'i' referenced before assignment": "write self.i",
+    "AttributeError: 'Future' object has no attribute 'sum'": "future.result().sum",
+    "SyntaxError: expected ':'": "Write a colon at the end of that line",
+    "SyntaxError: invalid syntax": "just before it",
+    "IndentationError: expected an indented block after 'if' statement on line 4": "what belongs below line 4",
+    "SyntaxError: invalid syntax. Maybe you meant '==' or ':=' instead of '='?": "Write == in a condition",
+    "ImportError: cannot import name 'Strng' from 'std_msgs.msg' (/opt/ros/x/__init__.py)": "nothing called Strng",
+    "TypeError: unsupported operand type(s) for +: 'int' and 'str'": "A string and a number are added",
+    "ZeroDivisionError: division by zero": "Read the traceback from the bottom",
+}
+
+
+@pytest.mark.parametrize("last", SAID)
+def test_the_card_names_what_to_mend(last: str) -> None:
+    words = told(f'Traceback (most recent call last):\n  File "talker.py", line 3, in f\n    here()\n{last}')
+    assert SAID[last] in words
+    assert "{" not in words.replace("{number}", "")
+
+
+def test_a_method_that_is_not_found_where_it_is_handed_over_may_be_indented_too_far() -> None:
+    code = "self.timer = self.create_timer(0.5, self.tick)\n                                        ^^^^^^^^^"
+    frames = f'Traceback (most recent call last):\n  File "talker.py", line 3, in __init__\n    {code}\n'
+    words = told(f"{frames}AttributeError: 'Talker' object has no attribute 'tick'")
+    assert "Let it begin below the d of def __init__" in words
+
+
+def told(traceback: str) -> str:
+    """What the diagnosis of a subject says that ended with this traceback."""
+    event = Event(0.1, "subject", "raised", {"traceback": traceback})
+    evidence = Evidence([Part("part", {}, [event])], Reference("x", {}))
+    advice = next(filter(None, (mistake.recognise(evidence) for mistake in (*CRASHES, *OTHER_CRASHES))))
+    return f"{advice.text} {advice.next_step}"
