@@ -39,7 +39,9 @@
     const before = points();
     refresh.last = fresh.innerHTML;
     map.innerHTML = fresh.innerHTML;
-    if (focused) document.getElementById(focused)?.focus({ preventScroll: true });
+    // What was begun anew has no button for that any more: its title is beside it.
+    const beside = focused && (document.getElementById(focused) || document.getElementById(focused.replace("reset-", "open-")));
+    beside?.focus({ preventScroll: true });
     if (points() !== before && !acting) say(`Now ${points()}.`, false);
   }
   refresh.last = map.innerHTML;

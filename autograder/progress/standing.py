@@ -46,6 +46,7 @@ class NotebookStanding:
         path: Where it is, from the folder of the notebooks; empty where it is not there.
         exercises: In the order in which they are done.
         read: Whether its reader has marked it as read.
+        touched: Whether there is anything to begin anew: it was checked or marked, or is not as it was released.
     """
 
     name: str
@@ -54,6 +55,7 @@ class NotebookStanding:
     path: str
     exercises: tuple[ExerciseStanding, ...]
     read: bool
+    touched: bool
 
     @property
     def points(self) -> float:
@@ -116,7 +118,7 @@ class Standing:
 
     Attributes:
         chapters: In their order.
-        following: The notebook to go on with; None where all are done.
+        following: The first notebook that is not done; None where all are.
         begun: Whether anything was done yet.
     """
 
@@ -139,20 +141,19 @@ def standing(root: Path, folder: Path, entries: Sequence[Entry]) -> Standing:
     """
     reached = journal.best(entries)
     read = {entry.name: entry.kind == "read" for entry in entries if entry.kind != "check"}
-    chapters = tuple(_chapter(one, folder, reached, read) for one in course.chapters(root))
-    notebooks = [notebook for chapter in chapters for notebook in chapter.notebooks]
-    last = next((entry.notebook for entry in reversed(entries) if entry.kind != "unread"), "")
-    return Standing(chapters, _following(notebooks, last), bool(entries))
-
-
-def _following(notebooks: list[NotebookStanding], last: str) -> NotebookStanding | None:
-    """The first that is not done from the one that was last worked in; else the first of all."""
-    at = next((index for index, one in enumerate(notebooks) if one.name == last), 0)
-    return next((one for one in notebooks[at:] + notebooks[:at] if one.state != "done"), None)
+    touched = {entry.notebook: entry.kind != "reset" for entry in entries}
+    chapters = tuple(_chapter(one, folder, reached, read, touched) for one in course.chapters(root))
+    notebooks = (notebook for chapter in chapters for notebook in chapter.notebooks)
+    following = next((notebook for notebook in notebooks if notebook.state != "done"), None)
+    return Standing(chapters, following, bool(entries))
 
 
 def _chapter(
-    chapter: course.Chapter, folder: Path, reached: dict[str, Entry], read: dict[str, bool]
+    chapter: course.Chapter,
+    folder: Path,
+    reached: dict[str, Entry],
+    read: dict[str, bool],
+    touched: dict[str, bool],
 ) -> ChapterStanding:
     notebooks = []
     for lab in chapter.labs:
@@ -160,9 +161,16 @@ def _chapter(
         known = tuple(_exercise(exercise_id, reached) for exercise_id in chapter.exercises_of(lab))
         path = notebook_path(chapter, lab, folder)
         shown = path.relative_to(folder).as_posix() if path.is_file() else ""
-        notebooks.append(NotebookStanding(lab.name, title, minutes, shown, known, read.get(lab.name, False)))
+        marked, begun = read.get(lab.name, False), touched.get(lab.name, False) or _is_changed(path, lab)
+        notebooks.append(NotebookStanding(lab.name, title, minutes, shown, known, marked, begun))
     finished = journal.finished(chapter, reached)
     return ChapterStanding(chapter.folder.name, chapter.title, tuple(notebooks), finished)
+
+
+def _is_changed(notebook: Path, lab: Path) -> bool:
+    """Whether a notebook was saved since it was released; not known in a course that was not handed out."""
+    released = course.released(lab)
+    return notebook.is_file() and released.is_file() and notebook.read_bytes() != released.read_bytes()
 
 
 def notebook_path(chapter: course.Chapter, lab: Path, folder: Path) -> Path:

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from autograder import course, exercises
+from autograder.handing_out import hand_out
 from autograder.journal import Entry
 from autograder.progress.standing import Standing, standing
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 ROOT = course.root()
 FOLDER = ROOT / course.CHAPTERS
@@ -46,20 +52,35 @@ def test_points_make_a_notebook_done_and_a_mark_one_that_is_only_read() -> None:
     assert (states["lab_1_2"].state, states["summary"].state) == ("begun", "new")
 
 
-def test_one_goes_on_where_one_was_and_then_with_what_was_left_out() -> None:
+def test_one_goes_on_with_the_first_notebook_that_is_not_done() -> None:
     def following(*entries: Entry) -> str | None:
         found = after(*entries).following
         return found.name if found else None
 
     names = [one.name for chapter in after().chapters for one in chapter.notebooks]
     assert following() == names[0]
-    assert following(full("lab_1_2.talker")) == "lab_1_2"
-    whole = [full(exercise) for exercise in exercises_of("lab_1_2")]
-    assert following(*whole) == names[names.index("lab_1_2") + 1]
+    assert following(full("lab_1_2.talker")) == names[0]
     everything = [full(exercise) for exercise in exercises.all_ids()]
     read = [Entry("read", name, 2) for name in names]
     assert following(*everything, *read[1:]) == (None if exercises_of(names[0]) else names[0])
     assert following(*everything, *read) is None
+
+
+def test_only_what_was_begun_can_be_begun_anew(tmp_path: Path) -> None:
+    hand_out(tmp_path / "class", ROOT)
+    chapters = tmp_path / "class" / course.CHAPTERS
+
+    def touched(*entries: Entry) -> list[str]:
+        found = standing(tmp_path / "class", chapters, entries).chapters[0].notebooks
+        return [one.name for one in found if one.touched]
+
+    assert touched() == []
+    checked = Entry("check", "lab_1_2.talker", 1, 0, 10)
+    assert touched(checked) == ["lab_1_2"]
+    assert touched(checked, Entry("reset", "lab_1_2", 2)) == []
+    saved = next(chapters.rglob("lab_1_3.ipynb"))
+    saved.write_bytes(saved.read_bytes() + b"\n")
+    assert touched() == ["lab_1_3"]
 
 
 def test_a_chapter_is_finished_with_its_last_point_and_not_before() -> None:
