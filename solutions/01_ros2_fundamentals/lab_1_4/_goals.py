@@ -24,7 +24,7 @@ SMALLEST = (1, 0, 1, 0, 1, 1, 1, 1, 0, 1)
 SINGLE = 0
 """The order of a single number. A server may also answer it with both numbers that it begins with."""
 LAST_ORDER = 2
-"""The order of the two goals after the bad ones."""
+"""The order of the two goals after the bad ones, and of two equal ones that are sent at once."""
 NO_TIME = 0.009
 """Seconds between two feedback messages that no pause makes: the shortest that a person would write is longer, and in a
 notebook none is made shorter than that. Two goals that never pause take turns of Python's 0.005 s."""
@@ -40,7 +40,8 @@ FIRST_TOO_LARGE = 47
 """The first order whose last number does not fit into an int32."""
 ALONE = 0
 TINY = range(1, 1 + len(SMALLEST))
-LONG, BESIDE, AGAIN, LONG_ALONE = range(TINY.stop, TINY.stop + 4)
+TWINS = range(TINY.stop, TINY.stop + 2)
+LONG, BESIDE, AGAIN, LONG_ALONE = range(TWINS.stop, TWINS.stop + 4)
 """The goals of the first part by their numbers. In the second part the last two are good, those before them are bad."""
 LONG_ORDER = 46
 """The order of the goal that is canceled: the largest that there is."""
@@ -56,8 +57,9 @@ def ended_by_a_younger(part: Part) -> Goal | None:
     older, younger = goal(part, LONG), goal(part, BESIDE)
     if older.status not in (ABORTED, CANCELED) or not younger.accepted:
         return None
-    about_both = [e.kind for e in part.events if e.data.get("goal") in (LONG, BESIDE)]
-    before = about_both[: about_both.index("result_heard")]
+    about_both = [e for e in part.events if e.data.get("goal") in (LONG, BESIDE)]
+    end = next(e for e in about_both if e.kind == "result_heard" and e.data["goal"] == LONG)
+    before = [e.kind for e in about_both[: about_both.index(end)]]
     return older if before.count("goal_sent") == 2 and "cancel_sent" not in before else None
 
 

@@ -15,6 +15,7 @@ from lab_1_4._goals import (
     LAST_ORDER,
     ORDERS,
     ROUNDS_LEFT,
+    TWINS,
     ended_by_a_younger,
     expected_sequence,
     feedback_objection,
@@ -96,13 +97,13 @@ def gives_feedback(evidence: Evidence) -> Finding:
 
 @of_one_server
 def serves_two_at_once(evidence: Evidence) -> Finding:
-    """A goal beside the one that is canceled is right, and so is one beside that."""
+    """Two equal goals at once are right, a goal beside the one that is canceled, and one beside that."""
     part = evidence.part(GOALS)
-    two = [goal(part, number) for number in (BESIDE, AGAIN)]
+    two = [goal(part, number) for number in (*TWINS, BESIDE, AGAIN)]
     wrong = [text for seen in two if seen.order is not None and (text := objection(evidence, seen))]
     if (older := ended_by_a_younger(part)) is not None:
         wrong.insert(0, f"the older goal ended as {status_text(older.status)} when the younger one came")
-    asked = all(seen.order is not None for seen in two)
+    asked = all(seen.order is not None for seen in two[-2:])
     seen = wrong[0] if wrong else "both are right" if asked else "not reached"
     return Finding(asked and not wrong, "each of two goals at once ends with its own sequence", seen)
 

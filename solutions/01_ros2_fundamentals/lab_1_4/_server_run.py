@@ -18,6 +18,7 @@ from lab_1_4._goals import (
     PACED,
     ROUNDS_LEFT,
     SMALLEST,
+    TWINS,
     ended_by_a_younger,
 )
 
@@ -86,6 +87,8 @@ def send_good_goals(bench: Bench, caller: ActionCaller) -> bool:
     """
     order = bench.random.choice(ORDERS)
     if not one_by_one(bench, caller, order, *SMALLEST):
+        return False
+    if not ended(bench, *[caller.send_goal(order=LAST_ORDER) for _ in TWINS]):
         return False
     caller.send_goal(order=LONG_ORDER)
     _await_feedback(bench, LONG, 1)
