@@ -345,6 +345,8 @@ class Exercise:
         scenario: Drives the bench through all parts.
         criteria: What must hold, in the order of the card.
         mistakes: Known mistakes, most telling first.
+        text: What the text of the task says, sentence by sentence -> the names of the criteria that judge it, with
+            blanks between them. A sentence that no criterion judges says in the notebook that it is not graded.
         remarks: What is worth a word on the card and costs no points; each gives a sentence, or an empty text.
         roles: The endpoints that make up the subject's public face, such as ``("publisher",)``; `record`
             waits
@@ -375,6 +377,7 @@ class Exercise:
     wraps_commands: bool = False
     recorded: tuple[str, ...] | None = None
     remarks: Sequence[Callable[[Evidence], str]] = ()
+    text: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def points(self) -> float:

@@ -110,4 +110,9 @@ def _what_to_do(odd: dict[str, float], wanted: dict[str, float]) -> str:
     return f"linear.x is in metres per second: set it to {forward:g} in every command."
 
 
-EXERCISE = first_move.exercise()
+EXERCISE = first_move.exercise(
+    text={
+        "Twice a second a timer calls its method `drive`": "rate",
+        "the first one sets the speed straight ahead to `0.5`, and the second one publishes": "velocity",
+    },
+)

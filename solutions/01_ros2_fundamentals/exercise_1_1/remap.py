@@ -157,4 +157,9 @@ EXERCISE = remap.exercise(
     runner=Launches(),
     wraps_commands=True,
     recorded=(),  # how many messages come before the listener is there is up to the machine
+    text={
+        "Write a launch file that starts both programs": "talker listener",
+        "let both use `/robot/status_updates` instead of `chatter`": "talker listener nothing_left",
+        "it checks that the launch file did the renaming, not the code": "launch",
+    },
 )

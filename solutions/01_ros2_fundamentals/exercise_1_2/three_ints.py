@@ -207,4 +207,13 @@ EXERCISE = adder.exercise(
     arguments="three whole numbers",
     remarks=(service_calls.no_limit,),
     sample_arguments=(1, 2, 3),
+    text={
+        "Wait for the service, at most `patience_sec` seconds.": "late limit",
+        "if nobody offers it in time: raise `TimeoutError` then": "limit",
+        "Ask for the sum of `a` and `b`.": "calls chain",
+        "Ask for the sum of that answer and `c`.": "calls chain",
+        "Use the sum that the *service* gave you": "chain",
+        "Log or print the sum; return it.": "sum",
+        "it says so and ends within 12 seconds, or it says again and again that it waits": "limit",
+    },
 )

@@ -137,4 +137,18 @@ cancel.asks("late_feedback", 1, "Sends no other request when later feedback arri
 cancel.asks("status", 2, "Reports how the goal really ended", reports_the_status)
 cancel.asks("refused", 1, "Says when the goal is rejected", tells_of_refusal)
 
-EXERCISE = cancel.exercise(limit=120.0)
+EXERCISE = cancel.exercise(
+    limit=120.0,
+    text={
+        "After the **third** feedback message (the fourth and the fifth count, too), ask to cancel": "cancel",
+        "ask **once** in all, also when more feedback arrives": "once late_feedback",
+        "Send a goal of order 20": "goal",
+        "Send the goal: call `send_goal`": "goal",
+        "If it was not accepted (`client.goal_handle.accepted`), raise a `RuntimeError` that says so.": "refused",
+        "There will be no result to wait for.": "refused",
+        "Otherwise get the result": "status",
+        "While you wait, the client is spun": "cancel status",
+        "report the status that you *really* got": "status",
+        "Log the name of the final status, or print it: both count, and so does its number.": "status",
+    },
+)

@@ -424,4 +424,8 @@ EXERCISE = question.exercise(
     arguments="the type of a service, such as std_srvs/srv/Empty",
     sample_arguments=(ADDER,),
     remarks=(no_limit,),
+    text={
+        "returns the name as soon as it sees a service of the type": "late other",
+        "After `patience_sec` seconds without one it raises `TimeoutError`.": "none",
+    },
 )

@@ -329,4 +329,9 @@ EXERCISE = mismatched.exercise(
     limit=120.0,
     arguments="the full names of the talker and of the listener",
     sample_arguments=("/nobody", "/nobody_else"),
+    text={
+        "where the talker *publishes*": "topic_published type_published",
+        "where the listener *subscribes*": "topic_subscribed type_subscribed",
+        "Ask about each node separately, because topic and type can both be wrong.": "topic_subscribed type_subscribed",
+    },
 )

@@ -51,4 +51,13 @@ def no_node(seen: Ran, _: Ran) -> bool:
     return seen.says_it and not seen.has_node
 
 
-EXERCISE = hello.exercise(limit=400.0, runner=recipe.runner)
+EXERCISE = hello.exercise(
+    limit=400.0,
+    runner=recipe.runner,
+    text={
+        "Write the method `__init__` of the class.": "node",
+        "call `__init__` of the class `Node` with the name of the node": "node",
+        "**log** `Hello, ROS 2! From SimpleNode.`": "line",
+        "Write yours: the executable `simple_node`, which calls `main` of your module.": "starts",
+    },
+)

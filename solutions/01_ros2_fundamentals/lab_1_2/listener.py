@@ -13,4 +13,11 @@ listener.asks("topic", 3, "Subscribes to the right topic and type", subscribes)
 listener.asks("says", 5, "Says every text it hears", says_every_text)
 listener.asks("honest", 2, "Says only what it heard", says_nothing_else)
 
-EXERCISE = listener.exercise(limit=120.0)
+EXERCISE = listener.exercise(
+    limit=120.0,
+    text={
+        "The listener subscribes to the topic.": "topic",
+        "Let it log the text": "says",
+        "Logs every text that arrives on the topic chatter.": "says honest",
+    },
+)

@@ -182,4 +182,11 @@ EXERCISE = client.exercise(
     arguments="two whole numbers",
     remarks=(service_calls.no_limit,),
     sample_arguments=(1, 2),
+    text={
+        "raise `TimeoutError` if it is not there in time.": "late limit",
+        "Send the request, and spin the node until the answer has arrived": "call",
+        "Log or print the sum that the server sent": "sum",
+        "Return it, too": "sum",
+        "it says so and ends within 12 seconds, or it says again and again that it waits": "limit",
+    },
 )

@@ -17,4 +17,14 @@ interface.asks("declares", 1, "Names what it needs in package.xml", recipe.decla
 interface.asks("builds", 3, "Builds and generates the type", recipe.builds)
 interface.asks("wire", 3, "Has the right type on the wire", recipe.is_on_the_wire)
 
-EXERCISE = interface.exercise(limit=400.0, runner=recipe.runner)
+EXERCISE = interface.exercise(
+    limit=400.0,
+    runner=recipe.runner,
+    text={
+        "The request of your service has two integers, `a` and `b`, and its response has one, `sum`. "
+        "All three are `int64`": "fields wire",
+        "Three lines make yours a package with interfaces:": "declares",
+        "One point is for `package.xml`: it has to name what the package needs.": "declares",
+        '`rosidl_generate_interfaces(${PROJECT_NAME} "FILE" ...)` generates the code.': "builds",
+    },
+)

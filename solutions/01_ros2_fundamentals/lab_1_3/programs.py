@@ -25,4 +25,11 @@ EXERCISE = Programs(
     "lab_1_3.programs",
     "Lab 1.3 · The programs",
     "Two programs of your package, a server and a client, that ros2 run starts.",
+    text={
+        "The executables have shorter names than the files: `add_server` and `add_client`.": "entry_points",
+        "Copy your class from step 2 into it:": "add_server",
+        "Copy your function from step 3:": "add_client",
+        "Then it runs `add_server`, calls it, and presses <kbd>Ctrl</kbd>+<kbd>C</kbd>.": "ctrl_c",
+        "once it does not come at all: the client should say so and end.": "add_client ctrl_c",
+    },
 )

@@ -121,4 +121,12 @@ def wrong_sum(seen: Server, _: Server) -> Advice | None:
     )
 
 
-EXERCISE = server.exercise(limit=90.0)
+EXERCISE = server.exercise(
+    limit=90.0,
+    text={
+        "Let your node offer the service `add_two_ints`": "service",
+        "Serves add_two_ints: the sum of a and b.": "sums",
+        "It sends small, huge and negative numbers, and several requests at once.": "sums together",
+        "Then it looks whether your node is still running.": "alive",
+    },
+)

@@ -21,5 +21,19 @@ client.asks("late", 1, "Waits for a server that comes late", goal_reports.waits_
 client.asks("limit", 1, "Ends clearly when there is no server", goal_reports.ends_without_a_server)
 
 EXERCISE = client.exercise(
-    limit=180.0, arguments="the order", remarks=(goal_reports.may_wait_on,), sample_arguments=(10,)
+    limit=180.0,
+    arguments="the order",
+    remarks=(goal_reports.may_wait_on,),
+    sample_arguments=(10,),
+    text={
+        "Wait for the server: `client.actions.wait_for_server(timeout_sec=...)` returns `False`": "late limit",
+        "In this case raise `TimeoutError`.": "limit",
+        "Make the goal, `Fibonacci.Goal(order=...)`, and send it": "goal feedback",
+        "Wait for the future that you get, and return its result": "goal",
+        "it says so and ends within 12 seconds, or it says again and again that it waits": "limit",
+        "In every case it must log or print how the goal ended": "refused aborted",
+        "If the goal was not accepted, log that it was `REJECTED`, and return an empty list.": "refused",
+        "Log the name of the status, and the sequence of the result.": "result aborted",
+        "Return the sequence as a list.": "result",
+    },
 )

@@ -25,4 +25,10 @@ EXERCISE = Programs(
     "lab_1_4.programs",
     "Lab 1.4 · The programs",
     "Two programs of your package, an action server and its client, that ros2 run starts.",
+    text={
+        "The executables are `fibonacci_server` and `fibonacci_client`.": "entry_points",
+        "Copy what you wrote in steps 2 to 4:": "fibonacci_server",
+        "Copy what you wrote in steps 5 and 6:": "fibonacci_client",
+        "The client has to end by itself, and the server on <kbd>Ctrl</kbd>+<kbd>C</kbd>.": "ctrl_c",
+    },
 )

@@ -21,6 +21,7 @@ from lab_1_4._goals import (
     GOALS,
     LAST_ORDER,
     ROUNDS_LEFT,
+    TWINS,
     ended_by_a_younger,
     expected_sequence,
     feedback_objection,
@@ -68,7 +69,8 @@ def only_bad_orders(seen: Evidence, _: Evidence) -> bool | Advice | None:
 def goal_rejected(seen: Evidence, _: Evidence) -> Advice | None:
     """A good goal is refused."""
     last = [one for one in all_goals(seen.part(BAD_ORDERS)) if one.order == LAST_ORDER]
-    good = (*good_goals(seen), sends.canceled(seen), goal(seen.part(GOALS), BESIDE), *last)
+    beside = [goal(seen.part(GOALS), number) for number in (*TWINS, BESIDE)]
+    good = (*good_goals(seen), sends.canceled(seen), *beside, *last)
     refused = [one for one in good if one.accepted is False]
     if not refused or traceback_of(seen):
         return None
@@ -248,4 +250,20 @@ def bad_order_accepted(seen: Evidence, _: Evidence) -> Advice | None:
     )
 
 
-EXERCISE = server.exercise(limit=180.0)
+EXERCISE = server.exercise(
+    limit=180.0,
+    text={
+        "Reject a goal whose order is negative or greater than 46, and accept any other.": "refuse sequence",
+        "0 is a good order: its sequence is a single number (`[0, 1]` counts, too).": "sequence",
+        "Return one of two constants, `GoalResponse.ACCEPT` or `GoalResponse.REJECT`.": "refuse",
+        "Call exactly one of the last three.": "sequence cancel",
+        "A canceled goal has a result, too: the numbers so far.": "cancel",
+        "leave the loop if a cancel is requested": "cancel",
+        "append the next number": "sequence",
+        "publish the list as feedback": "feedback",
+        "sleep for `PERIOD` seconds, which stands for hard work.": "cancel",
+        "After the loop say how the goal ended: call `canceled()` or `succeed()`.": "sequence cancel",
+        "Each of two goals has to end with its own sequence, side by side or one after the other.": "two",
+        "Let your node offer the action `fibonacci`.": "action",
+    },
+)
