@@ -160,6 +160,6 @@ EXERCISE = remap.exercise(
     text={
         "Write a launch file that starts both programs": "talker listener",
         "let both use `/robot/status_updates` instead of `chatter`": "talker listener nothing_left",
-        "it checks that the launch file did the renaming, not the code": "launch",
+        "It also checks that the launch file renames the topic, not the code.": "launch",
     },
 )

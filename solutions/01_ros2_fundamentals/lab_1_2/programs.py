@@ -15,7 +15,7 @@ EXERCISE = Programs(
     "Two programs of your package, a talker and a listener, that ros2 run starts and Ctrl-C ends.",
     text={
         "Each program needs an entry point in `setup.py`. The executables are `talker` and `listener`.": "entry_points",
-        "An entry point of Lab 1.1 stays in it.": "entry_points",
+        "The entry point of Lab 1.1 stays in the list.": "entry_points",
         "Copy your class from step 1 to the place of the `TODO`.": "talker",
         "TODO: copy your class ListenerNode to this place.": "listener",
         "To stop a program, press <kbd>Ctrl</kbd>+<kbd>C</kbd> in its terminal.": "ctrl_c",

@@ -126,7 +126,7 @@ EXERCISE = server.exercise(
     text={
         "Let your node offer the service `add_two_ints`": "service",
         "Serves add_two_ints: the sum of a and b.": "sums",
-        "It sends small, huge and negative numbers, and several requests at once.": "sums together",
-        "Then it looks whether your node is still running.": "alive",
+        "It sends small, huge and negative numbers, and several requests at the same time.": "sums together",
+        "Then it checks that your node is still running.": "alive",
     },
 )
