@@ -213,8 +213,8 @@ def _imported(name: str) -> Any:
 def _lines() -> Iterator[bytes]:
     """Tasks as they come. When the grader goes away, end this process; in the middle of a task by force, if it must be.
 
-    The end of standard input is the one sign of it: the system sends its own (PR_SET_PDEATHSIG) when the thread ends that
-    has started this process, and in a grader threads come and go.
+    The end of standard input is the one sign of it: the system sends its own (PR_SET_PDEATHSIG) when the thread ends
+    that has started this process, and in a grader threads come and go.
     """
     lines: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
     idle = threading.Event()

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from autograder.workspaces.sources.packages import Package
 
 DEFINITIONS = (".msg", ".srv", ".action")
+UNREADABLE = (SyntaxError, ValueError, LookupError, RecursionError, MemoryError)
+"""How Python's parsers of Python and XML refuse a text: malformed, in an encoding that they do not know, too deep."""
 _PROSE = ("LICENSE", "README.md", "README.rst", "CHANGELOG.rst")
 """Files that only people read, and no build."""
 _FOR_PEOPLE = {"description", "maintainer", "author", "license", "url"}
@@ -101,11 +103,16 @@ def simple_package_xml(text: str) -> str:
     """A package.xml with the elements that a build looks at, in an order of their own."""
     try:
         root = ElementTree.fromstring(text)
-    except ElementTree.ParseError:
+        return _simple_elements(root) or text
+    except UNREADABLE:
         return text
+
+
+def _simple_elements(root: ElementTree.Element) -> str:
+    """The same of what was read; empty where the elements are not as simple as that."""
     kept = [element for element in root if element.tag not in _FOR_PEOPLE]
     if any(len(element) for element in kept if element.tag != "export"):
-        return text
+        return ""
     lines = sorted(_element(element) for element in kept)
     for_people = '<description>-</description><maintainer email="nobody@example.com">-</maintainer><license>-</license>'
     attributes = "".join(f' {name}="{value}"' for name, value in sorted(root.attrib.items()))

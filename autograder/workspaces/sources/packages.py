@@ -13,9 +13,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
+from xml.parsers.expat import ExpatError
 
 import re2
 
+from autograder.workspaces.sources.interface_packages import UNREADABLE
 from autograder.workspaces.sources.tree import BadSources, Tree, is_source, read
 
 if TYPE_CHECKING:
@@ -210,8 +212,8 @@ def _package(file: Path) -> Package:
     shown = f"{file.parent.name}/package.xml"
     try:
         root = ElementTree.fromstring(file.read_bytes())
-    except ElementTree.ParseError as error:
-        raise BadPackage(f"{shown} is not valid XML: {error}") from error
+    except UNREADABLE as error:
+        raise BadPackage(f"{shown} is not valid XML: {_told(error)}") from error
     name = (root.findtext("name") or "").strip()
     if not name:
         raise BadPackage(f"{shown} has no <name>")
@@ -234,12 +236,18 @@ def _validate(file: Path, shown: str) -> None:
     except InvalidPackage as error:
         what = re2.sub(r"^Error\(s\) in package '[^']*':\s*", "", str(error)).strip()
         raise BadPackage(f"{shown} is not valid: {what}") from error
+    except (*UNREADABLE, ExpatError) as error:
+        raise BadPackage(f"{shown} is not valid: {_told(error)}") from error
+
+
+def _told(error: Exception) -> str:
+    return "it is too deep" if isinstance(error, RecursionError | MemoryError) else str(error)
 
 
 def _entry_points(setup: str) -> Iterator[str]:
     try:
         tree = ast.parse(setup)
-    except SyntaxError:
+    except UNREADABLE:
         return
     for node in ast.walk(tree):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):

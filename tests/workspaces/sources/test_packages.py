@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.workspaces.sources import packages
+from autograder.workspaces.sources.interface_packages import simple_package_xml
 from autograder.workspaces.sources.tree import BadSources
 
 if TYPE_CHECKING:
@@ -72,3 +73,27 @@ def test_far_too_much_is_refused(workspace: Path, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(packages, "MAX_FILES", 2)
     with pytest.raises(BadSources, match="is it a workspace"):
         key_of(workspace / "src")
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"<?xml version='1.0' encoding='nonsense'?><package/>",
+        b"<?xml version='1.0' encoding='shift_jis'?><package/>",
+        "<?xml version='1.0' encoding='utf-16'?><package><name>tiny_pkg</name></package>".encode("utf-16"),
+        b"<package><name>tiny_pkg</name>" + b"<a>" * 50_000 + b"</a>" * 50_000 + b"</package>",
+    ],
+    ids=["unknown encoding", "several bytes a character", "UTF-16", "deep"],
+)
+def test_an_odd_package_file_is_the_packages_own_fault(workspace: Path, content: bytes) -> None:
+    (workspace / "src" / "tiny_pkg" / "package.xml").write_bytes(content)
+    with pytest.raises(packages.BadPackage, match="is not valid"):
+        list(packages.find_packages(workspace / "src"))
+    assert simple_package_xml(content.decode("utf-8", "replace"))
+
+
+@pytest.mark.parametrize("deep", ["-" * 100_000 + "1", "+".join(["1"] * 100_000), "(" * 300 + ")" * 300])
+def test_a_setup_too_deep_to_be_read_has_no_programs(workspace: Path, deep: str) -> None:
+    (workspace / "src" / "tiny_pkg" / "setup.py").write_text(deep)
+    (package,) = packages.find_packages(workspace / "src")
+    assert package.programs == ()
