@@ -46,7 +46,7 @@ class Limits:
     notebook_output_bytes: int = 2_000_000
     message_bytes: int = 8_000_000
     flood_bytes: int = 50_000_000
-    cpu_seconds: float = 600.0
+    cpu_seconds: float = 200.0
     memory_bytes: int = 2_000_000_000
     beside_bytes: int = 400_000_000
     beside: bool = False
