@@ -139,7 +139,7 @@ def set_up(place: Place, environ: Mapping[str, str], with_tests: bool, extras: S
     log_path = place.notes / "setup.log"
     with log_path.open("a", encoding="utf-8") as log:
         system_packages.require("setup", log, say)
-        setup = Setup(place, ros, sourced, log)
+        setup = Setup(place, ros, sourced, log, say)
         steps = setup.steps(with_tests, _extras(place, extras))
         try:
             done = run_steps(steps, place.notes / "stamps", place.root, say)

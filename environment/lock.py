@@ -2,13 +2,14 @@
 
 The lock files in ``requirements/`` are one resolution, cut into the parts that a set-up installs separately:
 
+* ``uv.lock``: uv, which installs the others, and resolves them here;
 * ``course.lock``: the dependencies of pyproject.toml and the build tools;
 * ``ros.lock``: the ROS wheels and what only they need, left out where a Jazzy is sourced;
 * ``dev.lock``: what ``./course test`` needs besides;
 * ``cluster.lock``, ``postgresql.lock``: what the extra of that name needs besides, installed where it is asked for.
 
 Without ``--upgrade`` a version that is locked stays as long as the inputs allow it. The locks name no package
-index: pip takes the one it is configured for, and the hashes make sure that it is the same file.
+index: that is what pip is configured for, and the hashes make sure that it is the same file.
 """
 
 from __future__ import annotations
@@ -20,7 +21,6 @@ import subprocess
 import sys
 import tempfile
 import tomllib
-import venv
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,10 +30,8 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parent.parent
 REQUIREMENTS = ROOT / "environment" / "requirements"
 EXTRAS = ("cluster", "postgresql")
-LOCKS = ("course", "ros", "dev", *EXTRAS)
+LOCKS = ("uv", "course", "ros", "dev", *EXTRAS)
 
-# The resolver that writes the locks. It is needed for nothing else, so it is not locked itself.
-RESOLVER = "uv==0.13.8"
 # The oldest Python of the project; the resolution is universal, markers cover the newer ones.
 OLDEST_PYTHON = "3.11"
 
@@ -42,6 +40,7 @@ _HEADER = """\
 # inputs sha256:{digest}
 """
 _PURPOSE = {
+    "uv": "What installs the other locks.",
     "course": "What the course and its autograder run on.",
     "ros": "ROS 2 Jazzy as wheels, and what only they need.",
     "dev": "What the checks and tests of the project need besides.",
@@ -96,7 +95,7 @@ def cut(everything: str, course: set[str], extras: Mapping[str, set[str]]) -> di
     bodies: dict[str, list[str]] = {name: [] for name in LOCKS}
     for name, block in split_blocks(everything):
         wanting = [extra for extra, names in extras.items() if name in names]
-        for part in ["course"] if name in course else wanting or ["ros"]:
+        for part in ["uv"] if name == "uv" else ["course"] if name in course else wanting or ["ros"]:
             bodies[part].append(block)
     return {part: "\n".join(blocks) + "\n" for part, blocks in bodies.items()}
 
@@ -125,9 +124,7 @@ def main(arguments: list[str] | None = None) -> int:
     pyproject, tools, ros = ROOT / "pyproject.toml", REQUIREMENTS / "tools.in", REQUIREMENTS / "ros.in"
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
-        venv.create(work / "venv", with_pip=True)
-        subprocess.run([work / "venv/bin/python", "-m", "pip", "install", "--quiet", RESOLVER], check=True)
-        uv = work / "venv/bin/uv"
+        uv = ROOT / ".venv/bin/uv"
         everything = work / "everything.txt"
         # The resolver prefers the versions it finds in its output file.
         locked = [REQUIREMENTS / f"{name}.lock" for name in LOCKS]

@@ -18,19 +18,22 @@ from environment.interface_packages import build_command
 from environment.jupyter_files import kernel_install_options, write_jupyter_files
 from environment.lighter_imports import make_lighter
 from environment.lock import EXTRAS, split_blocks
+from environment.pip_settings import as_uv_has_them
 from environment.place import INTERFACES, Place, environment_paths, environment_values
 from environment.repair_fast_dds import repair as repair_fast_dds
 from environment.ros2_command.install import install as install_ros2_command
 from environment.steps import Step, files_below
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
     from pathlib import Path
 
     from environment.ros_flavour import Ros
 
     # A program and its arguments.
     Command = Sequence[str | Path]
+    # Installs packages; takes the options that pip and uv both have.
+    Installer = Callable[..., None]
 
 
 class SetupError(Exception):
@@ -46,12 +49,14 @@ class Setup:
         ros: the ROS 2 to set up with.
         environ: the variables in which that ROS is sourced, or those of the user for the wheels.
         log: takes the output of every command.
+        say: prints a line for the user.
     """
 
     place: Place
     ros: Ros
     environ: Mapping[str, str]
     log: IO[str]
+    say: Callable[[str], None] = lambda _: None
 
     def steps(self, with_tests: bool, extras: Collection[str] = ()) -> list[Step]:
         """Return the steps in their order; those of the tests and of extras only when they are asked for."""
@@ -73,6 +78,7 @@ class Setup:
         python = f"Python {sys.version.split()[0]}"
         steps = [
             Step("environment", f"making .venv with {python}", kind, self._make_environment),
+            Step("uv", "fetching uv, which installs the packages", (place.lock("uv"),), self._get_uv),
             Step("packages", self._what_is_installed(), tuple(locks), lambda: self._install(locks)),
             Step("imports", "making the imports of ROS lighter", lighter, self._make_imports_lighter),
             Step("fast_dds", "repairing how a node ends", fast_dds, self._repair_fast_dds),
@@ -145,7 +151,25 @@ class Setup:
         self._run("making .venv", [place.base_python, "-m", "venv", *options, place.prefix])
         ros_flavour.save(self.ros, place.prefix)
 
+    def _get_uv(self) -> None:
+        try:
+            self._pip(
+                "--require-hashes", "--no-deps", "--only-binary=:all:", "-r", str(self.place.lock("uv"))
+            )
+        except SetupError:
+            self.say("uv cannot be had here: pip installs the packages, which takes longer")
+
     def _install(self, locks: Sequence[Path]) -> None:
+        if self._uv_program.exists():
+            try:
+                self._install_with(self._uv, locks)
+            except SetupError:
+                self.say("uv could not install the packages: pip tries, which takes longer")
+            else:
+                return
+        self._install_with(self._pip, locks)
+
+    def _install_with(self, installer: Installer, locks: Sequence[Path]) -> None:
         # One requirement exists as source only. It is built by the setuptools of the lock, which is installed
         # first for that: a build in isolation would fetch one that nobody pinned.
         blocks = split_blocks(self.place.lock("course").read_text(encoding="utf-8"))
@@ -153,7 +177,25 @@ class Setup:
         backend.write_text("\n".join(block for name, block in blocks if name == "setuptools") + "\n", "utf-8")
         for chosen in ([backend], locks):
             files = [word for lock in chosen for word in ("-r", str(lock))]
-            self._pip("--require-hashes", "--no-deps", "--only-binary=:all:", "--no-binary=empy", *files)
+            installer("--require-hashes", "--no-deps", "--only-binary=:all:", "--no-binary=empy", *files)
+
+    @property
+    def _uv_program(self) -> Path:
+        return self.place.prefix / "bin" / "uv"
+
+    def _uv(self, *arguments: str) -> None:
+        """Install with uv, from where the user's pip would."""
+        asked: Command = [self.place.python, "-m", "pip", "config", "list"]
+        listed = subprocess.run(
+            asked, env=self._child_variables(), capture_output=True, text=True, check=False
+        )
+        options, variables = as_uv_has_them(listed.stdout)
+        command: list[str | Path] = [self._uv_program, "pip", "install", "--no-config", "--no-progress"]
+        command += ["--python", self.place.python, "--no-build-isolation", "--compile-bytecode"]
+        # Copied, not linked: who changes a file of this environment must not change uv's cache. pip, too, takes the
+        # best of all indexes; the hashes say which file that is.
+        command += ["--link-mode=copy", "--index-strategy=unsafe-best-match", *options, *arguments]
+        self._run("installing packages", command, **variables)
 
     def _pip(self, *arguments: str) -> None:
         command: list[str | Path] = [self.place.python, "-m", "pip", "install", "--disable-pip-version-check"]

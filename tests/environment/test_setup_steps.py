@@ -34,7 +34,7 @@ def made_from(step: Step) -> str:
 
 def test_the_order() -> None:
     assert list(steps(with_tests=True)) == [
-        *("environment", "packages", "imports", "fast_dds", "interfaces", "start", "ros2", "jupyter"),
+        *("environment", "uv", "packages", "imports", "fast_dds", "interfaces", "start", "ros2", "jupyter"),
         *("project", "dev"),
         *("cluster", "postgresql"),
     ]
@@ -157,6 +157,65 @@ def test_modules_are_compiled_also_for_a_python_that_keeps_no_bytecode(tmp_path:
         Setup(place, Ros("wheels"), {"PYTHONDONTWRITEBYTECODE": "1"}, output).compile_modules()
     compiled = {path.name.partition(".")[0] for path in tmp_path.rglob("*.pyc")}
     assert compiled == {"engine", "steps", "talker"}, log.read_text()
+
+
+@pytest.fixture
+def calls(tmp_path: Path) -> tuple[Setup, list[str], Path]:
+    """A set-up in an environment whose Python and uv only write down that they were called, and what it says."""
+    place = Place(tmp_path, Path("/usr/bin/python3.11"))
+    said: list[str] = []
+    called = tmp_path / "called"
+    for name in ("python", "uv"):
+        program = place.prefix / "bin" / name
+        program.parent.mkdir(parents=True, exist_ok=True)
+        program.write_text(
+            f"""#!/bin/sh
+case "$*" in "-m pip config list") echo "global.index-url='https://one.example/simple'"; exit; esac
+echo "{name} $*" >>{called}
+! [ -e {tmp_path}/no-{name} ]
+"""
+        )
+        program.chmod(0o755)
+    place.notes.mkdir()
+    place.lock("course").parent.mkdir(parents=True)
+    place.lock("course").write_text("setuptools==1 \\\n    --hash=sha256:aa\n")
+    log = (tmp_path / "log.txt").open("w")
+    return Setup(place, Ros("wheels"), {"PATH": "/usr/bin:/bin"}, log, said.append), said, called
+
+
+def test_uv_installs_with_hashes_from_where_pip_would(calls: tuple[Setup, list[str], Path]) -> None:
+    setup, said, called = calls
+    setup._install([setup.place.lock("course")])
+    lines = called.read_text().splitlines()
+    assert [line.partition(" ")[0] for line in lines] == ["uv", "uv"]
+    for line in lines:
+        for option in (
+            "--require-hashes",
+            "--default-index https://one.example/simple",
+            "--compile-bytecode",
+        ):
+            assert option in line
+    assert said == []
+
+
+def test_where_uv_cannot_pip_installs_the_same_and_it_is_said(calls: tuple[Setup, list[str], Path]) -> None:
+    setup, said, called = calls
+    (setup.place.root / "no-uv").touch()
+    setup._install([setup.place.lock("course")])
+    assert [line.partition(" ")[0] for line in called.read_text().splitlines()] == ["uv", "python", "python"]
+    assert "--require-hashes" in called.read_text().splitlines()[-1]
+    assert said == ["uv could not install the packages: pip tries, which takes longer"]
+
+
+def test_a_uv_that_cannot_be_had_is_no_failure(calls: tuple[Setup, list[str], Path]) -> None:
+    setup, said, called = calls
+    (setup.place.root / "no-python").touch()
+    setup._get_uv()
+    assert said == ["uv cannot be had here: pip installs the packages, which takes longer"]
+    (setup.place.prefix / "bin/uv").unlink()
+    with pytest.raises(SetupError, match="installing packages failed"):
+        setup._install([setup.place.lock("course")])
+    assert "uv " not in {line[:3] for line in called.read_text().splitlines()}
 
 
 # What is looked at before anything is done.
