@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 # What a verb returns, as in ros2cli: None or 0 is success, a number is the exit code, a text is an error
 # that is printed on stderr with exit code 1.
 Outcome = int | str | None
+# The exit code of ros2cli after SIGTERM: the number of the signal.
+TERMINATED = 15
 
 
 @dataclass(frozen=True)

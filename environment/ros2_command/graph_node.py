@@ -5,9 +5,11 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from environment.ros2_command.commands import TERMINATED
 from environment.ros2_command.discovery import discover
 from environment.ros2_command.ports import domain_id
 
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
 # Names that begin with this are hidden from the lists, so that the command does not list itself.
 NAME_PREFIX = "_ros2cli"
 _PROFILE = Path(__file__).with_name("fastdds_profile.xml")
+_LOOK, _GRACE = 0.2, 2.0  # seconds: between two looks, and for a verb to end by itself
 _PROFILE_VARIABLES = ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE")
 
 
@@ -61,6 +64,8 @@ def graph_node(
     options = SignalHandlerOptions.ALL if handle_interrupt else SignalHandlerOptions.NO
     rclpy.init(args=[], signal_handler_options=options)
     node = _create(name, use_sim_time=getattr(args, "use_sim_time", False))
+    ended = threading.Event()
+    threading.Thread(target=_end_without_ros, args=(node, ended), daemon=True).start()
     try:
         if silent := discover(node, getattr(args, "spin_time", None)):
             print(
@@ -69,8 +74,23 @@ def graph_node(
             )
         yield node
     finally:
+        ended.set()
         node.destroy_node()
         try_shutdown()
+
+
+def _end_without_ros(node: Node, ended: threading.Event) -> None:
+    """End this process where a signal has shut ROS down and the verb does not come back from a wait.
+
+    rclpy answers SIGTERM by shutting ROS down, which is to wake every wait. Now and then one is not woken, and
+    `timeout 8 ros2 ...` would then never end.
+    """
+    while not ended.wait(_LOOK):
+        if not node.context.ok():
+            if not ended.wait(_GRACE):
+                sys.stdout.flush()
+                os._exit(TERMINATED)
+            return
 
 
 def _create(name: str | None, *, use_sim_time: bool) -> Node:

@@ -7,15 +7,15 @@ import os
 import sys
 from typing import NoReturn
 
-from environment.ros2_command.commands import COMMANDS, ELSEWHERE, Command, Outcome, Verb
+from environment.ros2_command.commands import COMMANDS, ELSEWHERE, TERMINATED, Command, Outcome, Verb
 
 FULL = "the full ros2cli (a ROS 2 Jazzy installation)"
 _EPILOG = (
     "This is the course's own ros2. It knows the words above as Jazzy's ros2cli does; everything else needs\n"
     f"{FULL}."
 )
-# The exit codes of ros2cli after Ctrl-C and SIGTERM: the numbers of the signals.
-_INTERRUPTED, _TERMINATED = 2, 15
+# The exit code of ros2cli after Ctrl-C: the number of the signal.
+_INTERRUPTED = 2
 _NEEDED = ("rclpy", "ament_index_python", "yaml")
 
 
@@ -158,7 +158,7 @@ def run(argv: list[str]) -> int:
         # rclpy is not imported for every command, so its exception is known by name only.
         if type(error).__name__ != "ExternalShutdownException":
             raise
-        return _TERMINATED
+        return TERMINATED
     if isinstance(outcome, str):
         print(outcome, file=sys.stderr)
         return 1
