@@ -16,6 +16,10 @@ _course_root=$(CDPATH='' cd -- "$(dirname -- "$_course_file")/.." && pwd -P)
 if [ -x "$_course_root/.venv/bin/python" ]; then
     . "$_course_root/.venv/bin/activate"
     eval "$("$_course_root/.venv/bin/python" -c 'import course_process; print(course_process.export_lines())')"
+    # `course progress` is ./course progress, from any folder.
+    course() {
+        "$(dirname -- "$VIRTUAL_ENV")/course" "$@"
+    }
 else
     echo "The course is not set up here yet. Type: $_course_root/course setup" >&2
 fi

@@ -60,6 +60,22 @@ def test_a_terminal_finds_ros_after_the_users_own_settings(tmp_path: Path) -> No
     assert done.stdout.splitlines()[:2] == [f"{sys.prefix}/bin/python", "yes"]
 
 
+def test_a_terminal_begins_where_the_notebooks_are_and_knows_the_course(tmp_path: Path) -> None:
+    root, chapter = Path(sys.prefix).parent, tmp_path / "chapters" / "01_first"
+    chapter.mkdir(parents=True)
+    done = subprocess.run(
+        ["bash", "--rcfile", str(root / "environment/terminal.bashrc"), "-i"],
+        cwd=chapter.parent,
+        input="pwd\ncourse help | head -n 1\nexit\n",
+        env={"HOME": str(tmp_path), "PATH": "/usr/bin:/bin", "AUTOGRADER_NOTEBOOKS": str(chapter.parent)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stdout.splitlines()[0] == str(chapter)
+    assert "usage: ./course COMMAND" in done.stdout
+
+
 def test_without_bash_the_terminals_stay_as_they_are(tmp_path: Path) -> None:
     assert server_config(tmp_path, None) == {}
 
