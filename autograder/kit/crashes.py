@@ -105,6 +105,23 @@ def _cut_off(evidence: Evidence) -> Advice | None:
     )
 
 
+_NO_PACKAGE = re2.compile(r"(?i)\bpackage (?:'(?P<name>[^']*)' )?not found")
+
+
+def _package_not_found(evidence: Evidence) -> Advice | None:
+    """`ros2 run` says that it knows no such package, and ends: nothing of the student's has run."""
+    said = [line for part in evidence if part.ending and not part.had_node for line in part.said()]
+    found = next(filter(None, map(_NO_PACKAGE.search, said)), None)
+    if found is None:
+        return None
+    return Advice(
+        f"ROS does not know the package{' ' + found['name'] if found['name'] else ''} in this terminal, so nothing of "
+        "yours has run.",
+        "In the folder of your workspace type `colcon build`, then `source install/setup.bash`, and check again in the "
+        "same terminal. Each new terminal needs the second line again.",
+    )
+
+
 def _only_slips(mistake: Mistake) -> Mistake:
     def recognise(evidence: Evidence) -> Advice | None:
         return None if meant(traceback_of(evidence)) else mistake.recognise(evidence)
@@ -115,8 +132,9 @@ def _only_slips(mistake: Mistake) -> Mistake:
 CRASHES: tuple[Mistake, ...] = (
     *map(_recogniser, KNOWN),
     Mistake("cut_off", _cut_off, certain=True),
+    Mistake("module_not_found", _package_not_found, certain=True),
 )
-"""The known tracebacks, most telling first, and a kernel that went away."""
+"""The known tracebacks, most telling first, a kernel that went away, and a package that ROS does not find."""
 OTHER_CRASHES = (
     Mistake("exception_in_callback", _exception_in_callback, certain=True),
     Mistake("crashed", _crashed, certain=True),
