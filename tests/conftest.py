@@ -102,9 +102,17 @@ def pytest_configure(config: pytest.Config) -> None:
         config.option.all = True
 
 
-def pytest_report_header(config: pytest.Config) -> str:
-    """Which tier this is, and how its draw is repeated."""
-    return "tier: all" if config.option.all else f"tier: short, as drawn by {tiers.DAY}={tiers.day()}"
+def pytest_report_header(config: pytest.Config) -> list[str]:
+    """Which tier this is, how its draw is repeated, and what is judged itself for want of present evidence."""
+    if config.option.all:
+        return ["tier: all"]
+    from tests.measure import evidence
+
+    lines = [f"tier: short, as drawn by {tiers.DAY}={tiers.day()}"]
+    if changed := evidence.exercises_of_another_bench():
+        lines.append(f"judged whole, as the bench or the scenario has changed: {' '.join(changed)}")
+        lines.append(f"(shorter again after {evidence.COMMAND})")
+    return lines
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

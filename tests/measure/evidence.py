@@ -171,6 +171,11 @@ def is_of_another_bench(answer: Answer) -> bool:
     return line is not None and stimulus.digest(answer.exercise) not in line.partition('"seen"')[0]
 
 
+def exercises_of_another_bench() -> list[str]:
+    """The exercises with an answer of which that holds."""
+    return sorted({answer.exercise for answer in answers() if is_of_another_bench(answer)})
+
+
 def objection(answer: Answer) -> str:
     """What the present criteria and diagnoses say of an answer's evidence and should not; empty where all is well.
 
@@ -211,6 +216,9 @@ def make(wanted: Sequence[Answer], *, jobs: int) -> list[str]:
         judge_all(turns, jobs=jobs, done=done, failed=failed, warm=True)
     for exercise_id in exercises.all_ids():
         _write(exercise_id, made.get(exercise_id, {}))
+    for file in FOLDER.glob("*.xz"):
+        if file.stem not in exercises.all_ids():
+            file.unlink()
     return troubles
 
 
