@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from zoneinfo import ZoneInfo
 
 import click
 
+from autograder.cards.readable import printable
 from autograder.cli.ending import INTERRUPTED, fail, grading_errors
 
 _only_assignments = click.option(
@@ -63,7 +65,7 @@ def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
 
 @click.command()
 @click.argument("folder", type=click.Path(path_type=Path))
-@click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument("files", nargs=-1, type=click.Path(path_type=Path))
 @click.option(
     "--assignment", default="", help="What all of it is for; told from names and contents where not given."
 )
@@ -73,30 +75,63 @@ def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
 @click.option(
     "--from",
     "form",
-    type=click.Choice(["moodle", "canvas", "blackboard", "brightspace", "google", "github"]),
+    type=click.Choice(["moodle", "canvas", "blackboard", "brightspace", "google", "github", "gradescope"]),
     default=None,
     help="Which system it is from; told from the names where not given.",
 )
-def collect(folder: Path, files: tuple[Path, ...], assignment: str, timezone: str, form: str | None) -> None:
+@click.option(
+    "--times",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    help="A list that says when work was handed in (columns id, handed_in, assignment), also of what is there already.",
+)
+@click.option(
+    "--handed-in",
+    default="",
+    metavar="2026-01-31T12:00",
+    help="When that was, of which nothing else says it.",
+)
+@click.option("--settled", multiple=True, metavar="NAME", help="This file has no place and needs none.")
+def collect(
+    folder: Path,
+    files: tuple[Path, ...],
+    assignment: str,
+    timezone: str,
+    form: str | None,
+    times: tuple[Path, ...],
+    handed_in: str,
+    settled: tuple[str, ...],
+) -> None:
     """Put FILES that an LMS let you download into the class directory FOLDER.
 
-    FILES are zips, folders and notebooks of Moodle, Canvas, Blackboard, Brightspace, Google Classroom or GitHub
-    Classroom, and lists (.csv) that come with them. Whose they are says students.csv in FOLDER.
+    FILES are zips, folders and notebooks of Moodle, Canvas, Blackboard, Brightspace, Gradescope, Google Classroom or
+    GitHub Classroom, and lists (.csv) that come with them. Whose they are says students.csv in FOLDER.
 
     Exit code 0: everything has its place; 2: the lines say what has not, and why.
     """
-    from zoneinfo import ZoneInfo
-
     from autograder.grading.collecting import collect as collecting
+    from autograder.grading.collecting.lists import read_time
     from autograder.grading.collecting.showing import show
 
+    if not (files or times or settled):
+        fail("name what is to be collected: ./course collect FOLDER submissions.zip")
+    when = read_time(handed_in) if handed_in else None
+    if handed_in and when is None:
+        fail(f"--handed-in {handed_in} is no time. One looks like 2026-01-31T12:00.")
     try:
         zone = ZoneInfo(timezone) if timezone else None
     except (ValueError, OSError, LookupError):
         fail(f"There is no time zone {timezone!r}. A name looks like Europe/Berlin.")
     with grading_errors():
-        report = collecting.collect(folder, files, assignment=assignment, zone=zone, form=form or "")
-    show(report)
+        unknown = collecting.settle(folder, settled) if settled else []
+        if unknown:
+            fail(f"nothing without a place is called {', '.join(unknown)}: ./course grade lists the names")
+        if not (files or times):
+            return
+        report = collecting.collect(
+            folder, files, assignment=assignment, zone=zone, form=form or "", times=times, handed_in=when
+        )
+        show(report)
     sys.exit(report.exit_code)
 
 
@@ -173,27 +208,61 @@ def grade(
 @click.command()
 @click.argument("folder", type=click.Path(path_type=Path))
 @click.option(
-    "--to", type=click.Choice(["canvas", "moodle", "csv", "xlsx"]), required=True, help="Whose form."
+    "--to",
+    type=click.Choice(["canvas", "moodle", "gradescope", "csv", "xlsx"]),
+    required=True,
+    help="Whose form.",
 )
 @_only_assignments
 @click.option(
     "--into", type=click.Path(path_type=Path), help="Fill in this list, as Moodle or Canvas has exported it."
 )
 @click.option(
+    "--column",
+    "columns",
+    multiple=True,
+    metavar='"lab_1_2=Lab 1.2 (5001)"',
+    help="What an assignment's column is called in --into; may be given several times.",
+)
+@click.option(
+    "--absent",
+    type=click.Choice(["blank", "zero"]),
+    default="blank",
+    help="What is written for who has handed in nothing; nothing where not given.",
+)
+@click.option(
     "--output", type=click.Path(path_type=Path), help="Where to write; FOLDER/export where not given."
 )
 def export(
-    folder: Path, to: str, assignments: tuple[str, ...], into: Path | None, output: Path | None
+    folder: Path,
+    to: str,
+    assignments: tuple[str, ...],
+    into: Path | None,
+    columns: tuple[str, ...],
+    absent: str,
+    output: Path | None,
 ) -> None:
     """Write the gradebook's points, and the feedback as a zip, in the form that an LMS takes."""
-    from autograder.grading.exporting import export as exporting
+    from autograder.grading.exporting.export import export as write_files
 
+    pairs = (one.partition("=") for one in columns)
+    named = {name.strip(): called.strip() for name, _, called in pairs}
+    if not all(named.values()):
+        fail('--column is an assignment and its column: --column "lab_1_2=Lab 1.2 (5001)"')
     with grading_errors():
-        done = exporting.export(folder, to, assignments=assignments, into=into, folder=output)
+        done = write_files(
+            folder,
+            to,
+            assignments=assignments,
+            into=into,
+            folder=output,
+            absent_zero=absent == "zero",
+            columns=named,
+        )
     for file, purpose in done.files:
-        click.echo(f"{file}\n    {purpose}")
+        click.echo(f"{printable(str(file))}\n    {printable(purpose)}")
     for notice in done.notices:
-        click.echo(f"note: {notice}")
+        click.echo(f"note: {printable(notice)}")
 
 
 @click.command()
@@ -247,7 +316,6 @@ def compare(folder: Path, before: str, after: str) -> None:
 
     BEFORE and AFTER are runs, by the times in the first line that this prints.
     """
-    from autograder.cards.readable import printable
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.table import differences
 
@@ -263,7 +331,6 @@ def compare(folder: Path, before: str, after: str) -> None:
 @click.argument("student")
 def attempts(folder: Path, student: str) -> None:
     """Say what came of each time that STUDENT was graded in the class FOLDER."""
-    from autograder.cards.readable import printable
     from autograder.grading.entering.attempts import read
 
     with grading_errors():

@@ -22,6 +22,7 @@ from autograder.grading.asked_for import AskedFor, check_known
 from autograder.grading.classes.class_directory import ClassDirectory, Refused, Submission
 from autograder.grading.classes.configuration import check_configuration
 from autograder.grading.classes.timestamps import handed_in_at, is_not_believed
+from autograder.grading.collecting.outcomes import WaitingList
 from autograder.grading.collecting.tidying import Tidied, tidy
 from autograder.grading.entering import gradebook
 from autograder.grading.entering.attempts import Attempt, note, now
@@ -40,8 +41,9 @@ from autograder.grading.running.progress import BatchProgress
 from autograder.grading.running.timings import Timings
 from autograder.grading.table.differences import Difference, Runs
 from autograder.grading.table.entries import SubmissionEntry, read_entries, read_students
-from autograder.grading.table.roster import enter_roster
+from autograder.grading.table.roster import enter_roster, read_roster
 from autograder.grading.table.true_rows import true_rows
+from autograder.grading.table.what_counts import read_what_counts
 from autograder.grading.work import Work, without_grade, would_change
 
 # What only a class with something to grade needs is imported where it is used: nbgrader alone takes a second.
@@ -133,6 +135,7 @@ class _Batch:
         released = read_released(directory, self._fingerprints)
         self._cells: dict[str, tuple[GradedCell, ...]] = released.cells
         self._not_usable = released.unusable
+        self._what_counts = read_what_counts(directory, released.cells)
         if not released.cells and released.unusable:
             raise MasterUnusable(next(iter(released.unusable.values())))
         self._journal = Journal(directory.state / "journal")
@@ -178,7 +181,7 @@ class _Batch:
             self._notices.append(text)
             self._console.print(f"note: {text}", markup=False, highlight=False, soft_wrap=True)
         found, refused = self._directory.submissions()
-        refused += [*tidied.refused, *self._unusable(assignments)]
+        refused += [*tidied.refused, *self._unusable(assignments), *self._unplaced()]
         found = [submission for submission in found if submission.assignment in self._cells]
         check_known(assignments, self._directory.assignments(), "assignment")
         there = {submission.student for submission in found}
@@ -192,7 +195,8 @@ class _Batch:
             if is_not_believed(submission.folder):
                 self._notices.append(
                     f"{submission.student}/{submission.assignment}: its timestamp.txt was not written by "
-                    "`./course collect`, as the others of this class were, and is not believed"
+                    "`./course collect`, as the others of this class were, and is not believed: say when it was handed "
+                    "in with ./course collect --times FILE"
                 )
             chosen = self._asked.has(submission.student, submission.assignment)
             (self._works if chosen else self._others).append(work)
@@ -210,6 +214,15 @@ class _Batch:
                 yield Refused(
                     self._directory.path / "source" / name, f"{reason} The other assignments are graded."
                 )
+
+    def _unplaced(self) -> Iterator[Refused]:
+        """What was collected and has no place: who grades hears of it until it has one."""
+        for one in WaitingList(self._directory).read():
+            if self._asked.has(one.student or "", one.assignment or "") or not (
+                one.student and one.assignment
+            ):
+                whose = f"{one.student}: " if one.student else ""
+                yield Refused(Path(one.label), f"not placed: {whose}{one.reason}")
 
     def plan(self, again: bool) -> None:
         """Find the submissions whose grades are in the gradebook already; the others are graded."""
@@ -292,7 +305,16 @@ class _Batch:
                 self._notices.append(
                     f"{student}/{assignment} is not in submitted any more; its points stay in the gradebook"
                 )
-        rows = true_rows(read_students(url), self._cells, judged, entries, works)
+        excused = read_roster(self._directory).excused
+        rows = true_rows(
+            read_students(url),
+            self._cells,
+            judged,
+            entries,
+            works,
+            excused=excused,
+            what_counts=self._what_counts,
+        )
         changes: list[Difference] = []
         if self._dry_run:
             changes = would_change(self._works, entries, self._cells)

@@ -46,14 +46,16 @@ class SafeCsvExport(ExportPlugin):
 
 
 def _row(gradebook: Gradebook, assignment: Any, student: Any) -> tuple[str | float, ...]:
+    points: tuple[str | float, ...]
     try:
         submission: Any = gradebook.find_submission(assignment.name, student.id)
     except MissingEntry:
-        timestamp, raw, penalty = "", 0.0, 0.0
+        timestamp, points = "", ("", "", "")
     else:
         timestamp, raw = submission.timestamp, float(submission.score)
         penalty = float(submission.late_submission_penalty or 0.0)
+        points = (raw, penalty, max(0.0, raw - penalty))
     who = (student.id, student.last_name, student.first_name, student.email)
     about = (assignment.name, assignment.duedate, timestamp, *who)
     texts = ("" if text is None else str(text) for text in about)
-    return (*texts, raw, penalty, max(0.0, raw - penalty), float(assignment.max_score))
+    return (*texts, *points, float(assignment.max_score))

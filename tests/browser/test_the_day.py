@@ -163,15 +163,17 @@ def check_tables(tiny: TinyClass, truth: Truth, output: str) -> None:
     machine = msgspec.json.decode(output[output.index('{"form"') :])
     for assignment in (LAB, OWN):
         found = {one["student"]: one for one in machine["submissions"] if one["assignment"] == assignment}
-        assert {student: one["score"] for student, one in found.items()} == truth.of(assignment)
+        assert {student: one["score"] for student, one in found.items()} == truth.shown_of(assignment)
         late = {student: one["late_penalty"] for student, one in found.items() if one["late_penalty"]}
         assert late == {student: cost for (student, name), cost in truth.late.items() if name == assignment}
     assert machine["totals"]["waiting_for_a_person"] == sum(cell.waits for cell in truth.cells.values())
     assert machine["totals"]["score"] == sum(truth.totals.values())
     check_rows(list(csv.DictReader(io.StringIO((tiny.path / "grades.csv").read_text("utf-8-sig")))), truth)
     printed = run("grade", tiny.path)
-    for student, score in truth.totals.items():
-        assert re.search(rf"^ *{student} .* {score:g}/35 *$", printed, re.MULTILINE), printed
+    for student in truth.students:
+        score = truth.shown(student)
+        words = "–" if score is None else f"{score:g}/35"
+        assert re.search(rf"^ *{student} .* {words} *$", printed, re.MULTILINE), printed
 
 
 def check_rows(rows: list[dict[str, Any]], truth: Truth) -> None:
@@ -190,7 +192,7 @@ def check_rows(rows: list[dict[str, Any]], truth: Truth) -> None:
             for name, most in cells.items():
                 cell = truth.cells.get((student, assignment, name))
                 expected[student, assignment, name] = (
-                    (0, most, None, None, None, "")
+                    (None, most, None, None, None, "")
                     if cell is None
                     else (cell.score, most, cell.judged, cell.by_hand, cell.extra or None, "yes" * cell.waits)
                 )
@@ -223,7 +225,7 @@ def check_pages(tiny: TinyClass, class_: list[Pupil], truth: Truth, comments: di
     by_id = {line[0].rpartition("(")[2].rstrip(")"): line[1:] for line in lines}
     assert by_id.keys() == set(truth.students)
     for student, (*shown, total) in by_id.items():
-        assert float(total) == truth.total(student)
+        assert (None if total == "–" else float(total)) == truth.shown(student)
         for assignment, name in keys:
             cell = truth.cells.get((student, assignment, name))
             is_by_hand = cell and (cell.by_hand is not None or cell.extra)
@@ -241,7 +243,7 @@ def check_exports(tiny: TinyClass, class_: list[Pupil], truth: Truth) -> None:
         who = header.index("SIS Login ID" if name == "canvas.csv" else "ID number")
         for assignment in (LAB, OWN):
             place = header.index(assignment)
-            assert {row[who]: float(row[place]) for row in table[line - 1 :]} == truth.of(assignment)
+            assert {row[who]: number(row[place]) for row in table[line - 1 :]} == truth.shown_of(assignment)
     for assignment in (LAB, OWN):
         worksheet = csv.DictReader(io.StringIO((out / f"moodle-{assignment}.csv").read_text()))
         grades = {f"s{int(row['Identifier'].split()[1]) - 500:02}": float(row["Grade"]) for row in worksheet}
@@ -275,16 +277,23 @@ def check_student(row: dict[str, Any], class_: list[Pupil], truth: Truth) -> Non
         "last_name": pupil.last,
         "email": f"{pupil.id}@uni.example",
         **{name: row[name] for name in NUMBERS},
+        "excused": row["excused"],
     }
+    assert not row["excused"]
     waiting = sum(cell.waits for key, cell in truth.cells.items() if key[0] == pupil.id)
-    assert [float(row[name]) for name in NUMBERS] == [
-        truth.score(pupil.id, LAB),
-        truth.score(pupil.id, OWN),
-        truth.total(pupil.id),
+    assert [number(row[name]) for name in NUMBERS] == [
+        truth.shown(pupil.id, LAB),
+        truth.shown(pupil.id, OWN),
+        truth.shown(pupil.id),
         35,
         truth.late.get((pupil.id, LAB), 0),
         waiting,
     ]
+
+
+def number(cell: Any) -> float | None:
+    """A cell; None where it is blank, which is not zero."""
+    return None if cell in ("", None) else float(cell)
 
 
 NUMBERS = (LAB, OWN, "total", "max", "late_penalty", "waits_for_a_person")

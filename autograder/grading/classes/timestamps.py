@@ -59,13 +59,15 @@ def companions(folder: Path) -> dict[str, bytes]:
 
 
 def is_not_believed(folder: Path) -> bool:
-    """Whether a submission brings a file of its own along in a class whose times come from ``./course collect``."""
+    """Whether a file beside a submission says another time than ``./course collect`` wrote down in this class."""
     records = CollectedRecords(folder.parent.parent.parent / STATE_NAME)
-    return (
-        records.is_used
-        and records.get(folder.name, folder.parent.name) is None
-        and (folder / TIMESTAMP).exists()
-    )
+    if not records.is_used or not (folder / TIMESTAMP).exists():
+        return False
+    try:
+        there = read_bytes(folder / TIMESTAMP, most=_LONGEST).decode("ascii", "replace").strip()
+    except UnreadableSubmission:
+        return True
+    return there != read_timestamp(folder)
 
 
 def timestamp_text(when: datetime) -> str:

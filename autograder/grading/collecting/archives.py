@@ -13,7 +13,7 @@ import os
 import stat
 import zipfile
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
@@ -28,12 +28,18 @@ _MOST_UNPACKED = 4_000_000_000
 """Bytes that one archive may unpack to, as far as it says so itself."""
 _LARGEST_LIST = 8_000_000
 """Bytes of an archive's list of files, which Python reads whole before anybody can count them: 400 a file."""
-_LARGEST_LIST_WITHIN = 300_000
-"""The same for an archive that a student has handed in."""
+_MOST_FILES_OF_ONE = 2_000
+_MOST_UNPACKED_OF_ONE = 500_000_000
+_LARGEST_LIST_OF_ONE = 300_000
+"""The same for an archive that a student has handed in, with all archives in it: who fills it harms nobody else."""
 _OTHER_METHODS = {9: "Deflate64", 12: "bzip2", 14: "LZMA", 93: "Zstandard", 95: "xz", 98: "PPMd"}
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 """Others (bzip2, LZMA) unpack a few hundred bytes to a gigabyte in one step, before anybody can stop them."""
+_DEEPEST = 3
+"""Archives in an archive that a student has handed in, one in the other."""
 _NOBODYS = ("__MACOSX", ".git", ".ipynb_checkpoints", "__pycache__", ".DS_Store")
+"""What systems and editors leave beside somebody's files."""
+_LEADS_OUT = "its name leads out of the archive"
 
 
 class NotTaken(ValueError):
@@ -42,7 +48,7 @@ class NotTaken(ValueError):
 
 @dataclass(frozen=True)
 class File:
-    """A file of an archive or folder that can be read.
+    """A file of an archive or folder.
 
     Attributes:
         source: The archive, or the folder that the named folder or file lies in.
@@ -66,24 +72,26 @@ class File:
     @property
     def name(self) -> str:
         """The name of the file itself."""
-        return (*self.parts, *self.inner)[-1]
+        return (self.source.name, *self.parts, *self.inner)[-1]
 
 
-@dataclass(frozen=True)
-class NotPlaced:
-    """Something that was not put into the class.
+@dataclass
+class _Room:
+    """What archives that lie in each other may still have together.
 
     Attributes:
-        label: What it is.
-        reason: Why, and what to do.
+        files: How many files.
+        unpacked: How many bytes, as far as the archives say so themselves.
+        largest_list: Bytes of the list of files of each.
     """
 
-    label: str
-    reason: str
+    files: int
+    unpacked: int
+    largest_list: int
 
 
-def files_of(source: Path) -> Iterator[File | NotPlaced]:
-    """The files of an archive, of a folder, or the file itself.
+def files_of(source: Path) -> Iterator[File]:
+    """The files of an archive, of a folder, or the file itself; one that cannot be read says so when it is read.
 
     Args:
         source: What the instructor named. Links are followed there and nowhere below.
@@ -92,29 +100,40 @@ def files_of(source: Path) -> Iterator[File | NotPlaced]:
     if source.is_dir():
         yield from _of_folder(source)
         return
+    alone = File(source.parent, (source.name,), functools.partial(_read_file, source))
     if source.suffix.lower() != ".zip":
-        yield File(source.parent, (source.name,), functools.partial(_read_file, source))
+        yield alone
         return
     try:
         file = source.open("rb")
     except OSError as error:
-        yield NotPlaced(source.name, f"it cannot be read: {error.strerror}")
+        yield replace(alone, read=_refusing(f"it cannot be read: {error.strerror}"))
     else:
-        yield from _of_zip(source, (), file, _LARGEST_LIST)
+        room = _Room(MOST_FILES, _MOST_UNPACKED, _LARGEST_LIST)
+        yield from _of_zip(File(source, (), alone.read), file, room)
 
 
-def within(file: File) -> Iterator[File | NotPlaced]:
-    """The files of an archive that a student has handed in; archives in it are not opened."""
-    try:
-        data = file.read()
-    except NotTaken as error:
-        yield NotPlaced(file.label, str(error))
-        return
-    yield from _of_zip(file.source, file.parts, io.BytesIO(data), _LARGEST_LIST_WITHIN)
+def within(file: File, data: bytes) -> Iterator[tuple[File, bytes]]:
+    """The files of an archive that a student has handed in with what they hold, those of archives in it, too."""
+    room = _Room(_MOST_FILES_OF_ONE, _MOST_UNPACKED_OF_ONE, _LARGEST_LIST_OF_ONE)
+    yield from _within(file, data, room, 1)
 
 
-def _of_folder(source: Path) -> Iterator[File | NotPlaced]:
-    count = 0
+def _within(file: File, data: bytes, room: _Room, depth: int) -> Iterator[tuple[File, bytes]]:
+    for inner in _of_zip(file, io.BytesIO(data), room):
+        try:
+            held = inner.read()
+        except NotTaken:
+            yield inner, b""
+            continue
+        if is_zip(inner.name, held) and depth < _DEEPEST:
+            yield from _within(inner, held, room, depth + 1)
+        else:
+            yield inner, held
+
+
+def _of_folder(source: Path) -> Iterator[File]:
+    above, count = source.parent, 0
     for folder, folders, names in os.walk(source):
         folders[:] = sorted(name for name in folders if name not in _NOBODYS)
         for name in sorted(names):
@@ -123,43 +142,35 @@ def _of_folder(source: Path) -> Iterator[File | NotPlaced]:
                 continue
             count += 1
             if count > MOST_FILES:
-                yield NotPlaced(
-                    source.name, f"it has more than {MOST_FILES} files; the others were not looked at"
-                )
+                reason = f"it has more than {MOST_FILES} files; the others were not looked at"
+                yield File(above, (source.name,), _refusing(reason))
                 return
-            yield File(
-                source.parent, path.relative_to(source.parent).parts, functools.partial(_read_file, path)
-            )
+            yield File(above, path.relative_to(above).parts, functools.partial(_read_file, path))
         for name in folders:
             if (Path(folder) / name).is_symlink():
-                yield NotPlaced(str((Path(folder) / name).relative_to(source.parent)), "it is a link")
+                parts = (Path(folder) / name).relative_to(above).parts
+                yield File(above, parts, _refusing("it is a link"))
 
 
-def _read_file(path: Path) -> bytes:
+def _of_zip(outer: File, data: BinaryIO, room: _Room) -> Iterator[File]:
+    """The files of an archive; one that says why where it cannot be read."""
     try:
-        return read_bytes(path)
-    except UnreadableSubmission as error:
-        raise NotTaken(str(error)) from error
-
-
-def _of_zip(
-    source: Path, above: tuple[str, ...], file: BinaryIO, largest_list: int
-) -> Iterator[File | NotPlaced]:
-    label = "/".join((source.name, *above))
-    try:
-        bounded = _Bounded(file, largest_list)
+        bounded = _Bounded(data, room.largest_list)
         archive = zipfile.ZipFile(bounded)
         bounded.most = MAX_BYTES + 1  # from here on, the files themselves
         entries = [entry for entry in archive.infolist() if not entry.is_dir()]
     except (NotTaken, zipfile.BadZipFile, ValueError, NotImplementedError, OSError, EOFError) as error:
-        yield NotPlaced(label, f"it is no zip file that can be read: {error}")
+        yield replace(outer, read=_refusing(f"it is no zip file that can be read: {error}"))
         return
-    if len(entries) > MOST_FILES or sum(entry.file_size for entry in entries) > _MOST_UNPACKED:
-        yield NotPlaced(
-            label,
-            f"it has {len(entries)} files that unpack to {sum(e.file_size for e in entries) / 1e6:.0f} MB; the limits "
-            f"are {MOST_FILES} files and {_MOST_UNPACKED / 1e6:.0f} MB",
+    size = sum(entry.file_size for entry in entries)
+    room.files -= len(entries)
+    room.unpacked -= size
+    if min(room.files, room.unpacked) < 0:
+        reason = (
+            f"it has {len(entries)} files that unpack to {size / 1e6:.0f} MB: with what else is in that archive, "
+            "more than there may be"
         )
+        yield replace(outer, read=_refusing(reason))
         return
     for entry in entries:
         name = _name_of(entry)
@@ -167,12 +178,38 @@ def _of_zip(
         if any(part in _NOBODYS or part.startswith("._") for part in parts):
             continue
         reason = _reason_against(entry, name, parts)
-        if reason:
-            yield NotPlaced(f"{label}/{name}", reason)
+        # The archive stays open as long as any of its files may be read.
+        read = _refusing(reason) if reason else functools.partial(_read_entry, archive, entry)
+        parts = (name,) if reason == _LEADS_OUT else parts
+        if outer.parts:
+            yield File(outer.source, outer.parts, read, (*outer.inner, *parts))
         else:
-            # The archive stays open as long as any of its files may be read.
-            read = functools.partial(_read_entry, archive, entry)
-            yield File(source, above, read, parts) if above else File(source, parts, read)
+            yield File(outer.source, parts, read)
+
+
+def is_zip(name: str, data: bytes) -> bool:
+    """Whether a file that was handed in is an archive to be opened, whatever stands behind its name.
+
+    Documents of office programs are zips, too, and hold no notebook.
+    """
+    suffixes = [suffix.lower() for suffix in Path(name).suffixes]
+    return ".zip" in suffixes or (
+        data.startswith(b"PK\x03\x04") and suffixes[-1:] in ([], [".txt"], [".bin"])
+    )
+
+
+def _refusing(reason: str) -> Callable[[], bytes]:
+    def read() -> bytes:
+        raise NotTaken(reason)
+
+    return read
+
+
+def _read_file(path: Path) -> bytes:
+    try:
+        return read_bytes(path)
+    except UnreadableSubmission as error:
+        raise NotTaken(str(error)) from error
 
 
 class _Bounded:
@@ -219,7 +256,7 @@ def _name_of(entry: zipfile.ZipInfo) -> str:
 def _reason_against(entry: zipfile.ZipInfo, name: str, parts: tuple[str, ...]) -> str:
     mode = entry.external_attr >> 16
     if not parts or ".." in parts or name.startswith(("/", "\\")) or (parts and parts[0].endswith(":")):
-        return "its name leads out of the archive"
+        return _LEADS_OUT
     if stat.S_IFMT(mode) not in (0, stat.S_IFREG):
         return "it is a link, or no ordinary file"
     if entry.flag_bits & 0x1:
@@ -227,7 +264,7 @@ def _reason_against(entry: zipfile.ZipInfo, name: str, parts: tuple[str, ...]) -
     if entry.compress_type not in _METHODS:
         method = _OTHER_METHODS.get(entry.compress_type, f"method {entry.compress_type}")
         return f"it is packed with {method}, which is not unpacked here: pack it again as an ordinary zip (deflate)"
-    if entry.file_size > MAX_BYTES and parts[-1].lower().endswith((".ipynb", ".zip")):
+    if entry.file_size > MAX_BYTES:
         return f"it unpacks to {entry.file_size / 1e6:.0f} MB; the limit is {MAX_BYTES / 1e6:.0f} MB"
     return ""
 

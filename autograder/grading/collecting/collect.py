@@ -2,62 +2,38 @@
 
 from __future__ import annotations
 
+import shlex
 from collections import Counter, defaultdict
-from dataclasses import dataclass, field
+from dataclasses import replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
-from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, reason_against_name
-from autograder.grading.collecting.archives import File, NotPlaced, NotTaken, files_of, within
-from autograder.grading.collecting.forms import FORMS, base_and_number, plain, read_path
-from autograder.grading.collecting.lists import read_list
-from autograder.grading.collecting.placing import Candidate, Placed, Placing
-from autograder.grading.collecting.which import Which
+from autograder.grading.classes.class_directory import ClassDirectory, reason_against_name
+from autograder.grading.collecting.archives import File, NotTaken, files_of, is_zip, within
+from autograder.grading.collecting.forms import FORMS, plain, read_path
+from autograder.grading.collecting.lists import GRADESCOPE, Entry, is_unread, read_list
+from autograder.grading.collecting.outcomes import CollectReport, Outcome, State, WaitingList
+from autograder.grading.collecting.placing import Candidate, Placing
+from autograder.grading.collecting.records import CollectedRecords
+from autograder.grading.collecting.which import NoTarget, Which, is_notebook, stem_of
 from autograder.grading.collecting.whose import Whose
 from autograder.grading.errors import GradingError, clear_disk_errors
-from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
-from autograder.grading.table.roster import Roster, enter_roster, read_roster
+from autograder.grading.rebuilding.submission import read_bytes
+from autograder.grading.table.roster import Roster, Student, enter_roster, read_roster
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from datetime import tzinfo
     from pathlib import Path
 
-    from autograder.grading.collecting.which import Target
+    from autograder.grading.collecting.forms import Found
 
+    _Who = tuple[Found, tuple[tuple[Student, ...], ...]]
+    """The way in which a name was read, and of each member of the group who may be meant."""
 
-@dataclass(frozen=True)
-class CollectReport:
-    """What came of collecting.
-
-    Attributes:
-        path: The class.
-        placed: What was put into ``submitted``.
-        unchanged: How many lay there already.
-        older: What is older than what lies there, with the reason.
-        others: Notebooks for other assignments than the one that was asked for.
-        unread_times: Times in names that nobody could read.
-        not_placed: What could not be placed, with the reason.
-        left_out: How many files were no notebooks: pages that the LMS adds, pictures and the like.
-        missing: Students of whom nothing is there, by assignment.
-        by_their_names: Whether there is no list of students, so that folders have the LMS's names.
-    """
-
-    path: Path
-    placed: tuple[Placed, ...] = ()
-    unchanged: int = 0
-    older: tuple[NotPlaced, ...] = ()
-    others: tuple[NotPlaced, ...] = ()
-    unread_times: tuple[str, ...] = ()
-    not_placed: tuple[NotPlaced, ...] = ()
-    left_out: int = 0
-    missing: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    by_their_names: bool = False
-
-    @property
-    def exit_code(self) -> int:
-        """0 when everything has its place; 2 when somebody has to look."""
-        return 2 if self.not_placed else 0
+_PAGES = ("index.html", GRADESCOPE)
+"""What an LMS itself adds to a download."""
+_OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".tgz", ".tar", ".bz2", ".xz", ".zst")
 
 
 def collect(
@@ -67,6 +43,8 @@ def collect(
     assignment: str = "",
     zone: tzinfo | None = None,
     form: str = "",
+    times: Sequence[Path] = (),
+    handed_in: datetime | None = None,
 ) -> CollectReport:
     """Put what was downloaded from an LMS into a class.
 
@@ -76,9 +54,11 @@ def collect(
         assignment: What all of it is for; told from names and contents by default.
         zone: The time zone of times in names and lists; this machine's by default.
         form: Which LMS it is from, one of :data:`FORMS`; told from the names by default.
+        times: Lists whose times count for all work of those whom they name, also for what was collected before.
+        handed_in: When that was handed in of which nothing else says it; in ``zone`` where it has none.
 
     Raises:
-        GradingError: There is no such class, assignment or file, or the list of students cannot be used.
+        GradingError: There is no such class, assignment or file, or a list cannot be used.
     """
     directory = ClassDirectory(path)
     known = directory.assignments()
@@ -86,122 +66,145 @@ def collect(
         raise GradingError(
             f"There is no assignment named {assignment} here. There is: {', '.join(known) or 'none'}."
         )
-    for source in sources:
+    for source in (*sources, *times):
         if not source.exists():
             raise GradingError(f"There is no {source}.")
     with directory.lock(), clear_disk_errors(directory.path):
         enter_roster(directory)
-        collecting = _Collecting(directory, assignment, zone, form)
-        collecting.read(sources)
-        collecting.place()
-        return collecting.report()
+        collecting = _Collecting(directory, assignment, zone, form, handed_in)
+        return collecting.run(sources, times)
+
+
+def settle(path: Path, labels: Sequence[str]) -> list[str]:
+    """Forget files that have no place and need none; the names of which nothing is known.
+
+    Raises:
+        GradingError: There is no such class.
+    """
+    directory = ClassDirectory(path)
+    with directory.lock(), clear_disk_errors(directory.path):
+        return WaitingList(directory).settle(labels)
 
 
 class _Collecting:
-    def __init__(self, directory: ClassDirectory, assignment: str, zone: tzinfo | None, form: str) -> None:
+    def __init__(
+        self,
+        directory: ClassDirectory,
+        assignment: str,
+        zone: tzinfo | None,
+        form: str,
+        handed_in: datetime | None,
+    ) -> None:
         self._directory = directory
         self._assignment = assignment
         self._zone = zone
         self._form = form
+        self._handed_in = self._in_utc(handed_in)
         self._roster: Roster = read_roster(directory)
         self._whose = Whose(self._roster)
-        self._which = Which(directory)
-        self._placing = Placing(directory)
+        self._which = Which(directory, assignment)
         self._candidates: list[Candidate] = []
-        self._others: list[NotPlaced] = []
-        self._left_out = 0
+        self._outcomes: list[Outcome] = []
+        self._unread: list[str] = []
 
-    def read(self, sources: Sequence[Path]) -> None:
-        """Read everything that is there and find out what it is."""
-        for source in sources:
-            if source.suffix.lower() == ".csv":
-                self._take_list(source)
-        for source in sources:
-            if source.suffix.lower() != ".csv":
-                self._take(source)
+    def run(self, sources: Sequence[Path], times: Sequence[Path]) -> CollectReport:
+        """Read everything that is there, put it in its place, and write down what has none."""
+        downloads = {source: list(files_of(source)) for source in sources}
+        self._learn(downloads, times)
+        for source, files in downloads.items():
+            self._take([file for file in files if not self._is_list(source, file)], source)
+        placing = Placing(self._directory)
+        self._outcomes += placing.place(self._candidates)
+        work = {(one.student, one.assignment) for one in self._directory.submissions()[0]}
+        asked = [key for key in sorted(work) if self._assignment in ("", key[1])]
+        told = ((student, name, self._in_utc(self._whose.time_of(student, name))) for student, name in asked)
+        placing.note_times((student, name, when) for student, name, when in told if when is not None)
+        came = {one.student for one in self._outcomes if one.state in (State.PLACED, State.UNCHANGED)}
+        self._outcomes = [_alone(one) if one.student not in came else one for one in self._outcomes]
+        WaitingList(self._directory).note(self._outcomes)
+        return self._report(work)
 
-    def place(self) -> None:
-        """Put the newest of each student and notebook into ``submitted``."""
-        groups: dict[tuple[str, str, str], list[Candidate]] = defaultdict(list)
-        for candidate in self._candidates:
-            groups[candidate.assignment, candidate.student, candidate.notebook].append(candidate)
-        for key in sorted(groups):
-            newest = self._placing.newest(self._asked_for(groups[key]))
-            if newest is not None:
-                self._placing.put(newest)
-
-    def _asked_for(self, group: list[Candidate]) -> list[Candidate]:
-        """Without the notebooks for other assignments that came along, as in a zip of the whole course."""
-        told = [candidate for candidate in group if candidate.is_told]
-        if not told:
-            return group
-        self._others += [
-            NotPlaced(one.file.label, f"it is not for {one.assignment}, and {told[0].file.name} is")
-            for one in group
-            if not one.is_told
-        ]
-        return told
-
-    def report(self) -> CollectReport:
-        """What came of it."""
-        unread = (one.found.time for one in self._candidates if one.found.time and one.found.when is None)
-        there = {(one.student, one.assignment) for one in self._directory.submissions()[0]}
+    def _report(self, work: set[tuple[str, str]]) -> CollectReport:
+        records = CollectedRecords(self._directory.state)
+        untimed = defaultdict(list)
+        for student, assignment in sorted({(one.student, one.assignment) for one in self._candidates}):
+            history = records.get(assignment, student)
+            if history is not None and history.when is None:
+                untimed[assignment].append(student)
         assignments = sorted({one.assignment for one in self._candidates})
         missing = {
-            name: tuple(sorted(id_ for id_ in self._roster.students if (id_, name) not in there))
+            name: tuple(sorted(id_ for id_ in self._roster.students if (id_, name) not in work))
             for name in assignments
         }
         return CollectReport(
             self._directory.path,
-            tuple(self._placing.placed),
-            self._placing.unchanged,
-            tuple(self._placing.older),
-            tuple(self._others),
-            tuple(dict.fromkeys(unread)),
-            tuple(self._placing.not_placed),
-            self._left_out,
+            tuple(self._outcomes),
+            tuple(dict.fromkeys(self._unread)),
+            {name: tuple(students) for name, students in untimed.items()},
             {name: students for name, students in missing.items() if students},
             not self._roster.students,
         )
 
-    def _take_list(self, source: Path) -> None:
+    def _learn(self, downloads: dict[Path, list[File]], times: Sequence[Path]) -> None:
+        """Read the lists: those that were named, and the one that Gradescope puts into its export."""
+        entries: list[Entry] = []
+        told: list[Entry] = []
+        for source, files in downloads.items():
+            for file in files:
+                if self._is_list(source, file):
+                    entries += self._entries(file)
+        for path in times:
+            found = read_list(path.name, read_bytes(path))
+            if found is None or not any(one.when for one in found):
+                raise GradingError(
+                    f"{path} says of nobody when work was handed in. Its first line has to name the columns id and "
+                    "handed_in, and assignment where it is about several; or it is a list of the LMS's own."
+                )
+            told += found
+        told += [one for one in entries if not one.lms]
+        self._unread += [one.time for one in (*entries, *told) if is_unread(one)]
+        self._whose = Whose(self._roster, entries, told)
+
+    def _is_list(self, source: Path, file: File) -> bool:
+        return (len(file.parts) <= 2 and file.name == GRADESCOPE) or (
+            source.suffix.lower() == ".csv" and file.parts == (source.name,)
+        )
+
+    def _entries(self, file: File) -> list[Entry]:
         try:
-            found = read_list(read_bytes(source))
-        except UnreadableSubmission as error:
-            self._placing.refuse(source.name, str(error))
-            return
+            found = read_list(file.name, file.read())
+        except NotTaken as error:
+            self._refuse(file, str(error))
+            return []
         if found is None:
-            self._placing.refuse(
-                source.name,
-                "it is none of the lists that are known: Moodle's grading worksheet, Canvas's gradebook, GitHub "
-                f"Classroom's grades. A list of your students belongs into {self._directory.path / 'students.csv'}",
+            self._refuse(
+                file,
+                "it is none of the lists that are known: Moodle's grading worksheet, Canvas's gradebook or its "
+                "submissions, GitHub Classroom's grades, Gradescope's scores, or one with the columns id and "
+                "handed_in. "
+                f"A list of your students belongs into {self._directory.path / 'students.csv'}",
             )
         else:
-            self._whose.learn(found)
+            self._outcomes.append(Outcome(file.label, State.BESIDE, "it was read as a list"))
+        return found or []
 
-    def _take(self, source: Path) -> None:
-        files: list[File] = []
-        for file in files_of(source):
-            if isinstance(file, NotPlaced):
-                self._placing.not_placed.append(file)
-            elif file.name.lower().endswith((SUFFIX, ".zip")):
-                files.append(file)
-            else:
-                self._left_out += 1
+    def _take(self, files: list[File], source: Path) -> None:
         # Folders deeper than what all have in common are the students' own: their names say nothing.
-        depth = 2 if len({file.parts[0] for file in files}) == 1 else 1
+        depth = 2 if len({file.parts[0] for file in files if file.parts}) == 1 else 1
         form = self._form or self._likely_form(files, depth)
         for file in files:
-            if not file.name.lower().endswith(".zip"):
-                self._take_file(file, form, depth)
+            found = read_path(file.parts, form, self._which.is_notebook) if form and file.parts else None
+            ways = [found] if found else plain(file.parts)[:depth] if file.parts else []
+            who = next((who for way in ways if (who := self._whose.find(way)) is not None), None)
+            try:
+                data = file.read()
+            except NotTaken:
+                data = b""
+            if not is_zip(file.name, data) or not data:
+                self._take_file(file, data, who, found, source)
                 continue
-            for inner in within(file):
-                if isinstance(inner, NotPlaced):
-                    self._placing.not_placed.append(inner)
-                elif inner.name.lower().endswith(SUFFIX):
-                    self._take_file(inner, form, depth)
-                else:
-                    self._left_out += 1
+            for inner, held in within(file, data):
+                self._take_file(inner, held, who, found, source)
 
     def _likely_form(self, files: Sequence[File], depth: int) -> str:
         """The form that most of the names have; empty where as many lie in folders that are called as students are.
@@ -212,70 +215,114 @@ class _Collecting:
         counts: Counter[str] = Counter()
         for file in files:
             for form in FORMS:
-                if read_path(file.parts, form, self._which.is_notebook) is not None:
+                if file.parts and read_path(file.parts, form, self._which.is_notebook) is not None:
                     counts[form] += 1
                     break
         likely = max(FORMS, key=lambda form: counts[form]) if counts else ""
-        in_folders = sum(any(map(self._whose.find, plain(file.parts)[:depth])) for file in files)
+        in_folders = sum(
+            any(map(self._whose.find, plain(file.parts)[:depth])) for file in files if file.parts
+        )
         return likely if counts[likely] > in_folders else ""
 
-    def _take_file(self, file: File, form: str, depth: int) -> None:
-        found = read_path(file.parts, form, self._which.is_notebook) if form else None
-        ways = [found] if found else plain(file.parts)[:depth]
-        chosen = next((who for way in ways if (who := self._whose.find(way)) is not None), None)
-        if chosen is None:
-            self._placing.refuse(file.label, self._whose.reason_against(found.identity if found else None))
-            return
-        way, students = chosen
-        if len(students) > 1:
-            names = ", ".join(student.id for student in students)
-            self._placing.refuse(
-                file.label, f"{way.identity} may be {names}: put the LMS's id of each into students.csv"
-            )
-            return
-        reason = reason_against_name(students[0].id)
-        if reason:
-            self._placing.refuse(
-                file.label, f"{students[0].id} cannot be a student's id: {reason}. List it in students.csv"
-            )
-            return
+    def _take_file(
+        self, file: File, data: bytes, who: _Who | None, found: Found | None, source: Path
+    ) -> None:
+        """Take a file whose bytes are known, or say why not."""
         try:
-            data = file.read()
+            data = data or file.read()
         except NotTaken as error:
-            self._placing.refuse(file.label, str(error))
+            may_be_work = is_notebook(file.name, b"") or is_zip(file.name, b"")
+            self._outcomes.append(
+                self._outcome(file, State.NOT_PLACED, str(error), who)
+                if may_be_work
+                else self._soft(file, str(error), who)
+            )
             return
+        if not is_notebook(file.name, data):
+            self._outcomes.append(self._no_notebook(file, who))
+            return
+        reason = self._reason_against(who, found)
+        if who is None or reason:
+            self._refuse(file, reason, who)
+            return
+        way, members = who
         # Of what lies in a student's own zip the name says which notebook it is, though not whose.
         name = file.name if file.inner else way.file
-        stem, number = base_and_number(name[: -len(SUFFIX)] if name.lower().endswith(SUFFIX) else name)
-        told = self._which.told(stem, data)
-        target = self._target(told)
-        if target is None:
-            known = ", ".join(self._directory.assignments())
-            self._placing.refuse(
-                file.label,
-                f"it is not clear which assignment it is for (the class has: {known}): say --assignment NAME",
+        for (student,) in members:
+            try:
+                (assignment, notebook), is_named = self._which.target(name, data)
+            except NoTarget as error:
+                self._outcomes.append(self._soft(file, str(error), (way, ((student,),))))
+                continue
+            when = self._when(way, student.id, assignment)
+            if way.time and way.when is None:
+                self._unread.append(way.time)
+            label = file.label if len(members) == 1 else f"{file.label} ({student.id})"
+            there = "/".join(file.parts)
+            self._candidates.append(
+                Candidate(
+                    label,
+                    source,
+                    there,
+                    way,
+                    student.id,
+                    assignment,
+                    notebook,
+                    data,
+                    when,
+                    stem_of(name)[1],
+                    is_named,
+                )
             )
-            return
-        when = self._in_utc(way.when or self._whose.time_in_list(way.identity))
-        self._candidates.append(
-            Candidate(
-                file,
-                way,
-                students[0].id,
-                *target,
-                data,
-                when,
-                (way.order, number),
-                told == target,
+
+    def _when(self, way: Found, student: str, assignment: str) -> datetime | None:
+        when = way.when or self._whose.time(way.identity, student, assignment)
+        return self._in_utc(when) or self._handed_in
+
+    def _reason_against(self, who: _Who | None, found: Found | None) -> str:
+        """Why nobody's work a file is; empty where it is somebody's."""
+        if who is None:
+            return self._whose.reason_against(found.identity if found else None)
+        way, members = who
+        for students in members:
+            if len(students) > 1:
+                return self._whose.reason_against_several(way.identity, students)
+            reason = reason_against_name(students[0].id)
+            if reason:
+                return f"{students[0].id} cannot be a student's id: {reason}. List it in students.csv"
+        return ""
+
+    def _no_notebook(self, file: File, who: _Who | None) -> Outcome:
+        """What becomes of a file that holds no notebook: a picture, a page of the LMS, or the work in another form."""
+        if file.name in _PAGES and not file.inner and who is None:
+            return Outcome(file.label, State.BESIDE, "it is a page of the LMS")
+        student = _only(who)
+        name = student.id if student else "STUDENT"
+        if file.name.lower().endswith(_OTHER_ARCHIVES):
+            reason = (
+                f"it is an archive that is not opened here: unpack it into a folder named {name}, and type ./course "
+                f"collect {shlex.quote(str(self._directory.path))} {shlex.quote(name)}"
             )
+            return self._outcome(file, State.NOT_PLACED, reason, who)
+        place = self._directory.path / "submitted" / name / (self._assignment_of(file, who) or "ASSIGNMENT")
+        return self._soft(file, f"it is no notebook: ask for the notebook, or put it into {place}", who)
+
+    def _refuse(self, file: File, reason: str, who: _Who | None = None) -> None:
+        self._outcomes.append(self._outcome(file, State.NOT_PLACED, reason, who))
+
+    def _soft(self, file: File, reason: str, who: _Who | None) -> Outcome:
+        """What somebody has to look at, unless its student's notebook has come, too."""
+        return self._outcome(file, State.BESIDE if _only(who) else State.NOT_PLACED, reason, who)
+
+    def _outcome(self, file: File, state: State, reason: str, who: _Who | None) -> Outcome:
+        student = _only(who)
+        return Outcome(
+            file.label, state, reason, student.id if student else "", self._assignment_of(file, who)
         )
 
-    def _target(self, told: Target | None) -> Target | None:
-        """Which notebook a file counts as: where the instructor names the assignment, one of that."""
-        if self._assignment and (told is None or told[0] != self._assignment):
-            notebooks = self._directory.notebooks(self._assignment)
-            return (self._assignment, notebooks[0]) if len(notebooks) == 1 else None
-        return told
+    def _assignment_of(self, file: File, who: _Who | None) -> str:
+        """The assignment that the name speaks of which the student gave to a file."""
+        return self._which.named(who[0].file if who and not file.inner else file.name)
 
     def _in_utc(self, when: datetime | None) -> datetime | None:
         if when is None:
@@ -283,3 +330,13 @@ class _Collecting:
         if when.tzinfo is None:
             when = when.replace(tzinfo=self._zone) if self._zone else when.astimezone()
         return when.astimezone(UTC)
+
+
+def _alone(one: Outcome) -> Outcome:
+    """A file that lies beside its student's notebook needs no place; one that came without any does."""
+    return replace(one, state=State.NOT_PLACED) if one.state == State.BESIDE and one.student else one
+
+
+def _only(who: _Who | None) -> Student | None:
+    """The one student whose file it is; None where it is nobody's, a group's or may be several's."""
+    return who[1][0][0] if who and len(who[1]) == 1 and len(who[1][0]) == 1 else None

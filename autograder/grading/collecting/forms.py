@@ -15,7 +15,7 @@ from autograder.grading.table.roster import Identity
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-FORMS = ("moodle", "blackboard", "brightspace", "canvas", "google", "github")
+FORMS = ("moodle", "blackboard", "brightspace", "canvas", "google", "github", "gradescope")
 """In the order in which they are tried: the one whose names say most about themselves goes first."""
 
 # Ada Lovelace_12345_assignsubmission_file_lab_1_2.ipynb; since 4.1, and with folders before, it is a folder's name.
@@ -37,10 +37,12 @@ _BRIGHTSPACE = re2.compile(
 _STUDENT_NUMBER = re2.compile(r"[A-Za-z]{0,4}\d[\dA-Za-z]{2,}")
 # lovelaceada_LATE_123_456_lab_1_2-1.ipynb: the student's number, then the file's
 _CANVAS = re2.compile(
-    r"^(?P<login>.*?[^\d_].*?)_(?P<late>LATE_)?(?P<number>\d+)_(?P<file_number>\d+)_(?P<file>.+)$"
+    r"^(?P<login>.*?[^\d_].*?)_(?i:(?P<late>LATE)_)?(?P<number>\d+)_(?P<file_number>\d+)_(?P<file>.+)$"
 )
 # Ada Lovelace - lab_1_2.ipynb; of copies that were made for each student long ago: lab_1_2 - Ada Lovelace.ipynb
 _GOOGLE = re2.compile(r"^(?P<name>[^/]*?\S) - (?P<file>.+)$")
+# assignment_123_export/submission_456/lab_1_2.ipynb
+_GRADESCOPE = re2.compile(r"^submission_(?P<number>\d+)$")
 _MOST_MARKS = 10
 """Of a name that can be read in several ways; nobody's has more."""
 # What browsers, Canvas and Drive add to a name that is there already, and file managers to a copy.
@@ -219,6 +221,12 @@ def _github(parts: Sequence[str]) -> Found | None:
     return None
 
 
+def _gradescope(parts: Sequence[str]) -> Found | None:
+    """Who a number is says the list in the export, and nothing else does."""
+    found = next(filter(None, map(_GRADESCOPE.match, parts[:2])), None) if len(parts) > 1 else None
+    return Found(Identity("gradescope", found["number"]), parts[-1]) if found else None
+
+
 def plain(parts: Sequence[str]) -> list[Found]:
     """What a path says in which folders have students' ids or names, or end with a user name of GitHub's.
 
@@ -243,4 +251,5 @@ _READERS = {
     "canvas": _canvas,
     "google": _google,
     "github": _github,
+    "gradescope": _gradescope,
 }

@@ -1,125 +1,197 @@
-"""Lists that come with a download: they say who a number is, and when work was handed in.
-
-Three are known by their columns: Moodle's grading worksheet, Canvas's gradebook, GitHub Classroom's grades.
-"""
+"""Lists that come with a download: they say who a number is, and when work was handed in."""
 
 from __future__ import annotations
 
-import csv
-import io
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import re2
+import yaml
 
+from autograder.grading.reporting.spreadsheet import csv_rows
 from autograder.grading.table.roster import Identity
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
-_NUMBER = re2.compile(r"(\d+)$")
-_CLOCK = re2.compile(r"^(\d{1,2}):(\d\d) ?([AaPp][Mm])?$")
+GRADESCOPE = "submission_metadata.yml"
+"""The list that Gradescope puts into its export."""
+_NUMBER = re2.compile(r"(\d+)(?:\.\w+)?$")
+_NO_TIME = ("", "-")
+_TIMES = (
+    "%d %B %Y %I:%M %p",
+    "%d %B %Y %H:%M",
+    "%B %d %Y %I:%M %p",
+    "%B %d %Y %H:%M",
+    "%Y-%m-%d %H:%M:%S %z",
+)
+"""Beside ISO 8601; of the first four, an English Moodle writes one, with the day of the week in front."""
+_DAYS = frozenset(("monday", "tuesday", "wednesday", "thursday", "friday", "saturday", "sunday"))
 
 
 @dataclass(frozen=True)
-class LmsList:
-    """What a list says.
+class Entry:
+    """What a list says of one submission, or of one person.
 
     Attributes:
-        lms: Which system it is from.
-        people: Other names of who has a number or a login there, the surest first.
-        times: When they handed in, in the LMS's own time where the time has no zone.
+        lms: Which system the list is from; empty for an instructor's own.
+        number: The number or login that names of files have; empty where they have none.
+        members: Whose it is: of each member of the group the names, the surest first.
+        when: When it was handed in, in the LMS's own time where it has no zone; None where the list does not say.
+        time: The same as the list has it.
+        assignment: Which it is about; empty where the list does not say.
     """
 
     lms: str
-    people: Mapping[str, tuple[Identity, ...]] = field(default_factory=dict)
-    times: Mapping[str, datetime] = field(default_factory=dict)
+    number: str
+    members: tuple[tuple[Identity, ...], ...]
+    when: datetime | None = None
+    time: str = ""
+    assignment: str = ""
 
 
-def read_list(data: bytes) -> LmsList | None:
-    """Read a CSV file; None where it is none of the lists that are known."""
+@dataclass(frozen=True)
+class _Form:
+    """A list by the names of its columns, in small letters.
+
+    Attributes:
+        lms: Which system writes it.
+        has: Columns by which it is known.
+        number: The column of :attr:`Entry.number`.
+        logins: Columns with user names and addresses.
+        names: Columns that make a name together.
+        time: The column that says when.
+    """
+
+    lms: str
+    has: tuple[str, ...]
+    number: str = ""
+    logins: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()
+    time: str = ""
+
+
+_FORMS = (
+    # Moodle's grading worksheet; its identifiers are "Participant 12345", and other words in other languages.
+    _Form(
+        "moodle",
+        ("identifier", "grade"),
+        "identifier",
+        ("id number", "username", "email address"),
+        ("full name",),
+        "last modified (submission)",
+    ),
+    _Form("canvas", ("student", "id", "section"), "id", ("sis user id", "sis login id"), ("student",)),
+    # Canvas's submissions, with the names that its interface for programs gives them.
+    _Form(
+        "canvas",
+        ("user_id", "submitted_at"),
+        "user_id",
+        ("login_id", "sis_user_id"),
+        ("name",),
+        "submitted_at",
+    ),
+    _Form(
+        "github",
+        ("github_username", "roster_identifier"),
+        "github_username",
+        ("roster_identifier",),
+        ("roster_identifier",),
+        "submission_timestamp",
+    ),
+    # The scores of an assignment of Gradescope's.
+    _Form(
+        "gradescope",
+        ("sid", "submission time"),
+        "submission id",
+        ("sid", "email"),
+        ("first name", "last name"),
+        "submission time",
+    ),
+    # An instructor's own: collect --times.
+    _Form("", ("id", "handed_in"), "", ("id",), (), "handed_in"),
+)
+
+
+def read_list(name: str, data: bytes) -> list[Entry] | None:
+    """Read a list; None where it is none that is known.
+
+    Args:
+        name: The file's name.
+        data: What it holds.
+    """
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
         return None
-    rows = list(csv.reader(io.StringIO(text)))
-    if not rows:
-        return None
-    header = [name.strip() for name in rows[0]]
-    records = [dict(zip(header, row, strict=False)) for row in rows[1:]]
-    for columns, read in _KINDS.items():
-        if set(columns) <= set(header):
-            return read(records)
-    return None
+    if name == GRADESCOPE:
+        return _of_gradescope(text)
+    header, *rows = csv_rows(text) or [[]]
+    columns = [column.strip().lower() for column in header]
+    records = [dict(zip(columns, (cell.strip() for cell in row), strict=False)) for row in rows]
+    form = next((form for form in _FORMS if set(form.has) <= set(columns)), None)
+    return None if form is None else list(_entries(form, records))
 
 
-def _moodle(records: list[dict[str, str]]) -> LmsList:
-    people, times = {}, {}
+def _entries(form: _Form, records: list[dict[str, str]]) -> Iterator[Entry]:
     for record in records:
-        number = _NUMBER.search(record["Identifier"])
-        if number is None:
-            continue
-        logins = (record.get(name, "").strip() for name in ("ID number", "Username", "Email address"))
-        known = [Identity("moodle", login=login) for login in logins if login]
-        people[number[1]] = (*known, Identity("moodle", name=record.get("Full name", "")))
-        when = _spoken(record.get("Last modified (submission)", ""))
-        if when is not None:
-            times[number[1]] = when
-    return LmsList("moodle", people, times)
+        number = record.get(form.number, "")
+        if form.lms in ("moodle", "canvas", "gradescope"):
+            found = _NUMBER.search(number)
+            number = found[1] if found else ""
+        names = [Identity(form.lms, login=login) for name in form.logins if (login := record.get(name, ""))]
+        if called := " ".join(filter(None, (record.get(name, "") for name in form.names))):
+            names.append(Identity(form.lms, name=called))
+        time = record.get(form.time, "")
+        if names and (number or form.time):
+            yield Entry(
+                form.lms, number, (tuple(names),), read_time(time), time, record.get("assignment", "")
+            )
 
 
-def _canvas(records: list[dict[str, str]]) -> LmsList:
-    people = {}
-    for record in records:
-        if record["ID"].strip().isdigit():
-            logins = (record.get(name, "").strip() for name in ("SIS User ID", "SIS Login ID"))
-            known = [Identity("canvas", login=login) for login in logins if login]
-            people[record["ID"].strip()] = (*known, Identity("canvas", name=record["Student"]))
-    return LmsList("canvas", people)
-
-
-def _github(records: list[dict[str, str]]) -> LmsList:
-    people, times = {}, {}
-    for record in records:
-        login = record["github_username"].strip()
-        roster = record["roster_identifier"].strip()
-        people[login] = (Identity("github", login=roster), Identity("github", name=roster))
-        when = _iso(record.get("submission_timestamp", "").strip())
-        if when is not None:
-            times[login] = when
-    return LmsList("github", people, times)
-
-
-_KINDS = {
-    ("Identifier", "Grade"): _moodle,
-    ("Student", "ID", "Section"): _canvas,
-    ("github_username", "roster_identifier"): _github,
-}
-
-
-def _spoken(text: str) -> datetime | None:
-    """``Friday, 3 October 2025, 2:05 PM``, as an English Moodle writes it."""
-    parts = [part.strip() for part in text.split(",")]
-    if len(parts) < 2:
-        return None
-    clock = _CLOCK.match(parts[-1])
-    if clock is None:
-        return None
-    hour, minute = int(clock[1]), int(clock[2])
-    if clock[3]:
-        hour = hour % 12 + (12 if clock[3].lower() == "pm" else 0)
+def _of_gradescope(text: str) -> list[Entry] | None:
+    """``submission_metadata.yml``: of each submission's folder who handed it in, and when."""
     try:
-        return datetime.strptime(parts[-2], "%d %B %Y").replace(hour=hour, minute=minute)
-    except ValueError:
+        found = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    except (yaml.YAMLError, ValueError, RecursionError):
         return None
+    if not isinstance(found, dict):
+        return None
+    entries = []
+    for folder, about in found.items():
+        number = _NUMBER.search(str(folder))
+        if number is not None and isinstance(about, dict):
+            members = tuple(_member(one) for one in about.get(":submitters") or () if isinstance(one, dict))
+            created = about.get(":created_at", "")
+            when = created if isinstance(created, datetime) else read_time(str(created))
+            when = when.replace(tzinfo=UTC) if when and when.tzinfo is None else when
+            entries.append(Entry("gradescope", number[1], members, when, str(created)))
+    return entries
 
 
-def _iso(text: str) -> datetime | None:
-    for form in (None, "%Y-%m-%d %H:%M:%S %Z"):
+def _member(submitter: Mapping[str, Any]) -> tuple[Identity, ...]:
+    values = {name: str(submitter.get(f":{name}") or "").strip() for name in ("sid", "email", "name")}
+    logins = [Identity("gradescope", login=values[name]) for name in ("sid", "email") if values[name]]
+    return (*logins, Identity("gradescope", name=values["name"])) if values["name"] else tuple(logins)
+
+
+def is_unread(entry: Entry) -> bool:
+    """Whether a list says when, and nobody could read it."""
+    return entry.when is None and entry.time not in _NO_TIME
+
+
+def read_time(text: str) -> datetime | None:
+    """A time as lists have it; None where nobody can read it."""
+    text = text.strip().removesuffix(" UTC") + (" +0000" if text.strip().endswith(" UTC") else "")
+    try:
+        return datetime.fromisoformat(text)
+    except ValueError:
+        pass
+    words = [word for word in text.replace(",", " ").split() if word.lower() not in _DAYS]
+    for form in _TIMES:
         try:
-            when = datetime.fromisoformat(text) if form is None else datetime.strptime(text, form)
+            return datetime.strptime(" ".join(words), form)
         except ValueError:
             continue
-        return when if when.tzinfo or form is None else when.replace(tzinfo=UTC)
     return None

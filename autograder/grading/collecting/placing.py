@@ -4,43 +4,23 @@ from __future__ import annotations
 
 import functools
 import hashlib
+from collections import defaultdict
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory
 from autograder.grading.classes.timestamps import TIMESTAMP, timestamp_text
-from autograder.grading.collecting.archives import NotPlaced
+from autograder.grading.collecting.outcomes import Outcome, State
 from autograder.grading.collecting.records import Collected, CollectedRecords, History
 from autograder.grading.entering.journal import write_whole
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
     from pathlib import Path
 
-    from autograder.grading.collecting.archives import File
     from autograder.grading.collecting.forms import Found
-
-
-@dataclass(frozen=True)
-class Placed:
-    """A notebook that was put into ``submitted``.
-
-    Attributes:
-        student: Whose it is.
-        assignment: Which it is for.
-        label: Where it came from.
-        when: When it was handed in, in UTC; None where nothing says so.
-        late: Whether the LMS marks it as late.
-        replaced: Whether an earlier one lay there, which is kept.
-    """
-
-    student: str
-    assignment: str
-    label: str
-    when: datetime | None
-    late: bool
-    replaced: bool
 
 
 @dataclass(frozen=True)
@@ -48,35 +28,44 @@ class Candidate:
     """A file of which it is known whose it is and which notebook.
 
     Attributes:
-        file: Where it was found.
+        label: How messages call it.
+        download: What it came in: files of one download that have the same time were handed in together.
+        there: Its path in the download.
         found: What its name says.
         student: Whose it is.
         assignment: Which it is for.
         notebook: Which notebook of that.
         data: Its bytes.
         when: When it was handed in, in UTC; None where nothing says so.
-        order: Grows with later files: the number that the LMS gave it, then the one in its name.
-        is_told: Whether its name or its cells say that it is this notebook, and not the instructor alone.
+        number: What a browser or a system has added to its name.
+        is_named: Whether it is called as the notebook is.
     """
 
-    file: File
+    label: str
+    download: Path
+    there: str
     found: Found
     student: str
     assignment: str
     notebook: str
     data: bytes
     when: datetime | None
-    order: tuple[int, int]
-    is_told: bool
+    number: int
+    is_named: bool
 
     @functools.cached_property
     def content(self) -> str:
         """The hash of its bytes."""
         return hashlib.sha256(self.data).hexdigest()
 
+    def outcome(self, state: State, reason: str = "", *, replaced: bool = False) -> Outcome:
+        """What became of it."""
+        late = self.found.late
+        return Outcome(self.label, state, reason, self.student, self.assignment, self.when, late, replaced)
+
 
 class Placing:
-    """Puts notebooks into a class and keeps the lists of what became of each.
+    """Puts notebooks into a class and says what became of each.
 
     Args:
         directory: The class, locked by this process.
@@ -85,124 +74,207 @@ class Placing:
     def __init__(self, directory: ClassDirectory) -> None:
         self._directory = directory
         self._records = CollectedRecords(directory.state)
-        self.placed: list[Placed] = []
-        self.older: list[NotPlaced] = []
-        self.not_placed: list[NotPlaced] = []
-        self.unchanged = 0
 
-    def newest(self, group: list[Candidate]) -> Candidate | None:
-        """Which of a student's files counts; the others are listed. None where nothing says which."""
-        timed = all(candidate.when is not None for candidate in group)
+    def place(self, candidates: Iterable[Candidate]) -> Iterator[Outcome]:
+        """Put the newest of each student and notebook into ``submitted``; what became of each.
 
-        def age(candidate: Candidate) -> tuple[float, tuple[int, int]]:
-            return (candidate.when.timestamp() if timed and candidate.when else 0.0, candidate.order)
+        Raises:
+            OSError: One could not be written.
+        """
+        groups: dict[tuple[str, str, str], list[Candidate]] = defaultdict(list)
+        for candidate in candidates:
+            groups[candidate.assignment, candidate.student, candidate.notebook].append(candidate)
+        for key in sorted(groups):
+            newest, others = _newest(groups[key])
+            for other in others:
+                if other.state == State.EARLIER:
+                    self._keep(next(one for one in groups[key] if one.label == other.label))
+            yield from others
+            if newest is not None:
+                yield self._put(newest)
 
-        newest = max(group, key=age)
-        for other in group:
-            if other is newest:
-                continue
-            if other.content == newest.content:
-                self.unchanged += 1
-            elif age(other) == age(newest):
-                for one in group:
-                    self.refuse(
-                        one.file.label,
-                        f"{newest.student} has several different files for {newest.assignment}, and nothing says which "
-                        "is the newest: collect the one that counts",
-                    )
-                return None
-            else:
-                self.older.append(NotPlaced(other.file.label, f"{newest.file.label} is newer"))
-        return newest
+    def note_times(self, whose: Iterable[tuple[str, str, datetime]]) -> int:
+        """Write down when work was handed in that is in ``submitted`` already; of how many that is news.
 
-    def put(self, newest: Candidate) -> None:
-        """Put a notebook into ``submitted`` and write down where it came from.
+        Args:
+            whose: Student, assignment and time in UTC.
 
         Raises:
             OSError: It could not be written.
         """
+        news = 0
+        for student, assignment, when in whose:
+            folder = self._directory.path / "submitted" / student / assignment
+            history = self._records.get(assignment, student) or History({})
+            now = dict(history.now)
+            for notebook in self._directory.notebooks(assignment):
+                try:
+                    content = hashlib.sha256(read_bytes(folder / f"{notebook}{SUFFIX}")).hexdigest()
+                except UnreadableSubmission:
+                    continue
+                known = now.get(notebook)
+                if known is None or known.content != content:
+                    known = Collected(notebook, content, "", datetime.now(tz=UTC), by_hand=True)
+                now[notebook] = replace(known, when=when)
+            if now != history.now:
+                self._write(student, assignment, replace(history, now=now))
+                news += 1
+        return news
+
+    def _put(self, newest: Candidate) -> Outcome:
         folder = self._directory.path / "submitted" / newest.student / newest.assignment
         path = folder / f"{newest.notebook}{SUFFIX}"
+        try:
+            there = _lying(path)
+        except UnreadableSubmission as error:
+            return newest.outcome(State.NOT_PLACED, str(error))
         history = self._records.get(newest.assignment, newest.student) or History({})
         known = history.now.get(newest.notebook)
-        reason, there = self._reason_against_putting(newest, folder, path, history)
-        if reason:
-            (self.refuse if known is None else self._keep_older)(newest.file.label, reason)
-            return
-        if there == newest.data and known is not None and known.when == newest.when:
-            self.unchanged += 1
-            return
-        if there is not None and there != newest.data:
-            content = hashlib.sha256(there).hexdigest()
+        content = "" if there is None else hashlib.sha256(there).hexdigest()
+        if (
+            there is not None
+            and known is not None
+            and content == newest.content
+            and not _has_news(newest, known)
+        ):
+            return newest.outcome(State.UNCHANGED)
+        if there is not None and content != newest.content:
+            if content not in history.collected(newest.notebook):
+                return newest.outcome(
+                    State.NOT_PLACED,
+                    f"{path} is another notebook, which nobody collected: move it away first",
+                )
+            if known is not None and known.content != newest.content:
+                refused = _older(newest, known, history)
+                if refused is not None and refused.state == State.EARLIER:
+                    self._keep(newest)
+                if refused is not None:
+                    return refused
             self._records.keep(newest.assignment, newest.student, content, there)
-        if there != newest.data:
+        replaced = known is not None and known.content != newest.content
+        before = (*history.before, known) if known is not None and replaced else history.before
+        now = {**history.now, newest.notebook: _collected(newest)}
+        # What is written down goes first: who is killed in between finds a notebook there that was collected.
+        self._write(newest.student, newest.assignment, replace(history, now=now, before=before))
+        if content != newest.content:
             write_whole(path, newest.data)
-        identity = newest.found.identity
-        now = Collected(
-            newest.notebook,
-            newest.content,
-            newest.file.label,
-            datetime.now(tz=UTC),
-            newest.when,
-            newest.found.order,
-            newest.found.late,
-            identity.lms,
-            identity.number,
-            identity.name or identity.login,
-            newest.file.parts[-1] if len(newest.file.parts) == 1 else "/".join(newest.file.parts),
+        return newest.outcome(State.PLACED, replaced=there is not None and content != newest.content)
+
+    def _write(self, student: str, assignment: str, history: History) -> None:
+        """Write down what is at its place, and when it was handed in as nbgrader reads it."""
+        self._records.put(assignment, student, history)
+        stamp = self._directory.path / "submitted" / student / assignment / TIMESTAMP
+        if history.when is not None:
+            write_whole(stamp, f"{timestamp_text(history.when)}\n".encode())
+        elif stamp.parent.is_dir():
+            stamp.unlink(missing_ok=True)
+
+    def _keep(self, one: Candidate) -> None:
+        """Keep what does not count; its bytes are never lost."""
+        self._records.keep(one.assignment, one.student, one.content, one.data)
+
+
+def _newest(group: list[Candidate]) -> tuple[Candidate | None, list[Outcome]]:
+    """Which of a student's files counts, and what becomes of the others. None where nothing says which.
+
+    Of files that were handed in together the one counts that is called as the notebook is.
+    """
+    together: dict[tuple[Path, datetime | None], list[Candidate]] = defaultdict(list)
+    for one in group:
+        together[one.download, one.when].append(one)
+    firsts, outcomes = [], []
+    for files in together.values():
+        first, others = _best(files, lambda one: (one.is_named, one.found.order, one.number))
+        outcomes += others
+        firsts += [first] if first else []
+    timed = all(one.when is not None for one in firsts)
+    newest, others = _best(
+        firsts, lambda one: (one.when.timestamp() if timed and one.when else 0.0, one.found.order, one.number)
+    )
+    return newest, outcomes + others
+
+
+def _best(
+    files: list[Candidate], rank: Callable[[Candidate], tuple[float, ...]]
+) -> tuple[Candidate | None, list[Outcome]]:
+    """The file of the highest rank, and what becomes of the others; None where several different ones have it."""
+    best = max(files, key=rank, default=None)
+    if best is None:
+        return None, []
+    if any(rank(one) == rank(best) and one.content != best.content for one in files):
+        reason = (
+            f"{best.student} has several different files for {best.assignment}, and nothing says which is the newest: "
+            "collect the one that counts"
         )
-        before = (*history.before, known) if known is not None and there != newest.data else history.before
-        history = replace(history, now={**history.now, newest.notebook: now}, before=before)
-        self._records.put(newest.assignment, newest.student, history)
-        _write_time(folder, history.when)
-        self.placed.append(
-            Placed(
-                newest.student,
-                newest.assignment,
-                newest.file.label,
-                newest.when,
-                newest.found.late,
-                replaced=there is not None and there != newest.data,
-            )
+        return None, [one.outcome(State.NOT_PLACED, reason) for one in files]
+    others = []
+    for one in files:
+        if one is not best:
+            same = one.content == best.content
+            counts = "is newer" if best.is_named <= one.is_named else "has the notebook's own name"
+            reason = "" if same else f"{best.label} {counts} and counts; this one is kept"
+            others.append(one.outcome(State.UNCHANGED if same else State.EARLIER, reason))
+    return best, others
+
+
+def _has_news(newest: Candidate, known: Collected) -> bool:
+    """Whether the same notebook comes with a later time, or with the first one."""
+    return newest.when is not None and (known.when is None or newest.when > known.when)
+
+
+def _older(newest: Candidate, known: Collected, history: History) -> Outcome | None:
+    """What becomes of a file that does not replace the one that is there; None where it does."""
+    if newest.when is not None and known.when is not None and newest.when != known.when:
+        if newest.when < known.when:
+            at = f"{known.when:%Y-%m-%d %H:%M} UTC"
+            return newest.outcome(State.EARLIER, f"the one that is there was handed in later ({at})")
+        return None
+    if newest.found.order and known.order and newest.found.order != known.order:
+        if newest.found.order < known.order:
+            return newest.outcome(State.EARLIER, "the one that is there was handed in later")
+        return None
+    if any(one.content == newest.content for one in history.before):
+        return newest.outcome(State.EARLIER, "it was collected before, and a newer one after it")
+    if known.when is not None:
+        at = f"{known.when:%Y-%m-%d %H:%M}"
+        return newest.outcome(
+            State.NOT_PLACED,
+            f"nothing says whether it is newer than the one that is there, handed in {at} UTC: say when, with "
+            "--handed-in TIME or --times FILE",
         )
-
-    def _reason_against_putting(
-        self, newest: Candidate, folder: Path, path: Path, history: History
-    ) -> tuple[str, bytes | None]:
-        """Why what lies there stays, empty where it does not; and what lies there."""
-        for place in (folder.parent, folder, path):
-            if place.is_symlink():
-                return f"{place} is a link: remove it", None
-        if not path.exists():
-            return "", None
-        try:
-            there = read_bytes(path)
-        except UnreadableSubmission as error:
-            return f"something else lies at {path}: {error}", None
-        known = history.now.get(newest.notebook)
-        if there == newest.data:
-            return "", there
-        if known is None or known.content != hashlib.sha256(there).hexdigest():
-            return f"{path} is another notebook, which nobody collected: move it away first", there
-        if any(one.content == newest.content for one in history.before):
-            return "it was collected before, and a newer one after it", there
-        if newest.when is not None and known.when is not None and newest.when < known.when:
-            return f"the one collected before was handed in later ({known.when:%Y-%m-%d %H:%M} UTC)", there
-        if newest.found.order and newest.found.order < known.order:
-            return "the one collected before was handed in later", there
-        return "", there
-
-    def refuse(self, label: str, reason: str) -> None:
-        """Note what could not be placed."""
-        self.not_placed.append(NotPlaced(label, reason))
-
-    def _keep_older(self, label: str, reason: str) -> None:
-        self.older.append(NotPlaced(label, reason))
+    return None
 
 
-def _write_time(folder: Path, when: datetime | None) -> None:
-    """Write down when work was handed in, as nbgrader reads it; whoever wrote that file before."""
-    if when is None:
-        (folder / TIMESTAMP).unlink(missing_ok=True)
-    else:
-        write_whole(folder / TIMESTAMP, f"{timestamp_text(when)}\n".encode())
+def _collected(one: Candidate) -> Collected:
+    identity = one.found.identity
+    name = identity.name or identity.login
+    now = datetime.now(tz=UTC)
+    order, late = one.found.order, one.found.late
+    return Collected(
+        one.notebook,
+        one.content,
+        one.label,
+        now,
+        one.when,
+        order,
+        late,
+        identity.lms,
+        identity.number,
+        name,
+        one.there,
+    )
+
+
+def _lying(path: Path) -> bytes | None:
+    """What lies at a notebook's place; None where there is nothing.
+
+    Raises:
+        UnreadableSubmission: Something else does.
+    """
+    for place in (path.parent.parent, path.parent, path):
+        if place.is_symlink():
+            raise UnreadableSubmission(f"{place} is a link: remove it")
+    try:
+        return read_bytes(path) if path.exists() else None
+    except UnreadableSubmission as error:
+        raise UnreadableSubmission(f"something else lies at {path}: {error}") from error

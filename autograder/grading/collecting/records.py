@@ -32,6 +32,7 @@ class Collected:
         number: The student's number there: for Canvas of the student, for Moodle of the student in this assignment.
         name: The student's name there.
         file: The name of the file there, which its feedback goes back under.
+        by_hand: Whether the instructor put it there, and only its time was collected.
     """
 
     notebook: str
@@ -45,6 +46,7 @@ class Collected:
     number: str = ""
     name: str = ""
     file: str = ""
+    by_hand: bool = False
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,11 @@ class History:
     def when(self) -> datetime | None:
         """When the last of it was handed in, in UTC; None where nothing says so."""
         return max((one.when for one in self.now.values() if one.when is not None), default=None)
+
+    def collected(self, notebook: str) -> set[str]:
+        """The hashes of all that was ever put at a notebook's place, and may be replaced."""
+        ours = (one for one in (*self.now.values(), *self.before) if one.notebook == notebook)
+        return {one.content for one in ours if not one.by_hand}
 
 
 class CollectedRecords:

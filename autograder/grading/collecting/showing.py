@@ -1,15 +1,19 @@
-"""The end of collecting, for the person who started it: every file has a line or is counted in one."""
+"""The end of collecting, for the person who started it: every file has a line."""
 
 from __future__ import annotations
 
+import shlex
 from typing import TYPE_CHECKING
 
 from rich.console import Console
 
 from autograder.cards.readable import printable
+from autograder.grading.collecting.outcomes import State
 
 if TYPE_CHECKING:
-    from autograder.grading.collecting.collect import CollectReport
+    from collections.abc import Iterator
+
+    from autograder.grading.collecting.outcomes import CollectReport
 
 
 def show(report: CollectReport, console: Console | None = None) -> None:
@@ -20,41 +24,46 @@ def show(report: CollectReport, console: Console | None = None) -> None:
         console: Standard output by default.
     """
     console = console or Console()
-
-    def line(text: str, style: str = "") -> None:
+    for text in _lines(report):
+        style = "yellow" if text.startswith(State.NOT_PLACED) else ""
         console.print(printable(text), style=style, markup=False, highlight=False, soft_wrap=True)
 
-    for one in report.placed:
+
+def _lines(report: CollectReport) -> Iterator[str]:
+    for one in report.having(State.PLACED):
         when = f", handed in {one.when:%Y-%m-%d %H:%M} UTC" if one.when else ""
         late = ", late as the LMS says" if one.late else ""
         again = ", in place of an earlier one" if one.replaced else ""
-        line(f"placed       {one.student}/{one.assignment}: {one.label}{when}{late}{again}")
-    for other in report.older:
-        line(f"older        {other.label}: {other.reason}")
-    for other in report.others:
-        line(f"left out     {other.label}: {other.reason}")
-    for other in report.not_placed:
-        line(f"not placed   {other.label}: {other.reason}", "yellow")
+        yield f"placed       {one.student}/{one.assignment}: {one.label}{when}{late}{again}"
+    for state in (State.EARLIER, State.BESIDE, State.NOT_PLACED):
+        for one in report.having(state):
+            whose = f"{one.student}: " if one.student else ""
+            yield f"{state:<12} {one.label}: {whose}{one.reason}"
     for assignment, students in report.missing.items():
-        line(f"nothing of   {assignment}: {', '.join(students)}")
-    untimed = sorted({one.assignment for one in report.placed if one.late and one.when is None})
+        yield f"nothing of   {assignment}: {', '.join(students)}"
+    untimed = {student for students in report.untimed.values() for student in students}
+    for assignment, students in report.untimed.items():
+        yield f"no time      {assignment}: {', '.join(students)}"
     if untimed:
-        line(
-            f"note         {', '.join(untimed)}: the LMS marks work as late and does not say when it came, so "
-            "nothing is taken off for it"
+        marked = any(one.late and one.student in untimed for one in report.outcomes)
+        yield (
+            "note         nothing says when that was handed in"
+            + (", though the LMS marks some of it as late" if marked else "")
+            + ", so nothing is taken off for being late: say it with --times FILE or --handed-in TIME"
         )
     for time in report.unread_times:
-        line(
-            f"note         the time “{time}” in a name could not be read, so nothing says when that work was handed "
-            "in: have the system show itself in English, and download again",
-            "yellow",
+        yield (
+            f"note         the time “{time}” in a name or a list could not be read, so nothing says when that work was "
+            "handed in: have the system show itself in English, and download again"
         )
     if report.by_their_names:
-        line("note         the class has no students.csv: folders have the names that the LMS uses")
-    line(
-        f"{len(report.placed)} placed, {report.unchanged} unchanged, {len(report.older)} older, "
-        f"{len(report.not_placed)} not placed, {report.left_out} files that are no notebooks"
-        + (f", {len(report.others)} for other assignments" if report.others else "")
-    )
-    if report.placed:
-        line(f"Then         ./course grade {report.path}")
+        yield "note         the class has no students.csv: folders have the names that the LMS uses"
+    counts = {state: len(report.having(state)) for state in State}
+    yield ", ".join(f"{count} {state}" for state, count in counts.items())
+    if counts[State.NOT_PLACED]:
+        yield (
+            "note         grade, report and export repeat what has no place, until it has one; where it needs none, "
+            f"type ./course collect {shlex.quote(str(report.path))} --settled NAME"
+        )
+    if counts[State.PLACED]:
+        yield f"Then         ./course grade {shlex.quote(str(report.path))}"

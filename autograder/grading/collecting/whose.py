@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder.grading.table.roster import Identity, Roster, Student
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from datetime import datetime
 
     from autograder.grading.collecting.forms import Found
-    from autograder.grading.collecting.lists import LmsList
+    from autograder.grading.collecting.lists import Entry
+
+_NO_ID = "its name does not say whose it is: say --from, or put it into a folder with the student's id and collect that"
 
 
 class Whose:
@@ -19,49 +23,83 @@ class Whose:
 
     Args:
         roster: The students of the class.
+        entries: What lists say that came with a download; each is about what has its numbers.
+        told: What lists say that the instructor names for their times, whatever system the work is from.
     """
 
-    def __init__(self, roster: Roster) -> None:
+    def __init__(self, roster: Roster, entries: Iterable[Entry] = (), told: Iterable[Entry] = ()) -> None:
         self._roster = roster
-        self._lists: dict[str, LmsList] = {}
+        self._told = list(told)
+        self._by_number = {(one.lms, one.number): one for one in (*entries, *self._told) if one.number}
 
-    def learn(self, known: LmsList) -> None:
-        """Take what a list says that came with a download."""
-        self._lists[known.lms] = known
+    def find(self, way: Found) -> tuple[Found, tuple[tuple[Student, ...], ...]] | None:
+        """Who may be meant, by the first way of reading the name in which somebody is.
 
-    def find(self, way: Found) -> tuple[Found, tuple[Student, ...]] | None:
-        """Who may be meant, by the first way of reading the name in which somebody is."""
+        Returns:
+            That way, and for each member of the group whose file it is the students who may be meant.
+        """
         readings = way.readings if self._roster.students and way.readings else (way.identity,)
         for identity in readings:
-            if students := self._of(identity):
-                return replace(way, identity=identity), students
+            if members := self._of(identity):
+                return replace(way, identity=identity), members
         return None
 
-    def _of(self, identity: Identity) -> tuple[Student, ...]:
+    def _of(self, identity: Identity) -> tuple[tuple[Student, ...], ...]:
         """Who may be meant. Without any list of students, whoever is named in the LMS's own form."""
-        found = self._roster.find(identity)
-        known = self._lists.get(identity.lms)
+        known = self._by_number.get((identity.lms, identity.number or identity.login))
         if known is not None:
-            others = known.people.get(identity.number or identity.login, ())
-            sure = next((hit for other in others if len(hit := self._roster.find(other)) == 1), ())
-            found = sure or found
+            sure = tuple(student for names in known.members if (student := self._first(names)))
+            if sure and len(sure) == len(known.members):
+                return tuple((student,) for student in sure)
+        found = self._roster.find(identity)
         called = identity.login or identity.name
         if not found and not self._roster.students and identity.lms and called:
             found = (Student(called),)
-        return found
+        return (found,) if found else ()
+
+    def _first(self, names: Iterable[Identity]) -> Student | None:
+        """The student of whom the first of several names is sure."""
+        return next((hit[0] for name in names if len(hit := self._roster.find(name)) == 1), None)
 
     def reason_against(self, identity: Identity | None) -> str:
         """Why nobody was found, and what to do."""
         if identity is None:
-            return (
-                "its name does not say whose it is: say --from, or put it into a folder with the student's id"
-            )
+            return _NO_ID
+        number = identity.number or identity.login
+        known = self._by_number.get((identity.lms, number))
+        called = " and ".join(str(names[-1]) for names in known.members if names) if known else str(identity)
         return (
-            f"nobody in the class is called {identity}: add a line to students.csv, or the id that "
-            f"{identity.lms.capitalize()} uses ({identity.number or identity.login}) to the column {identity.lms}"
+            f"nobody in the class is called {called or number}: add a line to students.csv, or the id that "
+            f"{identity.lms.capitalize()} uses ({number}) to the column {identity.lms}"
         )
 
-    def time_in_list(self, identity: Identity) -> datetime | None:
+    def reason_against_several(self, identity: Identity, students: Iterable[Student]) -> str:
+        """Why it is not clear who of several it is, and what to do."""
+        names = ", ".join(student.id for student in students)
+        if identity.lms == "moodle":
+            return (
+                f"{identity} may be {names}: collect it together with the grading worksheet (Grades-….csv), which says "
+                f"by their addresses who number {identity.number} is"
+            )
+        return f"{identity} may be {names}: put the LMS's id of each into students.csv"
+
+    def time(self, identity: Identity, student: str, assignment: str) -> datetime | None:
         """When a list says that somebody handed in, in its own time; None where none says so."""
-        known = self._lists.get(identity.lms)
-        return known.times.get(identity.number or identity.login) if known else None
+        known = self._by_number.get((identity.lms, identity.number or identity.login))
+        if known is not None and known.when is not None:
+            return known.when
+        return self.time_of(student, assignment)
+
+    def time_of(self, student: str, assignment: str) -> datetime | None:
+        """The same of a student, by whatever name a list has."""
+        times = self._times
+        return times.get((student, assignment), times.get((student, "")))
+
+    @functools.cached_property
+    def _times(self) -> dict[tuple[str, str], datetime]:
+        return {
+            (student.id, entry.assignment): entry.when
+            for entry in self._told
+            for names in entry.members
+            if entry.when is not None and (student := self._first(names))
+        }

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import shlex
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import ClassDirectory
@@ -14,7 +15,7 @@ from autograder.grading.rebuilding.submission import UnreadableSubmission, read_
 from autograder.grading.table.class_table import ClassTable, read_table
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
 
@@ -38,15 +39,19 @@ def export(
     assignments: Sequence[str] = (),
     into: Path | None = None,
     folder: Path | None = None,
+    absent_zero: bool = False,
+    columns: Mapping[str, str] | None = None,
 ) -> Exported:
     """Write points and feedback in the form of an LMS.
 
     Args:
         path: The class directory.
-        to: ``canvas``, ``moodle``, ``csv`` or ``xlsx``.
+        to: ``canvas``, ``moodle``, ``gradescope``, ``csv`` or ``xlsx``.
         assignments: Only these; all that somebody has handed in by default.
-        into: A list that the LMS has exported, to be filled in; for one assignment.
+        into: A list that the LMS has exported, to be filled in.
         folder: Where to write; ``export`` in the class by default.
+        absent_zero: Write zero for who has handed in nothing, where otherwise nothing is written.
+        columns: What an assignment's column is called in ``into``, where that is not the assignment's name.
 
     Raises:
         GradingError: There is nothing to export, or the list cannot be filled in.
@@ -54,24 +59,31 @@ def export(
     directory = ClassDirectory(path)
     with clear_disk_errors(directory.path):
         table = read_table(directory)
+        table = replace(table, absent=0.0) if absent_zero else table
         wanted = _assignments(table, assignments)
         folder = folder or directory.path / "export"
         notices: list[str] = []
         written = []
         parts = (
-            _filled(table, to, wanted, into, notices)
+            _filled(table, to, wanted, into, columns or {}, notices)
             if into
             else _files(directory, table, to, wanted, notices)
         )
         for name, data, purpose in parts:
             write_whole(folder / name, data)
             written.append((folder / name, purpose))
+    notices += [
+        f"{one.label}{f' of {one.student}' if one.student else ''} has no place, so no points come from it: "
+        f"{one.reason}"
+        for one in table.unplaced
+    ]
     if table.waiting:
         notices.append(f"{len(table.waiting)} results wait for a person and are exported as they are now")
     if table.stale:
         notices.append(
             f"{len(table.stale)} submissions came or changed after the last grading, or could not be graded: "
-            f"{', '.join(table.stale[:5])}{' …' if len(table.stale) > 5 else ''}. Grade first: ./course grade {path}"
+            f"{', '.join(table.stale[:5])}{' …' if len(table.stale) > 5 else ''}. "
+            f"Grade first: ./course grade {shlex.quote(str(path))}"
         )
     return Exported(tuple(written), tuple(notices))
 
@@ -93,6 +105,9 @@ def _files(
         yield "students.csv", sheets.as_csv(table, assignments), "a line for each student"
     elif to == "xlsx":
         yield "grades.xlsx", sheets.as_xlsx(table, assignments), "sheets of students and of exercises"
+    elif to == "gradescope":
+        text = forms.gradescope(table, assignments)
+        yield "gradescope.csv", text.encode(), "the scores in the form in which Gradescope exports them"
     elif to == "canvas":
         text = forms.canvas(table, records, assignments)
         yield "canvas.csv", text.encode(), "Canvas: Grades, Import"
@@ -105,11 +120,9 @@ def _files(
         )
         for assignment in assignments:
             text, unknown = forms.moodle_worksheet(table, records, assignment)
-            yield (
-                f"moodle-{assignment}.csv",
-                text.encode(),
-                f"Moodle: the assignment {assignment}, Upload grading worksheet",
-            )
+            if len(unknown) < len(table.students):
+                purpose = f"Moodle: the assignment {assignment}, Upload grading worksheet"
+                yield f"moodle-{assignment}.csv", text.encode(), purpose
             if unknown:
                 notices.append(
                     f"Moodle's numbers for {assignment} are not known of {', '.join(unknown)}: they are in moodle.csv "
@@ -120,11 +133,9 @@ def _files(
     for assignment in assignments:
         data, unknown = feedback_zips.feedback_zip(directory, table, records, assignment, to)
         way = "Upload multiple feedback files in a zip" if to == "moodle" else "Upload submissions"
-        yield (
-            f"feedback-{to}-{assignment}.zip",
-            data,
-            f"{to.capitalize()}: the assignment {assignment}, {way}",
-        )
+        if data:
+            purpose = f"{to.capitalize()}: the assignment {assignment}, {way}"
+            yield f"feedback-{to}-{assignment}.zip", data, purpose
         if unknown:
             notices.append(
                 f"no feedback on {assignment} in the zip for {', '.join(unknown)}: their work was not collected from "
@@ -133,9 +144,20 @@ def _files(
 
 
 def _filled(
-    table: ClassTable, to: str, assignments: Sequence[str], into: Path, notices: list[str]
+    table: ClassTable,
+    to: str,
+    assignments: Sequence[str],
+    into: Path,
+    columns: Mapping[str, str],
+    notices: list[str],
 ) -> Iterator[tuple[str, bytes, str]]:
-    if len(assignments) != 1:
+    for name in columns:
+        if name not in assignments:
+            raise GradingError(
+                f"There is no assignment named {name} here. There is: {', '.join(assignments)}."
+            )
+    assignments = list(columns) or assignments
+    if to == "moodle" and len(assignments) != 1:
         raise GradingError(
             f"Say which assignment goes into {into}: --assignment NAME ({', '.join(assignments)})."
         )
@@ -143,11 +165,11 @@ def _filled(
         data = read_bytes(into)
     except UnreadableSubmission as error:
         raise GradingError(f"{into} cannot be read: {error}") from error
-    filled, strangers = forms.filled_in(data, table, assignments[0])
+    filled, strangers = forms.filled_in(data, table, assignments, columns)
     if strangers:
         notices.append(f"nobody in the class is called {', '.join(strangers)}: their lines stay as they were")
     yield (
         into.name,
         filled,
-        f"{to.capitalize()}: the list that it exported, with the points of {assignments[0]}",
+        f"{to.capitalize()}: the list that it exported, with the points of {', '.join(assignments)}",
     )

@@ -36,7 +36,8 @@ def feedback_zip(
         lms: One of :data:`FORMS`.
 
     Returns:
-        The zip, and the students who have a page but whose name in that LMS is not known.
+        The zip, empty where there is no page for it, and the students who have a page but whose name in that LMS is not
+        known.
     """
     data = io.BytesIO()
     unknown = []
@@ -57,7 +58,7 @@ def feedback_zip(
                     called = _moodle(table.roster.students[student].name or student, number, page.name)
                 # The same class gives the same zip: no time of this machine is in it.
                 archive.writestr(zipfile.ZipInfo(called, _MADE), page.read_bytes(), zipfile.ZIP_DEFLATED)
-    return data.getvalue(), unknown
+    return (data.getvalue() if archive.namelist() else b""), unknown
 
 
 def _moodle(name: str, number: str, page: str) -> str:

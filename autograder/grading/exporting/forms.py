@@ -13,11 +13,11 @@ import io
 from typing import TYPE_CHECKING
 
 from autograder.grading.errors import GradingError
-from autograder.grading.reporting.spreadsheet import csv_text
+from autograder.grading.reporting.spreadsheet import blank, csv_text, original
 from autograder.grading.table.roster import Identity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from autograder.grading.collecting.records import Collected, CollectedRecords
     from autograder.grading.table.class_table import ClassTable
@@ -36,6 +36,7 @@ MOODLE_WORKSHEET = (
     "Last modified (grade)",
     "Feedback comments",
 )
+GRADESCOPE = ("First Name", "Last Name", "SID", "Email")
 MOODLE_GRADEBOOK = ("First name", "Last name", "ID number", "Email address")
 
 
@@ -61,9 +62,13 @@ def canvas(table: ClassTable, records: CollectedRecords, assignments: Sequence[s
         numbers = (known_there(records, name, student.id, "canvas") for name in assignments)
         number = student.lms.get("canvas") or next((one.number for one in numbers if one), "")
         name = ", ".join(part for part in (student.last_name, student.first_name) if part) or student.id
-        rows.append(
-            [name, number, "", student.id, "", *(table.score(student.id, name) for name in assignments)]
+        points = (
+            _EXCUSED["canvas"]
+            if table.is_excused(student.id, assignment)
+            else blank(table.score(student.id, assignment))
+            for assignment in assignments
         )
+        rows.append([name, number, "", student.id, "", *points])
     return csv_text(rows)
 
 
@@ -72,7 +77,21 @@ def moodle_gradebook(table: ClassTable, assignments: Sequence[str]) -> str:
     rows: list[list[str | float]] = [[*MOODLE_GRADEBOOK, *assignments]]
     for student in map(table.roster.students.__getitem__, table.students):
         who = [student.first_name, student.last_name, student.id, student.email]
-        rows.append([*who, *(table.score(student.id, name) for name in assignments)])
+        rows.append([*who, *(blank(table.score(student.id, name)) for name in assignments)])
+    return csv_text(rows)
+
+
+def gradescope(table: ClassTable, assignments: Sequence[str]) -> str:
+    """The scores as Gradescope exports them, which is what programs for its lists read; it imports none itself."""
+    header: list[str | float] = [*GRADESCOPE]
+    for name in assignments:
+        header += [name, f"{name} - Max Points"]
+    rows = [header]
+    for student in map(table.roster.students.__getitem__, table.students):
+        row: list[str | float] = [student.first_name, student.last_name, student.id, student.email]
+        for name in assignments:
+            row += [blank(table.score(student.id, name)), table.max_score(name)]
+        rows.append(row)
     return csv_text(rows)
 
 
@@ -87,25 +106,28 @@ def moodle_worksheet(table: ClassTable, records: CollectedRecords, assignment: s
             unknown.append(student.id)
             continue
         submitted = "Submitted for grading" if there else "No submission"
-        points = [table.score(student.id, assignment), table.max_score(assignment)]
+        points = [blank(table.score(student.id, assignment)), table.max_score(assignment)]
         who = [f"Participant {number}", student.name or student.id, student.email]
         rows.append([*who, submitted, *points, "Yes", "", "", ""])
     return csv_text(rows), unknown
 
 
-def filled_in(data: bytes, table: ClassTable, assignment: str) -> tuple[bytes, list[str]]:
+def filled_in(
+    data: bytes, table: ClassTable, assignments: Sequence[str], columns: Mapping[str, str]
+) -> tuple[bytes, list[str]]:
     """A list of the LMS's own with the points filled in; everything else in it stays as it is.
 
     Args:
-        data: Moodle's grading worksheet, or Canvas's exported gradebook.
+        data: Moodle's grading worksheet, or a gradebook that Canvas or Gradescope has exported.
         table: The class.
-        assignment: Whose points.
+        assignments: Whose points; of a worksheet, one.
+        columns: What an assignment's column is called there, where that is not the assignment's name.
 
     Returns:
         The list, and the lines in it of which nobody is known here.
 
     Raises:
-        GradingError: It is neither, or it has no column for the assignment.
+        GradingError: It is neither, or it has no column for an assignment.
     """
     try:
         text = data.decode("utf-8-sig")
@@ -115,38 +137,56 @@ def filled_in(data: bytes, table: ClassTable, assignment: str) -> tuple[bytes, l
         ) from error
     rows = list(csv.reader(io.StringIO(text)))
     header = [name.strip() for name in rows[0]] if rows else []
+    names: tuple[str, ...]
     if {"Identifier", "Grade"} <= set(header):
-        column, lms, names = header.index("Grade"), "moodle", ("Email address", "ID number", "Full name")
+        lms, names = "moodle", ("Email address", "ID number", "Full name")
+        places = {name: header.index("Grade") for name in assignments}
     elif {"Student", "ID", "Section"} <= set(header):
-        column, lms, names = _canvas_column(header, assignment), "canvas", ("ID", "SIS Login ID", "Student")
+        lms, names = "canvas", ("ID", "SIS Login ID", "Student")
+        places = {name: _column(header, columns.get(name, name)) for name in assignments}
+    elif {"SID", "Email"} <= set(header):
+        lms, names = "gradescope", ("SID", "Email")
+        places = {name: _column(header, columns.get(name, name)) for name in assignments}
     else:
-        raise GradingError("The list is neither Moodle's grading worksheet nor Canvas's exported gradebook.")
+        raise GradingError(
+            "The list is neither Moodle's grading worksheet nor a gradebook that Canvas or Gradescope has exported."
+        )
     strangers = []
     for row in rows[1:]:
-        if len(row) <= column or row[0].strip().startswith(
+        if len(row) <= max(places.values()) or row[0].strip().startswith(
             ("Points Possible", "Manual Posting", "Student, Test")
         ):
             continue
-        values = [row[header.index(name)].strip() for name in names if name in header]
+        values = [original(row[header.index(name)].strip()) for name in names if name in header]
         student = _who(table, lms, values)
         if student is None:
             strangers.append(values[-1] if values else row[0])
-        else:
-            row[column] = f"{table.score(student.id, assignment):g}"
+            continue
+        for name, place in places.items():
+            score = table.score(student.id, name)
+            row[place] = _EXCUSED.get(lms, "") if table.is_excused(student.id, name) else _written(score)
     out = io.StringIO(newline="")
     csv.writer(out, lineterminator="\n").writerows(rows)
     mark = "\ufeff" if data.startswith("\ufeff".encode()) else ""
     return f"{mark}{out.getvalue()}".encode(), strangers
 
 
-def _canvas_column(header: Sequence[str], assignment: str) -> int:
-    """Canvas writes an assignment's number behind its name: ``lab_1_2 (815)``."""
+_EXCUSED = {"canvas": "EX"}
+"""What an LMS reads as excused."""
+
+
+def _written(score: float | None) -> str:
+    return "" if score is None else f"{score:g}"
+
+
+def _column(header: Sequence[str], called: str) -> int:
+    """The place of a column; Canvas writes an assignment's number behind its name: ``lab_1_2 (815)``."""
     for place, name in enumerate(header):
-        if name == assignment or (name.startswith(f"{assignment} (") and name.endswith(")")):
+        if name == called or (name.startswith(f"{called} (") and name.endswith(")")):
             return place
     raise GradingError(
-        f"The list has no column for {assignment}. It has: {', '.join(header)}. Name the assignment in Canvas like the "
-        "one here, and export the gradebook again."
+        f"The list has no column for {called}. It has: {', '.join(header)}. Say which one it is, for example: "
+        f'--column "{called}={header[-1]}"'
     )
 
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import xlsxwriter
 
-from autograder.grading.reporting.report import COLUMNS, LATE, csv_cells
-from autograder.grading.reporting.spreadsheet import csv_text
+from autograder.grading.reporting.report import COLUMNS, LATE, csv_cells, total
+from autograder.grading.reporting.spreadsheet import blank, csv_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,7 +21,9 @@ Cells = list[str | float]
 def student_rows(table: ClassTable, assignments: Sequence[str]) -> list[Cells]:
     """The columns' names, then a line for each student."""
     who = ["student", "first_name", "last_name", "email"]
-    rows: list[Cells] = [[*who, *assignments, "total", "max", "late_penalty", "waits_for_a_person"]]
+    rows: list[Cells] = [
+        [*who, *assignments, "total", "max", "late_penalty", "waits_for_a_person", "excused"]
+    ]
     for student in map(table.roster.students.__getitem__, table.students):
         own = [row for row in table.of(student.id) if row.assignment in assignments]
         rows.append(
@@ -30,11 +32,12 @@ def student_rows(table: ClassTable, assignments: Sequence[str]) -> list[Cells]:
                 student.first_name,
                 student.last_name,
                 student.email,
-                *(table.score(student.id, name) for name in assignments),
-                round(sum(row.score for row in own), 4),
+                *(blank(table.score(student.id, name)) for name in assignments),
+                blank(table.absent if total(own) is None else total(own)),
                 sum(row.max_score for row in own),
                 -sum(row.score for row in own if row.exercise == LATE),
                 sum(row.waits for row in own),
+                " ".join(name for name in assignments if table.is_excused(student.id, name)),
             ]
         )
     return rows

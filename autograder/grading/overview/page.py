@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
+from autograder.cards.readable import printable
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.entering import attempts
 from autograder.grading.entering.journal import Journal, write_whole
 from autograder.grading.errors import GradingError, clear_disk_errors
 from autograder.grading.overview import statistics as figures
-from autograder.grading.reporting.report import NOT_SUBMITTED, columns
+from autograder.grading.reporting.report import EXCUSED, NOT_SUBMITTED, columns
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.table.class_table import ClassTable, by_exercise, read_table
 from autograder.page_templates import page_templates
@@ -69,6 +70,7 @@ def _page(directory: ClassDirectory, table: ClassTable, *, names: bool, folder: 
     people = _people(directory, table, names=names, folder=folder)
     there = figures.handed_in(table)
     totals = figures.totals(table)
+    environment.filters["printable"] = printable
     template = environment.get_template("overview.html.j2")
     return template.render(
         policy=POLICY,
@@ -110,8 +112,8 @@ def _people(directory: ClassDirectory, table: ClassTable, *, names: bool, folder
 
 
 def _cell(row: Row | None) -> str:
-    if row is None or row.state == NOT_SUBMITTED:
-        return "–"
+    if row is None or row.state in (NOT_SUBMITTED, EXCUSED):
+        return "excused" if row and row.state == EXCUSED else "–"
     mark = "?" if row.waits else "*" if row.by_hand is not None or row.extra else ""
     return f"{row.score:g}{mark}"
 
@@ -143,7 +145,7 @@ def _times(directory: ClassDirectory, table: ClassTable) -> list[dict[str, objec
                 "at": f"{entry.handed_in:%Y-%m-%d %H:%M}",
                 "before": before,
                 "attempts": 1 + len(history.before) if history else 1,
-                "score": table.score(student, assignment),
+                "score": table.score(student, assignment) or 0.0,
                 "max": table.max_score(assignment),
             }
         )

@@ -7,7 +7,7 @@ from collections import defaultdict
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from autograder.grading.reporting.report import LATE, NOT_SUBMITTED, columns
+from autograder.grading.reporting.report import EXCUSED, LATE, NOT_SUBMITTED, columns
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from autograder.grading.table.class_table import ClassTable
 
 BANDS = 10
+_ABSENT = (NOT_SUBMITTED, EXCUSED)
 _FEWEST = 3
 """The number of students from which on a correlation says something."""
 
@@ -150,7 +151,7 @@ def bands(table: ClassTable) -> list[Band]:
     most = table.max_score()
     found: dict[int, list[str]] = defaultdict(list)
     for student in handed_in(table):
-        share = table.score(student) / most if most else 0.0
+        share = (table.score(student) or 0.0) / most if most else 0.0
         found[max(0, min(BANDS - 1, int(share * BANDS + 1e-9)))].append(student)
     width = 100 // BANDS
     return [Band(place * width, (place + 1) * width, tuple(found[place])) for place in range(BANDS)]
@@ -161,13 +162,13 @@ def handed_in(table: ClassTable) -> list[str]:
     return [
         student
         for student in table.students
-        if any(row.state != NOT_SUBMITTED and row.exercise != LATE for row in table.of(student))
+        if any(row.state not in _ABSENT and row.exercise != LATE for row in table.of(student))
     ]
 
 
 def totals(table: ClassTable) -> list[float]:
     """The points of everybody who has handed in anything."""
-    return [table.score(student) for student in handed_in(table)]
+    return [table.score(student) or 0.0 for student in handed_in(table)]
 
 
 def items(table: ClassTable, journal: Journal) -> list[ItemFigures]:
@@ -180,7 +181,7 @@ def items(table: ClassTable, journal: Journal) -> list[ItemFigures]:
     criteria = _criteria(table, journal)
     found = []
     for key, name in columns(table.rows).items():
-        rows = [row for row in table.rows if _key(row) == key and row.state != NOT_SUBMITTED]
+        rows = [row for row in table.rows if _key(row) == key and row.state not in _ABSENT]
         if not rows:
             continue
         scores, most = [row.score for row in rows], rows[0].max_score

@@ -5,6 +5,7 @@ Reading a source means running nbgrader's steps on it, which takes a second for 
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -98,8 +99,10 @@ def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, 
                 raise ClassIncomplete(
                     f"The gradebook does not know {cell.notebook} as it is in "
                     f"{directory.path / 'source' / assignment}. Enter it: "
-                    f"cd {directory.path} && {course.root() / 'course'} nbgrader generate_assignment "
-                    f"{assignment} --force"
+                    f"cd {shlex.quote(str(directory.path))} && {shlex.quote(str(course.root() / 'course'))} nbgrader "
+                    f"generate_assignment {assignment} --force. Where nbgrader refuses that, because somebody has "
+                    f"points already: put the source back as it was, and say in {directory.path / 'class.toml'} what "
+                    "is left out or gets other points, which works at any time"
                 )
 
 

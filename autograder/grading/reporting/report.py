@@ -28,6 +28,8 @@ WAITS = "waits"
 """A cell that only a person gives points for, and nobody has yet."""
 BY_HAND = "by_hand"
 """The same, and somebody has."""
+EXCUSED = "excused"
+"""The student need not do the assignment, as students.csv says: it counts neither for nor against anybody."""
 LATE = "late"
 """Stands in place of the exercise in the row that has what being late costs."""
 COLUMNS = (
@@ -47,6 +49,15 @@ COLUMNS = (
 )
 
 
+_NOTHING_JUDGED = (NOT_SUBMITTED, NOT_GRADED, EXCUSED, State.NOT_CHECKED)
+
+
+def total(rows: Iterable[Row]) -> float | None:
+    """The points of several rows together; None where nobody has judged any of them."""
+    scores = [score for row in rows if (score := row.shown_score) is not None]
+    return round(sum(scores), 4) if scores else None
+
+
 @dataclass(frozen=True)
 class Row:
     """One student's result in one exercise.
@@ -57,8 +68,8 @@ class Row:
         exercise: The exercise's id; the name of a cell that a person gives points for; or ``late``.
         score: Points in the gradebook, those that a person gave included.
         max_score: Points that can be had.
-        state: ``passed``, ``failed``, ``not_checked``, ``not_graded``, ``not_submitted``, ``waits``, ``by_hand``
-            or ``late``.
+        state: ``passed``, ``failed``, ``not_checked``, ``not_graded``, ``not_submitted``, ``excused``, ``waits``,
+            ``by_hand`` or ``late``.
         diagnosis: The key of the mistake, empty for none.
         reason: Its text, empty for none.
         judged: The judge's points in the gradebook; None where it has none.
@@ -81,6 +92,16 @@ class Row:
     extra: float = 0.0
     waits: bool = False
     name: str = ""
+
+    @property
+    def is_blank(self) -> bool:
+        """Whether nobody has judged anything: such a row has no points, which is not zero points."""
+        return self.state in _NOTHING_JUDGED and self.by_hand is None and not self.extra
+
+    @property
+    def shown_score(self) -> float | None:
+        """The points; None where there are none to be had."""
+        return None if self.is_blank else self.score
 
 
 @dataclass(frozen=True)
@@ -190,7 +211,7 @@ def csv_cells(row: Row) -> tuple[str | float, ...]:
         row.student,
         row.assignment,
         row.exercise,
-        row.score,
+        "" if row.is_blank else row.score,
         row.max_score,
         row.state,
         row.diagnosis,

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from autograder.grading.reporting.report import LATE
+from autograder.grading.reporting.report import LATE, total
 from autograder.verdict import State
 
 if TYPE_CHECKING:
     from autograder.grading.reporting.report import GradeReport, Row
 
-FORM = 1
+FORM = 2
 """Goes up when a field is renamed or taken away."""
 
 
@@ -55,13 +55,13 @@ def _submissions(rows: tuple[Row, ...]) -> list[dict[str, Any]]:
                 "student": student,
                 "name": exercises[0].name,
                 "assignment": assignment,
-                "score": sum(row.score for row in exercises),
+                "score": total(exercises),
                 "max_score": sum(row.max_score for row in exercises),
                 "late_penalty": -sum(row.score for row in exercises if row.exercise == LATE),
                 "exercises": [
                     {
                         "exercise": row.exercise,
-                        "score": row.score,
+                        "score": row.shown_score,
                         "max_score": row.max_score,
                         "state": row.state,
                         "diagnosis": row.diagnosis,

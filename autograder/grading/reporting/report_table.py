@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from autograder.cards.readable import printable
-from autograder.grading.reporting.report import LATE, NOT_SUBMITTED, WAITS, columns
+from autograder.grading.reporting.report import EXCUSED, LATE, NOT_SUBMITTED, WAITS, columns, total
 from autograder.grading.task import UNREADABLE
 from autograder.verdict import State
 
@@ -146,8 +146,8 @@ class _Grid:
             if late:
                 cells.append(_taken_off(own))
             if is_last:
-                total, most = sum(row.score for row in own), sum(row.max_score for row in own)
-                cells.append(Text(f"{total:g}/{most:g}"))
+                points, most = total(own), sum(row.max_score for row in own)
+                cells.append(Text("–" if points is None else f"{points:g}/{most:g}"))
             name = f"{student}\n{own[0].name}" if own[0].name else student
             shown.add_row(Text("\n".join(map(printable, name.split("\n")))), *cells)
         return shown
@@ -180,8 +180,8 @@ def _unreadable(report: GradeReport) -> list[tuple[str, str]]:
 
 
 def _cell(row: Row | None, diagnoses: bool) -> Text:
-    if row is None or row.state == NOT_SUBMITTED:
-        return Text("–", style="dim")
+    if row is None or row.state in (NOT_SUBMITTED, EXCUSED):
+        return Text("–" if row is None or row.state == NOT_SUBMITTED else "excused", style="dim")
     text = Text(f"{row.score:g}/{row.max_score:g}{_mark(row)}", style=_STYLES.get(row.state, "yellow"))
     if row.diagnosis and diagnoses:
         text.append(f" {row.diagnosis}", style="default")

@@ -27,6 +27,11 @@ def csv_text(rows: Iterable[Iterable[str | float]]) -> str:
     return text.getvalue()
 
 
+def blank(score: float | None) -> float | str:
+    """Points as a cell: empty where there are none, which is not zero."""
+    return "" if score is None else score
+
+
 def csv_rows(text: str) -> list[list[str]]:
     """The rows of a CSV file, as it is said or with semicolons; what was defused is as it was before."""
     first = text.partition("\n")[0]

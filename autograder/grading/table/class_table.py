@@ -6,13 +6,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
+from autograder.grading.collecting.outcomes import Waiting, WaitingList
 from autograder.grading.entering.records import Records
 from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import read_released
-from autograder.grading.reporting.report import LATE, Row
+from autograder.grading.reporting.report import EXCUSED, LATE, NOT_SUBMITTED, Row, total
 from autograder.grading.table.entries import Entries, read_entries
 from autograder.grading.table.roster import Roster, Student, read_roster
 from autograder.grading.table.true_rows import true_rows
+from autograder.grading.table.what_counts import read_what_counts
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,12 +29,16 @@ class ClassTable:
         roster: Who is in the class.
         entries: What the gradebook has, by student and assignment.
         stale: Submissions that were handed in or changed after they were graded last, as student/assignment.
+        unplaced: Files that were collected and have no place.
+        absent: The points of who has handed in nothing: None, unless the instructor says that they are zero.
     """
 
     rows: tuple[Row, ...]
     roster: Roster
     entries: Entries
     stale: tuple[str, ...] = ()
+    unplaced: tuple[Waiting, ...] = ()
+    absent: float | None = None
 
     @property
     def students(self) -> list[str]:
@@ -52,14 +58,21 @@ class ClassTable:
             if row.student == student and (not assignment or row.assignment == assignment)
         ]
 
-    def score(self, student: str, assignment: str = "") -> float:
-        """A student's points as the gradebook has them, less what being late costs."""
-        return round(sum(row.score for row in self.of(student, assignment)), 4)
+    def score(self, student: str, assignment: str = "") -> float | None:
+        """A student's points as the gradebook has them, less what being late costs; None where there are none."""
+        rows = self.of(student, assignment)
+        is_absent = any(row.state == NOT_SUBMITTED for row in rows) and all(row.is_blank for row in rows)
+        return self.absent if is_absent else total(rows)
+
+    def is_excused(self, student: str, assignment: str) -> bool:
+        """Whether the student need not do the assignment."""
+        return any(row.state == EXCUSED for row in self.of(student, assignment))
 
     def max_score(self, assignment: str = "") -> float:
         """Points that can be had."""
-        student = next(iter(self.students), "")
-        return sum(row.max_score for row in self.of(student, assignment))
+        return max(
+            (sum(row.max_score for row in self.of(one, assignment)) for one in self.students), default=0.0
+        )
 
     @property
     def waiting(self) -> list[Row]:
@@ -87,9 +100,14 @@ def read_table(directory: ClassDirectory) -> ClassTable:
             stale.append("/".join(key))
     roster = read_roster(directory)
     names: Mapping[str, str] = {id_: student.name for id_, student in roster.students.items()}
-    rows = true_rows(names, read_released(directory, fingerprints).cells, judged, entries, found)
+    cells = read_released(directory, fingerprints).cells
+    what_counts = read_what_counts(directory, cells)
+    rows = true_rows(names, cells, judged, entries, found, excused=roster.excused, what_counts=what_counts)
+    unplaced = tuple(WaitingList(directory).read())
     others = [Student(row.student) for row in rows if row.student not in roster.students]
-    return ClassTable(tuple(rows), Roster([*roster.students.values(), *others]), entries, tuple(stale))
+    return ClassTable(
+        tuple(rows), Roster([*roster.students.values(), *others]), entries, tuple(stale), unplaced
+    )
 
 
 def by_exercise(rows: list[Row]) -> dict[tuple[str, str], Row]:

@@ -16,9 +16,38 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
 NAME = "students.csv"
-LMS = ("canvas", "moodle", "blackboard", "brightspace", "google", "github")
+LMS = ("canvas", "moodle", "blackboard", "brightspace", "google", "github", "gradescope")
 """Columns of the roster in which a student's id or user name in that system may stand."""
-_OWN = ("id", "first_name", "last_name", "email")
+_OWN = ("id", "first_name", "last_name", "email", "excused")
+
+
+_EXPORTED = (
+    # The columns by which a list of an LMS's is known, then in which of its columns each of ours may be.
+    (
+        ("student", "id", "section"),  # Canvas: Grades, Export
+        {"id": ("sis login id", "sis user id", "id"), "full_name": ("student",), "canvas": ("id",)},
+    ),
+    (
+        ("first name", "email address"),  # Moodle: Participants, Download
+        {
+            "id": ("id number", "username", "email address"),
+            "first_name": ("first name",),
+            "last_name": ("last name", "surname"),
+            "email": ("email address",),
+        },
+    ),
+    (
+        ("sid", "email"),  # Gradescope: Roster, Download
+        {
+            "id": ("sid", "email"),
+            "first_name": ("first name",),
+            "last_name": ("last name",),
+            "full_name": ("name", "full name"),
+            "email": ("email",),
+        },
+    ),
+)
+_NOBODY = ("points possible", "student, test")
 
 
 class RosterError(GradingError):
@@ -35,6 +64,7 @@ class Student:
         last_name: The same.
         email: The same.
         lms: Ids and user names in learning management systems, by the names of :data:`LMS`.
+        excused: Assignments that the student need not do.
     """
 
     id: str
@@ -42,6 +72,7 @@ class Student:
     last_name: str = ""
     email: str = ""
     lms: Mapping[str, str] = field(default_factory=dict)
+    excused: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -78,6 +109,11 @@ class Roster:
 
     def __init__(self, students: Iterable[Student]) -> None:
         self.students = {student.id: student for student in students}
+
+    @property
+    def excused(self) -> set[tuple[str, str]]:
+        """Who need not do which assignment."""
+        return {(one.id, assignment) for one in self.students.values() for assignment in one.excused}
 
     def find(self, identity: Identity) -> tuple[Student, ...]:
         """Who may be meant: one where that is certain, several where it is not.
@@ -148,15 +184,22 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
         raise RosterError(f"{path} cannot be read: {error}. Save it as CSV in UTF-8.") from error
     header, *rows = csv_rows(text) or [[]]
     columns = [name.strip().lower() for name in header]
-    if "id" not in columns:
+    lines = [
+        dict(itertools.zip_longest(columns, (cell.strip() for cell in row[: len(columns)]), fillvalue=""))
+        for row in rows
+    ]
+    form = next((form for has, form in _EXPORTED if set(has) <= set(columns)), None)
+    if form is not None:
+        lines = [_as_ours(line, form) for line in lines]
+    elif "id" not in columns:
         raise RosterError(
             f"{path} has no column named id. Its first line has to name its columns: id, and as far as you have "
-            f"them {', '.join((*_OWN[1:], *LMS))}."
+            f"them {', '.join((*_OWN[1:], *LMS))}. Canvas's gradebook, Moodle's participants and Gradescope's "
+            "roster can be used as they are."
         )
     found: dict[str, Student] = {}
-    for line, row in enumerate(rows, 2):
-        cells = itertools.zip_longest(columns, row[: len(columns)], fillvalue="")
-        values = {name: unicodedata.normalize("NFC", cell.strip()) for name, cell in cells}
+    for line, row in enumerate(lines, 2):
+        values = {name: unicodedata.normalize("NFC", cell) for name, cell in row.items()}
         if not any(values.values()):
             continue
         name = values["id"]
@@ -166,10 +209,24 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
         if reason:
             raise RosterError(f"{path}, line {line}: {reason}.")
         lms = {system: values[system] for system in LMS if values.get(system)}
-        found[name] = Student(
-            name, values.get("first_name", ""), values.get("last_name", ""), values.get("email", ""), lms
-        )
+        first, last, email = (values.get(column, "") for column in ("first_name", "last_name", "email"))
+        excused = values.get("excused", "").replace(",", " ").replace(";", " ").split()
+        found[name] = Student(name, first, last, email, lms, tuple(excused))
     return list(found.values())
+
+
+def _as_ours(line: Mapping[str, str], form: Mapping[str, tuple[str, ...]]) -> dict[str, str]:
+    """A line of an LMS's list with the columns of ours; empty for what is no person."""
+    values = {ours: next(filter(None, map(line.get, theirs)), "") or "" for ours, theirs in form.items()}
+    full = values.pop("full_name", "")
+    if full.lower().startswith(_NOBODY):
+        return {}
+    if full:
+        last, comma, first = full.partition(",")
+        first, last = (first, last) if comma else full.rpartition(" ")[::2]
+        values |= {"first_name": first.strip(), "last_name": last.strip()}
+    own = {name: line[name] for name in (*LMS, "excused") if line.get(name)}
+    return {**values, **own}
 
 
 def enter_roster(directory: ClassDirectory) -> None:

@@ -7,15 +7,17 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.reporting.report import (
     BY_HAND,
+    EXCUSED,
     LATE,
     NOT_GRADED,
     NOT_SUBMITTED,
     WAITS,
     Row,
 )
+from autograder.grading.table.what_counts import WhatCounts
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from autograder.grading.rebuilding.source_points import GradedCell
     from autograder.grading.table.entries import CellEntry, Entries, SubmissionEntry
@@ -30,6 +32,9 @@ def true_rows(
     judged: Judged,
     entries: Entries,
     handed_in: Iterable[tuple[str, str]],
+    *,
+    excused: Collection[tuple[str, str]] = (),
+    what_counts: WhatCounts = WhatCounts(),  # noqa: B008 (it is frozen)
 ) -> list[Row]:
     """The rows of a class, by student, in the order of the course.
 
@@ -41,22 +46,24 @@ def true_rows(
         judged: The judge's results.
         entries: What the gradebook has.
         handed_in: What lies in ``submitted``: students and assignments.
+        excused: Students and assignments that they need not do.
+        what_counts: What the instructor leaves out or gives another weight.
     """
     there = set(handed_in)
     known = sorted({student for student, _ in [*there, *entries]} | students.keys())
     assignments = [name for name in sorted(cells) if any(name == other for _, other in [*there, *entries])]
-    return [
-        row
-        for student in known
-        for assignment in assignments
-        for row in _rows_of(
-            Row(student, assignment, "", 0.0, 0.0, "", name=students.get(student, "")),
-            cells[assignment],
-            judged.get((student, assignment), ()),
-            entries.get((student, assignment)),
-            is_there=(student, assignment) in there,
-        )
-    ]
+    found = []
+    for student in known:
+        for assignment in assignments:
+            key, name = (student, assignment), students.get(student, "")
+            if key in excused:
+                own = [Row(*key, cell.exercise, 0.0, 0.0, EXCUSED, name=name) for cell in cells[assignment]]
+            else:
+                blank = Row(*key, "", 0.0, 0.0, "", name=name)
+                said, entry = judged.get(key, ()), entries.get(key)
+                own = _rows_of(blank, cells[assignment], said, entry, is_there=key in there)
+            found += what_counts.applied(own)
+    return found
 
 
 def _rows_of(

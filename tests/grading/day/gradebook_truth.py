@@ -51,6 +51,16 @@ class Truth:
         earned = sum(cell.score for key, cell in self.cells.items() if key[:2] == (student, assignment))
         return max(0.0, earned - self.late.get((student, assignment), 0.0))
 
+    def shown(self, student: str, assignment: str = "") -> float | None:
+        """The same as tables and exports have it: None of who has handed in nothing, which is not zero."""
+        names = [assignment] if assignment else list(self.most)
+        there = [name for name in names if any(key[:2] == (student, name) for key in self.cells)]
+        return sum(self.score(student, name) for name in there) if there else None
+
+    def shown_of(self, assignment: str) -> dict[str, float | None]:
+        """What tables and exports have of everybody."""
+        return {student: self.shown(student, assignment) for student in self.students}
+
     def total(self, student: str) -> float:
         """Points in all assignments."""
         return sum(self.score(student, assignment) for assignment in self.most)

@@ -19,7 +19,8 @@ from downloads import ROSTER, write_zip, zipped
 
 from autograder.cli import cli
 from autograder.grading.collecting import archives
-from autograder.grading.collecting.collect import CollectReport, collect
+from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.outcomes import CollectReport, State
 from autograder.grading.errors import GradingError
 from autograder.grading.table.roster import RosterError
 
@@ -45,11 +46,11 @@ def work(klass: TinyClass, talker: object = 10, listener: object = 10) -> str:
 
 
 def placed(report: CollectReport) -> dict[str, str]:
-    return {one.student: one.label.rpartition("/")[2] for one in report.placed}
+    return {one.student: one.label.rpartition("/")[2] for one in report.having(State.PLACED)}
 
 
 def why(report: CollectReport) -> str:
-    return "\n".join(f"{one.label}: {one.reason}" for one in report.not_placed)
+    return "\n".join(f"{one.label}: {one.reason}" for one in report.having(State.NOT_PLACED))
 
 
 def lies(klass: TinyClass, student: str) -> str:
@@ -84,7 +85,7 @@ def test_moodle_as_files_and_as_folders(klass: TinyClass, tmp_path: Path) -> Non
     assert (lies(klass, "ada"), lies(klass, "jose")) == (one, two)
     assert stamp(klass, "ada") == "2025-10-03 12:05:00.000000 UTC"
     assert stamp(klass, "jose") == "2025-10-03 12:06:00.000000 UTC"
-    assert report.left_out == 1
+    assert [one.student for one in report.having(State.BESIDE)] == ["", "ben"]
     assert report.missing == {"lab_1_2": ("eve", "zoe")}
 
 
@@ -108,8 +109,14 @@ def test_canvas_marks_what_is_late_and_numbers_what_was_handed_in_again(
     )
     assert not why(report)
     assert lies(klass, "ada") == two
-    assert [one.label for one in report.older] == ["submissions.zip/lovelaceada_101_9001_lab_1_2.ipynb"]
-    assert {one.student: one.late for one in report.placed} == {"ada": False, "eve": True, "zoe": False}
+    assert [one.label for one in report.having(State.EARLIER)] == [
+        "submissions.zip/lovelaceada_101_9001_lab_1_2.ipynb"
+    ]
+    assert {one.student: one.late for one in report.having(State.PLACED)} == {
+        "ada": False,
+        "eve": True,
+        "zoe": False,
+    }
     assert lies(klass, "zoe") == two, "told from its cells, and from the name where the number is not known"
 
 
@@ -213,7 +220,7 @@ def test_what_cannot_be_placed_is_listed_with_its_reason(klass: TinyClass, tmp_p
             )
         ],
     )
-    assert report.placed == ()
+    assert report.having(State.PLACED) == ()
     assert report.exit_code == 2
     lines = dict(line.partition(": ")[::2] for line in why(report).splitlines())
     assert "may be ada, ada2" in lines["m.zip/Ada Lovelace_1_assignsubmission_file_lab_1_2.ipynb"]
@@ -235,14 +242,14 @@ def test_the_newest_counts_also_later_and_nothing_is_lost(klass: TinyClass, tmp_
     one, two, three = work(klass, 1), work(klass, 2), work(klass, 3)
     second = blackboard("b.zip", 15, two)
     assert placed(collect(klass.path, [second])).keys() == {"ada"}
-    assert (collect(klass.path, [second]).unchanged, lies(klass, "ada")) == (1, two)
+    assert (len(collect(klass.path, [second]).having(State.UNCHANGED)), lies(klass, "ada")) == (1, two)
     first = collect(klass.path, [blackboard("a.zip", 14, one)])
-    assert (len(first.older), first.exit_code, lies(klass, "ada")) == (1, 0, two)
+    assert (len(first.having(State.EARLIER)), first.exit_code, lies(klass, "ada")) == (1, 0, two)
     last = collect(klass.path, [blackboard("c.zip", 16, three)])
-    assert (last.placed[0].replaced, lies(klass, "ada")) == (True, three)
+    assert (last.having(State.PLACED)[0].replaced, lies(klass, "ada")) == (True, three)
     kept = list((klass.path / ".autograder" / "collected" / "lab_1_2" / "ada").iterdir())
-    assert [path.read_text() for path in kept] == [two]
-    assert collect(klass.path, [second]).older
+    assert sorted(path.read_text() for path in kept) == sorted([one, two])
+    assert collect(klass.path, [second]).having(State.EARLIER)
     assert lies(klass, "ada") == three
 
 
@@ -261,7 +268,7 @@ def test_two_files_of_which_nothing_says_which_is_newer_are_both_listed(
             )
         ],
     )
-    assert (len(report.placed), len(report.not_placed)) == (0, 2)
+    assert (len(report.having(State.PLACED)), len(report.having(State.NOT_PLACED))) == (0, 2)
     assert "several different files" in why(report)
 
 
@@ -314,7 +321,9 @@ def test_names_that_lead_out_and_links_go_nowhere(klass: TinyClass, tmp_path: Pa
     (tmp_path / "in" / "m.zip").write_bytes(data.getvalue())
     before = outside(tmp_path)
     report = collect(klass.path, [tmp_path / "in" / "m.zip"])
-    assert [one.reason for one in report.not_placed].count("its name leads out of the archive") == 3
+    assert [one.reason for one in report.having(State.NOT_PLACED)].count(
+        "its name leads out of the archive"
+    ) == 3
     assert "it is a link" in why(report)
     assert outside(tmp_path) - before <= {"class/students.csv"}
     folder = tmp_path / "Ada Lovelace_1_assignsubmission_file"
@@ -335,13 +344,15 @@ def test_a_bomb_is_harmless(klass: TinyClass, tmp_path: Path) -> None:
     struct.pack_into("<I", data, place + 24, 10)
     bomb.write_bytes(data)
     report = collect(klass.path, [bomb])
-    assert report.placed == ()
-    assert report.not_placed
+    assert report.having(State.PLACED) == ()
+    assert report.having(State.NOT_PLACED)
     inner = zipped({"a/lab_1_2.ipynb": bomb.read_bytes(), "again.zip": bomb.read_bytes()})
     report = collect(
         klass.path, [write_zip(tmp_path / "n.zip", {"Ada Lovelace_1_assignsubmission_file_x.zip": inner})]
     )
-    assert {one.student for one in report.placed} <= {"ada"}, "what is no notebook is graded as such"
+    assert {one.student for one in report.having(State.PLACED)} <= {"ada"}, (
+        "what is no notebook is graded as such"
+    )
 
 
 @pytest.mark.parametrize(
@@ -368,7 +379,7 @@ def test_what_lies_in_a_students_own_zip_never_says_whose_it_is(
     report = collect(
         klass.path, [write_zip(tmp_path / "d.zip", {outer: inner, "zoe/lab_1_2.ipynb": work(klass)})]
     )
-    assert {one.student for one in report.placed} <= {"ben", "zoe"}
+    assert {one.student for one in report.having(State.PLACED)} <= {"ben", "zoe"}
     assert not (klass.path / "submitted" / "ada").exists()
 
 
@@ -379,7 +390,7 @@ def test_folders_with_students_ids_or_names_are_taken_and_deeper_ones_say_nothin
     names = ("ada/lab_1_2/lab_1_2.ipynb", "Ben Bär/lab_1_2.ipynb", "guest/zoe/lab_1_2.ipynb")
     report = collect(klass.path, [write_zip(tmp_path / "p.zip", dict.fromkeys(names, one))])
     assert placed(report).keys() == {"ada", "ben"}
-    assert [other.label for other in report.not_placed] == ["p.zip/guest/zoe/lab_1_2.ipynb"]
+    assert [other.label for other in report.having(State.NOT_PLACED)] == ["p.zip/guest/zoe/lab_1_2.ipynb"]
 
 
 @pytest.mark.parametrize(("method", "name"), [(zipfile.ZIP_BZIP2, "bzip2"), (zipfile.ZIP_LZMA, "LZMA")])
@@ -390,7 +401,7 @@ def test_what_would_unpack_to_a_gigabyte_in_one_step_is_not_unpacked(
     with zipfile.ZipFile(tmp_path / "m.zip", "w", method) as archive:
         archive.writestr(member, work(klass))
     report = collect(klass.path, [tmp_path / "m.zip"])
-    assert (report.placed, report.exit_code) == ((), 2)
+    assert (report.having(State.PLACED), report.exit_code) == ((), 2)
     assert f"{member}: it is packed with {name}" in why(report)
     inner = {"Ada Lovelace_1_assignsubmission_file_lab.zip": (tmp_path / "m.zip").read_bytes()}
     assert f"packed with {name}" in why(collect(klass.path, [write_zip(tmp_path / "n.zip", inner)]))
@@ -437,8 +448,8 @@ def test_a_damaged_archive_is_one_line(klass: TinyClass, tmp_path: Path, damage:
         data[place + 8] |= 1
     (tmp_path / "m.zip").write_bytes(data)
     report = collect(klass.path, [tmp_path / "m.zip"])
-    assert report.placed == ()
-    assert len(report.not_placed) == 1
+    assert report.having(State.PLACED) == ()
+    assert len(report.having(State.NOT_PLACED)) == 1
     if damage == "encrypted":
         assert "encrypted" in why(report)
 
@@ -531,5 +542,5 @@ def test_the_time_is_kept_in_utc(klass: TinyClass, tmp_path: Path) -> None:
         [write_zip(tmp_path / "b.zip", {"Lab_ada_attempt_2025-07-01-14-00-00_lab_1_2.ipynb": work(klass)})],
         zone=BERLIN,
     )
-    assert report.placed[0].when == datetime(2025, 7, 1, 12, tzinfo=UTC)
-    assert os.sep not in report.placed[0].student
+    assert report.having(State.PLACED)[0].when == datetime(2025, 7, 1, 12, tzinfo=UTC)
+    assert os.sep not in report.having(State.PLACED)[0].student

@@ -59,14 +59,19 @@ def rows(path: Path) -> list[list[str]]:
     return list(csv.reader(io.StringIO(path.read_text("utf-8-sig"))))
 
 
-def in_gradebook(klass: TinyClass) -> dict[str, float]:
+def number(cell: str) -> float | None:
+    """A cell; None where it is blank, which is not zero."""
+    return float(cell) if cell else None
+
+
+def in_gradebook(klass: TinyClass) -> dict[str, float | None]:
     with Gradebook(f"sqlite:///{klass.path / 'gradebook.db'}") as book:
         there = {submission.student.id for submission in book.assignment_submissions("lab_1_2")}
-    return {student: nbgraders_total(klass, student) if student in there else 0.0 for student in STUDENTS}
+    return {student: nbgraders_total(klass, student) if student in there else None for student in STUDENTS}
 
 
 def test_the_class_is_as_it_must_be(graded: TinyClass) -> None:
-    assert in_gradebook(graded) == {"ada": 18.5, "ben": 2, "eve": 0, "jose": 20, "zoe": 0}
+    assert in_gradebook(graded) == {"ada": 18.5, "ben": 2, "eve": 0, "jose": 20, "zoe": None}
 
 
 def test_canvas_takes_the_points(graded: TinyClass) -> None:
@@ -76,7 +81,7 @@ def test_canvas_takes_the_points(graded: TinyClass) -> None:
     assert header == ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "lab_1_2"]
     assert "Points Possible" in possible[0]
     assert possible[-1] == "20"
-    assert {row[3]: float(row[-1]) for row in students} == in_gradebook(graded)
+    assert {row[3]: number(row[-1]) for row in students} == in_gradebook(graded)
     assert [row[:2] for row in students[:2]] == [["Lovelace, Ada", "101"], ["Bär, Ben", "102"]]
     assert not (graded.path / "export" / "canvas.csv").read_bytes().startswith(b"\xef\xbb\xbf")
 
@@ -100,7 +105,7 @@ def test_moodle_takes_points_and_pages(graded: TinyClass) -> None:
     done = export(graded.path, "moodle")
     header, *students = rows(graded.path / "export" / "moodle.csv")
     assert header == ["First name", "Last name", "ID number", "Email address", "lab_1_2"]
-    assert {row[2]: float(row[-1]) for row in students} == in_gradebook(graded)
+    assert {row[2]: number(row[-1]) for row in students} == in_gradebook(graded)
     header, *students = rows(graded.path / "export" / "moodle-lab_1_2.csv")
     assert {"Identifier", "Grade", "Last modified (grade)"} <= set(header)
     assert [dict(zip(header, row, strict=True)) for row in students] == [
@@ -155,7 +160,7 @@ def test_a_spreadsheet_has_a_line_for_each_student(graded: TinyClass) -> None:
     export(graded.path, "csv")
     header, *students = rows(graded.path / "export" / "students.csv")
     named = [dict(zip(header, row, strict=True)) for row in students]
-    assert {row["student"]: float(row["total"]) for row in named} == in_gradebook(graded)
+    assert {row["student"]: number(row["total"]) for row in named} == in_gradebook(graded)
     assert {row["student"]: float(row["late_penalty"]) for row in named}["eve"] == 20
     assert [row["last_name"] for row in named] == ["Lovelace", "Bär", "O'Neill", "Núñez", "Zuse"]
 
@@ -201,3 +206,77 @@ def test_the_command_names_the_files(graded: TinyClass, tmp_path: Path) -> None:
 def test_an_empty_class_has_nothing_to_export(tiny: TinyClass) -> None:
     with pytest.raises(GradingError, match="Nothing was handed in"):
         export(tiny.path, "csv")
+
+
+@pytest.mark.parametrize("to", ["canvas", "moodle", "gradescope", "csv"])
+def test_absent_is_blank_unless_the_instructor_says_zero_and_excused_is_neither(
+    graded: TinyClass, to: str
+) -> None:
+    lines = ROSTER.replace("email,canvas", "email,excused,canvas").splitlines()
+    roster = [line.replace("@uni.example,", "@uni.example,,") for line in lines]
+    roster += ["kim,Kim,Ek,kim@uni.example,lab_1_2,106,", "eva,Eva,Ek,eva@uni.example,,107,"]
+    (graded.path / "students.csv").write_text("\n".join(roster) + "\n")
+    found = {}
+    for absent in ((), ("--absent", "zero")):
+        result = CliRunner().invoke(cli, ["export", str(graded.path), "--to", to, *absent])
+        assert result.exit_code == 0, result.output
+        name = {"csv": "students"}.get(to, to)
+        header, *lines = rows(graded.path / "export" / f"{name}.csv")
+        place = header.index("lab_1_2")
+        for row in lines:
+            for student in ("ada", "eva", "kim"):
+                if student in row:
+                    found[student, bool(absent)] = row[place]
+    excused = "EX" if to == "canvas" else ""
+    assert found == {
+        ("ada", False): "18.5",
+        ("ada", True): "18.5",
+        ("eva", False): "",
+        ("eva", True): "0",
+        ("kim", False): excused,
+        ("kim", True): excused,
+    }
+
+
+def test_what_counts_can_be_said_at_any_time_and_changed_again(graded: TinyClass) -> None:
+    said = graded.path / "class.toml"
+    in_gradebooks = in_gradebook(graded)
+    for text, ada, most in (
+        ('leave_out = ["lab_1_2.listener"]', "11.5", "10"),
+        ('[points]\n"lab_1_2.talker" = 20', "30", "30"),
+        ("[weights]\nlab_1_2 = 0.5", "9.25", "10"),
+        ("", "18.5", "20"),
+    ):
+        said.write_text(text)
+        export(graded.path, "canvas")
+        _, possible, *students = rows(graded.path / "export" / "canvas.csv")
+        assert (possible[-1], {row[3]: row[-1] for row in students}["ada"]) == (most, ada), text
+        graded.grade()
+        table = csv.DictReader(io.StringIO((graded.path / "grades.csv").read_text("utf-8-sig")))
+        of_ada = [row for row in table if row["student"] == "ada"]
+        assert sum(float(row["score"]) for row in of_ada) == float(ada)
+        assert sum(float(row["max"]) for row in of_ada) == float(most)
+    assert in_gradebook(graded) == in_gradebooks, "the gradebook keeps what was earned"
+    for text, words in (
+        ('leave_out = ["lab_9.x"]', "speaks of lab_9.x, which is not here"),
+        ("points = 3", "cannot be used"),
+        ("weigths = {}", "cannot be used"),
+        ('[points]\n"lab_1_2.talker" = -1', "no points can be that many"),
+    ):
+        said.write_text(text)
+        with pytest.raises(GradingError, match=words):
+            export(graded.path, "csv")
+
+
+def test_a_column_of_another_name_is_named(graded: TinyClass, tmp_path: Path) -> None:
+    gradebook = tmp_path / "canvas.csv"
+    gradebook.write_text(
+        'Student,ID,SIS User ID,SIS Login ID,Section,Lab 1.2 (5001)\n"    Points Possible",,,,,20\n'
+        '"Lovelace, Ada",101,,al,A,\n"Zuse, Zoë",105,,zz,A,\n'
+    )
+    command = ["export", str(graded.path), "--to", "canvas", "--into", str(gradebook)]
+    result = CliRunner().invoke(cli, command)
+    assert 'for example: --column "lab_1_2=Lab 1.2 (5001)"' in result.output
+    assert CliRunner().invoke(cli, [*command, "--column", "lab_1_2=Lab 1.2"]).exit_code == 0
+    lines = rows(graded.path / "export" / "canvas.csv")
+    assert [row[-1] for row in lines[2:]] == ["18.5", ""]

@@ -75,6 +75,7 @@ def test_every_command_of_the_guide_runs(
     (tmp_path / "Downloads" / "Grades-lab_1_2.csv").write_text(
         "Identifier,Full name,Email address,Grade\nParticipant 1,Ada Lovelace,ada@uni.example,\n"
     )
+    (tmp_path / "Downloads" / "times.csv").write_text("id,handed_in\nada,2026-01-31T12:00\n")
     (tiny.path / "students.csv").write_text(
         "id,first_name,last_name,email\nada,Ada,Lovelace,ada@uni.example\n"
     )

@@ -36,7 +36,7 @@ def rows(tiny: TinyClass) -> list[dict[str, str]]:
 
 
 def total(tiny: TinyClass, student: str) -> float:
-    return sum(float(row["score"]) for row in rows(tiny) if row["student"] == student)
+    return sum(float(row["score"] or 0) for row in rows(tiny) if row["student"] == student)
 
 
 def shown(report: GradeReport) -> str:
@@ -250,7 +250,7 @@ def test_a_folder_that_was_removed_keeps_its_points_in_the_table(
     assert report.exit_code == 0
 
 
-def test_who_is_in_the_gradebook_and_handed_in_nothing_has_zero_in_the_table(
+def test_who_is_in_the_gradebook_and_handed_in_nothing_is_blank_in_the_table(
     tiny: TinyClass, fake_engine: FakeEngine
 ) -> None:
     with book(tiny) as gradebook:
@@ -259,7 +259,7 @@ def test_who_is_in_the_gradebook_and_handed_in_nothing_has_zero_in_the_table(
     tiny.grade()
     of_zoe = [row for row in rows(tiny) if row["student"] == "zoe"]
     assert [(row["score"], row["max"], row["state"], row["name"]) for row in of_zoe] == [
-        ("0", "10", "not_submitted", "Zoë Zuse")
+        ("", "10", "not_submitted", "Zoë Zuse")
     ] * 2
 
 

@@ -1,0 +1,175 @@
+"""Where each file went that was collected: to its place, among earlier attempts, or nowhere, with the reason."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder.grading.classes.class_directory import SUFFIX
+from autograder.grading.collecting.records import FOLDER
+from autograder.grading.entering.journal import write_whole
+from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from pathlib import Path
+
+    from autograder.grading.classes.class_directory import ClassDirectory
+
+
+class State(StrEnum):
+    """What became of a file; each file has one of these."""
+
+    PLACED = "placed"
+    """It is in ``submitted``."""
+    UNCHANGED = "unchanged"
+    """The same is there already."""
+    EARLIER = "earlier"
+    """Another one counts; this one is kept."""
+    BESIDE = "beside"
+    """It is no notebook that was asked for, and its student has handed in one, or it is the LMS's own page."""
+    NOT_PLACED = "not placed"
+    """Somebody has to look: it may be somebody's work."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one file.
+
+    Attributes:
+        label: How messages call the file.
+        state: Where it went.
+        reason: Why it is not at its place, and what to type; empty where it is.
+        student: Whose it is; empty where nobody knows.
+        assignment: Which it is for; the same.
+        when: When it was handed in, in UTC; None where nothing says so.
+        late: Whether the LMS marks it as late.
+        replaced: Whether another one lay at its place, which is kept.
+    """
+
+    label: str
+    state: State
+    reason: str = ""
+    student: str = ""
+    assignment: str = ""
+    when: datetime | None = None
+    late: bool = False
+    replaced: bool = False
+
+
+@dataclass(frozen=True)
+class CollectReport:
+    """What came of collecting.
+
+    Attributes:
+        path: The class.
+        outcomes: What became of each file.
+        unread_times: Times in names and lists that nobody could read.
+        untimed: Whose work has no time, by assignment, of what was collected now.
+        missing: Students of whom nothing is there, by assignment.
+        by_their_names: Whether there is no list of students, so that folders have the LMS's names.
+    """
+
+    path: Path
+    outcomes: tuple[Outcome, ...] = ()
+    unread_times: tuple[str, ...] = ()
+    untimed: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    missing: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    by_their_names: bool = False
+
+    def having(self, state: State) -> tuple[Outcome, ...]:
+        """The files that went there."""
+        return tuple(one for one in self.outcomes if one.state == state)
+
+    @property
+    def exit_code(self) -> int:
+        """0 when everything has its place; 2 when somebody has to look."""
+        return 2 if self.having(State.NOT_PLACED) else 0
+
+
+@dataclass(frozen=True)
+class Waiting:
+    """A file without a place, written down until its student's work is at its place.
+
+    Attributes:
+        label: How messages call the file.
+        reason: Why it has no place, and what to type.
+        student: Whose it is; empty where nobody knows.
+        assignment: Which it is for; the same.
+        there: A digest of what lay at its place then: when something else does, it is settled.
+        since: When it was collected, in UTC.
+    """
+
+    label: str
+    reason: str
+    student: str
+    assignment: str
+    there: str
+    since: datetime
+
+
+class WaitingList:
+    """The files that have no place, for whoever grades, reports and exports after collecting.
+
+    Args:
+        directory: The class.
+    """
+
+    def __init__(self, directory: ClassDirectory) -> None:
+        self._directory = directory
+        self._path = directory.state / FOLDER / "not_placed.json"
+
+    def read(self) -> list[Waiting]:
+        """Those of which nothing has come to its place since."""
+        try:
+            known = msgspec.json.decode(self._path.read_bytes(), type=list[Waiting])
+        except (OSError, msgspec.MsgspecError):
+            return []
+        return [one for one in known if not one.assignment or one.there == self._there(one)]
+
+    def note(self, outcomes: Sequence[Outcome]) -> None:
+        """Write down what has no place now, in place of what was written of the same files before.
+
+        Raises:
+            OSError: It could not be written.
+        """
+        again = {one.label for one in outcomes}
+        kept = [one for one in self.read() if one.label not in again]
+        new = [one for one in outcomes if one.state == State.NOT_PLACED]
+        self._write([*kept, *map(self._waiting, new)])
+
+    def settle(self, labels: Iterable[str]) -> list[str]:
+        """Forget files that need no place; those of the names that nobody waits for.
+
+        Raises:
+            OSError: It could not be written.
+        """
+        labels, known = set(labels), self.read()
+        self._write([one for one in known if one.label not in labels])
+        return sorted(labels - {one.label for one in known})
+
+    def _waiting(self, outcome: Outcome) -> Waiting:
+        there, now = self._there(outcome), datetime.now(tz=UTC)
+        return Waiting(outcome.label, outcome.reason, outcome.student, outcome.assignment, there, now)
+
+    def _there(self, one: Outcome | Waiting) -> str:
+        """A digest of what lies at the place of a file of which it is known."""
+        if not one.student or not one.assignment:
+            return ""
+        folder = self._directory.path / "submitted" / one.student / one.assignment
+        digest = hashlib.sha256()
+        for path in sorted(folder.glob(f"*{SUFFIX}")):
+            try:
+                digest.update(path.name.encode() + b"\0" + hashlib.sha256(read_bytes(path)).digest())
+            except UnreadableSubmission as error:
+                digest.update(str(error).encode())
+        return digest.hexdigest()
+
+    def _write(self, waiting: list[Waiting]) -> None:
+        if waiting or self._path.exists():
+            write_whole(self._path, msgspec.json.encode(waiting))

@@ -1,0 +1,105 @@
+"""What an instructor leaves out of the points of a class, and what counts more or less: ``class.toml``."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder.grading.errors import GradingError
+from autograder.grading.reporting.report import LATE, Row
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.rebuilding.source_points import GradedCell
+
+NAME = "class.toml"
+
+
+class _File(msgspec.Struct, forbid_unknown_fields=True):
+    leave_out: list[str] = []
+    points: dict[str, float] = {}
+    weights: dict[str, float] = {}
+
+
+@dataclass(frozen=True)
+class WhatCounts:
+    """What counts in the table of a class; the gradebook keeps what was earned, so that it can be changed at any time.
+
+    Attributes:
+        factors: What points are multiplied by, by assignment and exercise; 0 leaves an exercise out.
+    """
+
+    factors: Mapping[tuple[str, str], float] = field(default_factory=dict)
+
+    def applied(self, rows: Sequence[Row]) -> list[Row]:
+        """The rows of one submission as they count.
+
+        What being late costs stays the same share of what was earned.
+        """
+        plain = [row for row in rows if row.exercise != LATE]
+        factors = [self.factors.get((row.assignment, row.exercise), 1.0) for row in plain]
+        earned = sum(row.score for row in plain)
+        counted = sum(row.score * factor for row, factor in zip(plain, factors, strict=True))
+        late = counted / earned if earned else 0.0
+        found = [_scaled(row, factor) for row, factor in zip(plain, factors, strict=True) if factor]
+        return found + [_scaled(row, late) for row in rows if row.exercise == LATE and found]
+
+
+def _scaled(row: Row, factor: float) -> Row:
+    def times(points: float | None) -> float | None:
+        return None if points is None else round(points * factor, 4)
+
+    return replace(
+        row,
+        score=round(row.score * factor, 4),
+        max_score=round(row.max_score * factor, 4),
+        judged=times(row.judged),
+        by_hand=times(row.by_hand),
+        extra=round(row.extra * factor, 4),
+    )
+
+
+def read_what_counts(directory: ClassDirectory, cells: Mapping[str, Sequence[GradedCell]]) -> WhatCounts:
+    """What ``class.toml`` says; everything counts as it is where there is no such file.
+
+    Args:
+        directory: The class.
+        cells: Its cells with points, by assignment.
+
+    Raises:
+        GradingError: It cannot be used; the message says what to write.
+    """
+    path = directory.path / NAME
+    if not path.exists():
+        return WhatCounts()
+    try:
+        said = msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8-sig")), type=_File)
+    except (OSError, ValueError) as error:
+        raise GradingError(
+            f'{path} cannot be used: {error}. It may hold leave_out = ["EXERCISE"], and tables named points and '
+            "weights."
+        ) from error
+    exercises = {cell.exercise for of_assignment in cells.values() for cell in of_assignment}
+    for name, known in (
+        *((name, exercises) for name in (*said.leave_out, *said.points)),
+        *((name, cells.keys()) for name in said.weights),
+    ):
+        if name not in known:
+            raise GradingError(
+                f"{path} speaks of {name}, which is not here. There is: {', '.join(sorted(known))}."
+            )
+    for name, points in (*said.points.items(), *said.weights.items()):
+        if not 0 <= points < 1e6:
+            raise GradingError(f"{path} gives {name} {points:g}, and no points can be that many.")
+    factors: dict[tuple[str, str], float] = {}
+    for assignment, of_assignment in cells.items():
+        weight = said.weights.get(assignment, 1.0)
+        for cell in of_assignment:
+            points = 0.0 if cell.exercise in said.leave_out else said.points.get(cell.exercise, cell.worth)
+            factors[assignment, cell.exercise] = weight * points / cell.worth if cell.worth else weight
+    return WhatCounts(factors)

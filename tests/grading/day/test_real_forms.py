@@ -1,0 +1,207 @@
+"""The forms of names and lists as public repositories show them; each is made anew here, none is copied.
+
+Names of files
+    Canvas: github.com/mikewesthad/canvas-unzipper and github.com/TimHanneman/Canvas_submission_sort (README.md):
+    name, number, number of the file, the student's own name; LATE behind the name; -1 where it came again.
+    Gradescope: github.com/djhuffman/gradescope_renaming_files (gradescope_rename_files.py) and
+    github.com/ucbds-infra/otter-grader (otter/grade/metadata.py): a file or folder for each submission, and
+    submission_metadata.yml, in which each has its submitters with name, sid and email.
+    Blackboard: github.com/vangef/BBGradebookOrganiser (README.md); times as in names of files that public programs
+    read (two excerpts of an index that names no repository).
+    Brightspace: github.com/OfficeCoffee/GradingFileProject (ToDo.md).
+    Moodle: github.com/johnhw/moodle_nbgrader (README.md) says how they are downloaded; the names of folders are those
+    that public submissions have as their packages (excerpts of an index that names no repository).
+
+Columns of lists
+    Canvas's gradebook, Moodle's grading worksheet with day and month in two orders, Gradescope's roster and scores:
+    each in several excerpts of that index.
+    From memory: Moodle's participants, and Canvas's submissions as a list (user_id and submitted_at are the names that
+    its interface for programs has).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+from zoneinfo import ZoneInfo
+
+import pytest
+from downloads import ROSTER, write_zip
+from test_collect import lies, stamp, why, work
+
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.forms import read_path
+from autograder.grading.collecting.lists import read_list
+from autograder.grading.collecting.outcomes import State
+from autograder.grading.table.roster import read_students_csv
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import TinyClass
+
+UTC = ZoneInfo("UTC")
+METADATA = """\
+submission_409194023:
+  :submitters:
+  - :name: Ada Lovelace
+    :sid: '4711'
+    :email: ada.love@uni.example
+  :created_at: 2026-04-26 17:34:00.861687000 Z
+  :score: 2.0
+  :results:
+    output: |-
+      submission_500000001:
+        :submitters:
+submission_500000001:
+  :submitters:
+  - :name: Ben Baer
+    :email: ben@uni.example
+  - :name: José Núñez
+    :email: jose@uni.example
+  :created_at: 2026-04-27 08:00:00.000000000 Z
+submission_600000002:
+  :submitters:
+  - :sid: 333
+submission_700000003:
+  :submitters: []
+"""
+
+
+@pytest.mark.parametrize(
+    ("form", "name", "who", "file"),
+    [
+        ("canvas", "doejane_340934_208490284_MyWork.ipynb", "doejane", "MyWork.ipynb"),
+        ("canvas", "doejane_LATE_340934_208490284_MyWork-1.ipynb", "doejane", "MyWork-1.ipynb"),
+        ("canvas", "doejane_late_12345_67890_assignment1.ipynb", "doejane", "assignment1.ipynb"),
+        ("blackboard", "Homework 1_jd5072_attempt_2019-01-31-02-51-33_hw.ipynb", "jd5072", "hw.ipynb"),
+        ("blackboard", "MB submission_jdoe_attempt_2019-08-27-10-52-33_M_D.ipynb", "jdoe", "M_D.ipynb"),
+        (
+            "brightspace",
+            "271836-442356 - Jane Doe - Dec 5, 2024 1149 AM - Crawler.ipynb",
+            "Jane Doe",
+            "Crawler.ipynb",
+        ),
+        ("moodle", "Jane Doe_657737_assignsubmission_file_/lab.ipynb", "Jane Doe", "lab.ipynb"),
+        ("moodle", "Jane Doe_657737_assignsubmission_file_lab.ipynb", "Jane Doe", "lab.ipynb"),
+        ("gradescope", "assignment_8046601_export/submission_409194023/lab.ipynb", "409194023", "lab.ipynb"),
+    ],
+)
+def test_a_name_says_whose_it_is(form: str, name: str, who: str, file: str) -> None:
+    found = read_path(name.split("/"), form, lambda _: False)
+    assert found is not None
+    assert (str(found.identity), found.file) == (who, file)
+    assert found.late == ("late" in name.lower())
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "number", "time"),
+    [
+        (
+            "Grades-ROS.csv",
+            "Identifier,Full name,Email address,Status,Grade,Maximum Grade,Grade can be changed,"
+            "Last modified (submission),Last modified (grade),Feedback comments\n"
+            'Participant 12,Jane Doe,j@d.example,Submitted for grading,,20,Yes,"{}",-,\n',
+            "12",
+            "Wednesday, September 23, 2020, 9:00 PM",
+        ),
+        (
+            "Grades-ROS.csv",
+            'Identifier,Full name,Grade,Last modified (submission)\nParticipant 12,Jane Doe,,"{}"\n',
+            "12",
+            "Wednesday, 23 September 2020, 9:00 PM",
+        ),
+        (
+            "submissions.csv",
+            "id,user_id,login_id,submitted_at,late,attempt\n77,12,jdoe,{},true,2\n",
+            "12",
+            "2020-09-23T21:00:00Z",
+        ),
+        (
+            "scores.csv",
+            "First Name,Last Name,SID,Email,Sections,Total Score,Max Points,Status,Submission ID,Submission Time,"
+            "Lateness (H:M:S)\nJane,Doe,999,j@d.example,s,8,10,Graded,12,{},49:00:00\n",
+            "12",
+            "2020-09-23 21:00:00 +0000",
+        ),
+        (
+            "grades.csv",
+            "github_username,roster_identifier,submission_timestamp\njdoe,Jane Doe,{}\n",
+            "jdoe",
+            "2020-09-23 21:00:00 UTC",
+        ),
+    ],
+)
+def test_a_list_says_who_a_number_is_and_when(name: str, text: str, number: str, time: str) -> None:
+    entries = read_list(name, text.format(time).encode())
+    assert entries is not None
+    (entry,) = entries
+    assert entry.number == number
+    assert entry.members[0]
+    assert entry.when is not None
+    assert f"{entry.when:%Y-%m-%d %H:%M}" == "2020-09-23 21:00"
+
+
+def test_gradescopes_export_is_collected_with_its_times_and_groups(tiny: TinyClass, tmp_path: Path) -> None:
+    (tiny.path / "students.csv").write_text(ROSTER)
+    root = "assignment_8046601_export"
+    one, two = work(tiny, 1), work(tiny, 2)
+    files = {
+        f"{root}/submission_metadata.yml": METADATA,
+        f"{root}/submission_409194023/lab_1_2.ipynb": one,
+        f"{root}/submission_500000001/lab_1_2.ipynb": two,
+        f"{root}/submission_600000002/lab_1_2.ipynb": two,
+        f"{root}/submission_409194023/submission_metadata.yml": "the student's own",
+    }
+    report = collect(tiny.path, [write_zip(tmp_path / "export.zip", files)], zone=UTC)
+    assert [lies(tiny, student) for student in ("ada", "ben", "jose")] == [one, two, two]
+    assert stamp(tiny, "ada") == "2026-04-26 17:34:00.861687 UTC"
+    assert stamp(tiny, "jose") == "2026-04-27 08:00:00.000000 UTC"
+    assert why(report).startswith(
+        f"export.zip/{root}/submission_600000002/lab_1_2.ipynb: nobody in the class is called 333"
+    )
+    assert len(report.having(State.NOT_PLACED)) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (
+            "Student,ID,SIS User ID,SIS Login ID,Section,Quiz 1 (23)\n    Points Possible,,,,,10.00\n"
+            '"Lovelace, Ada",101,,ada,XC 101,8.00\n"Student, Test",9,,x,XC 101,\n',
+            ("ada", "Ada", "Lovelace", "", {"canvas": "101"}),
+        ),
+        (
+            "\ufeffFirst name,Last name,ID number,Email address,Groups\nAda,Lovelace,ada,ada@uni.example,A\n",
+            ("ada", "Ada", "Lovelace", "ada@uni.example", {}),
+        ),
+        (
+            "First name,Surname,Email address\nAda,Lovelace,ada@uni.example\n",
+            ("ada@uni.example", "Ada", "Lovelace", "ada@uni.example", {}),
+        ),
+        (
+            "First Name,Last Name,SID,Email,Role,Section\nAda,Lovelace,ada,ada@uni.example,Student,1\n",
+            ("ada", "Ada", "Lovelace", "ada@uni.example", {}),
+        ),
+    ],
+)
+def test_a_list_of_the_lms_is_a_list_of_students(
+    tiny: TinyClass, text: str, expected: tuple[object, ...]
+) -> None:
+    (tiny.path / "students.csv").write_text(text, encoding="utf-8")
+    (student,) = read_students_csv(ClassDirectory(tiny.path))
+    assert (student.id, student.first_name, student.last_name, student.email, student.lms) == expected
+
+
+def test_two_of_one_name_in_moodle_are_told_apart_by_the_worksheet(tiny: TinyClass, tmp_path: Path) -> None:
+    (tiny.path / "students.csv").write_text(
+        "id,first_name,last_name,email\nada,Ada,Lovelace,a@u.example\nada2,Ada,Lovelace,b@u.example\n"
+    )
+    archive = write_zip(
+        tmp_path / "m.zip", {"Ada Lovelace_7_assignsubmission_file_lab_1_2.ipynb": work(tiny)}
+    )
+    assert "together with the grading worksheet" in why(collect(tiny.path, [archive]))
+    sheet = tmp_path / "Grades.csv"
+    sheet.write_text("Identifier,Full name,Email address,Grade\nParticipant 7,Ada Lovelace,b@u.example,\n")
+    report = collect(tiny.path, [archive, sheet])
+    assert [one.student for one in report.having(State.PLACED)] == ["ada2"]

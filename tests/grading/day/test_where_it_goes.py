@@ -1,0 +1,361 @@
+"""Nothing that is handed in is lost: each file is at its place, kept as an earlier attempt, or named with a reason."""
+
+from __future__ import annotations
+
+import io
+import random
+import zipfile
+from datetime import datetime
+from typing import TYPE_CHECKING, Any
+from zoneinfo import ZoneInfo
+
+import pytest
+from click.testing import CliRunner
+from downloads import ROSTER, write_zip, zipped
+from test_collect import lies, stamp, why, work
+from test_forms import add_assignment
+
+from autograder.cli import cli
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.collecting import outcomes, placing, records
+from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.outcomes import CollectReport, State, WaitingList
+from autograder.grading.collecting.records import CollectedRecords
+from autograder.grading.errors import GradingError
+from autograder.grading.exporting.export import export
+from autograder.grading.overview.page import write_report
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from conftest import FakeEngine, TinyClass
+
+UTC = ZoneInfo("UTC")
+MOODLE = "{}_1_assignsubmission_file_{}"
+
+
+@pytest.fixture
+def klass(tiny: TinyClass) -> TinyClass:
+    """A tiny class with a roster."""
+    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
+    return tiny
+
+
+def gathered(
+    klass: TinyClass, folder: Path, files: Mapping[str, bytes | str], **options: Any
+) -> CollectReport:
+    """Collect a zip of these files."""
+    return collect(klass.path, [write_zip(folder / "c.zip", files)], zone=UTC, **options)
+
+
+def named(report: CollectReport, state: State) -> list[tuple[str, str]]:
+    return [(one.label.removeprefix("c.zip/"), one.student) for one in report.having(state)]
+
+
+# -- what is not taken has a name
+# -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "name", ["lab_1_2.ipynb.txt", "lab_1_2.txt", "lab_1_2", "lab_1_2.json", "LAB_1_2.IPYNB"]
+)
+def test_a_notebook_counts_by_what_it_holds_whatever_its_name_is(
+    klass: TinyClass, tmp_path: Path, name: str
+) -> None:
+    report = gathered(klass, tmp_path, {f"lovelaceada_101_9001_{name}": work(klass, 3)})
+    assert not why(report)
+    assert lies(klass, "ada") == work(klass, 3)
+
+
+def test_a_zip_in_a_zip_is_opened_up_to_a_depth(klass: TinyClass, tmp_path: Path) -> None:
+    inner = zipped({"my/lab_1_2.ipynb": work(klass, 3)})
+    report = gathered(klass, tmp_path, {"lovelaceada_101_9001_x.zip": zipped({"deep/lab.zip": inner})})
+    assert (why(report), lies(klass, "ada")) == ("", work(klass, 3))
+    for _ in range(4):
+        inner = zipped({"more.zip": inner})
+    report = gathered(klass, tmp_path, {"bärben_102_9001_x.zip": inner})
+    assert named(report, State.NOT_PLACED) == [("bärben_102_9001_x.zip/more.zip/more.zip/more.zip", "ben")]
+
+
+def test_who_fills_an_archive_harms_nobody_else(klass: TinyClass, tmp_path: Path) -> None:
+    full = zipped({f"{place}.txt": "" for place in range(2_001)})
+    files = {
+        "lovelaceada_101_9001_x.zip": zipped({"a.zip": full, "b.zip": full}),
+        "bärben_102_9001_x.zip": zipped({"lab_1_2.ipynb": work(klass, 3)}),
+    }
+    report = gathered(klass, tmp_path, files)
+    assert lies(klass, "ben") == work(klass, 3)
+    assert {student for _, student in named(report, State.NOT_PLACED)} == {"ada"}
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("lab_1_2.rar", "unpack it into a folder named ada"),
+        ("lab_1_2.tar.gz", "unpack it into a folder named ada"),
+        ("lab_1_2.7z", "unpack it into a folder named ada"),
+        ("lab_1_2.py", "submitted/ada/lab_1_2"),
+        ("answer.docx", "it is no notebook: ask for the notebook"),
+    ],
+)
+def test_what_is_not_taken_is_named_with_its_student_the_reason_and_what_to_type(
+    klass: TinyClass, tmp_path: Path, name: str, words: str
+) -> None:
+    files = {
+        f"lovelaceada_101_9001_{name}": b"PK\3\4 or anything",
+        "bärben_102_9002_lab_1_2.ipynb": work(klass),
+    }
+    report = gathered(klass, tmp_path, files)
+    assert report.exit_code == 2
+    assert named(report, State.NOT_PLACED) == [(f"lovelaceada_101_9001_{name}", "ada")]
+    assert words in why(report)
+
+
+def test_beside_a_notebook_pictures_need_no_place_and_archives_do(klass: TinyClass, tmp_path: Path) -> None:
+    ours = {"lovelaceada_101_9001_lab_1_2.ipynb": work(klass), "lovelaceada_101_9002_me.png": b"\x89PNG"}
+    report = gathered(klass, tmp_path, ours)
+    assert (report.exit_code, named(report, State.BESIDE)) == (0, [("lovelaceada_101_9002_me.png", "ada")])
+    assert gathered(klass, tmp_path, ours | {"lovelaceada_101_9003_new.rar": b"Rar!"}).exit_code == 2
+
+
+def test_what_has_no_place_is_repeated_until_it_has_one(
+    klass: TinyClass, fake_engine: FakeEngine, tmp_path: Path
+) -> None:
+    gathered(
+        klass,
+        tmp_path,
+        {"lovelaceada_101_9001_lab_1_2.rar": b"Rar!", "bärben_102_9002_lab_1_2.ipynb": work(klass)},
+    )
+    label = "c.zip/lovelaceada_101_9001_lab_1_2.rar"
+    graded = klass.grade()
+    assert graded.exit_code == 2
+    assert any(str(one.path) == label and "ada: it is an archive" in one.reason for one in graded.refused)
+    assert label in write_report(klass.path).read_text()
+    assert label not in write_report(klass.path, names=False, to=tmp_path / "r.html").read_text()
+    assert any(label in notice for notice in export(klass.path, "csv").notices)
+    klass.submit("ada", 1, 1)
+    assert klass.grade().exit_code == 0
+    assert not any(label in notice for notice in export(klass.path, "csv").notices)
+
+
+def test_what_needs_no_place_is_settled_by_hand(
+    klass: TinyClass, fake_engine: FakeEngine, tmp_path: Path
+) -> None:
+    gathered(
+        klass,
+        tmp_path,
+        {"guest_999_9001_lab_1_2.ipynb": work(klass), "bärben_102_9002_lab_1_2.ipynb": work(klass)},
+    )
+    assert klass.grade().exit_code == 2
+    assert klass.grade(students=["ben"]).exit_code == 2, "nobody knows whose it is: it may be hers"
+    command = ["collect", str(klass.path), "--settled"]
+    assert CliRunner().invoke(cli, [*command, "other.ipynb"]).exit_code == 2
+    assert CliRunner().invoke(cli, [*command, "c.zip/guest_999_9001_lab_1_2.ipynb"]).exit_code == 0
+    assert klass.grade().exit_code == 0
+
+
+# -- which counts
+# ------------------------------------------------------------------------------------------------
+
+
+def test_of_two_notebooks_the_one_with_the_exact_name_counts(klass: TinyClass, tmp_path: Path) -> None:
+    for name in ("lab_1_2_old.ipynb", "a_lab_1_2.ipynb", "zz.ipynb"):
+        files = {
+            MOODLE.format("Ada Lovelace", "lab_1_2.ipynb"): work(klass, 3),
+            MOODLE.format("Ada Lovelace", name): work(klass, 4),
+        }
+        report = gathered(klass, tmp_path, files)
+        assert (why(report), lies(klass, "ada")) == ("", work(klass, 3))
+        assert named(report, State.EARLIER) == [(MOODLE.format("Ada Lovelace", name), "ada")]
+    kept = klass.path / ".autograder" / "collected" / "lab_1_2" / "ada"
+    assert [path.read_text() for path in kept.iterdir()] == [work(klass, 4)]
+
+
+def test_who_hands_in_the_first_work_again_has_it_counted_again(klass: TinyClass, tmp_path: Path) -> None:
+    for day, points in ((3, 1), (4, 2), (5, 1)):
+        name = f"Lab_ada_attempt_2025-10-0{day}-14-00-00_lab_1_2.ipynb"
+        gathered(klass, tmp_path, {name: work(klass, points)})
+        assert lies(klass, "ada") == work(klass, points)
+    assert stamp(klass, "ada").startswith("2025-10-05")
+    gathered(klass, tmp_path, {"Lab_ada_attempt_2025-10-03-14-00-00_lab_1_2.ipynb": work(klass, 1)})
+    assert stamp(klass, "ada").startswith("2025-10-05"), "nothing is overwritten by something older"
+
+
+def other_lab(klass: TinyClass) -> str:
+    """The notebook of a second assignment, with cells of its own."""
+    add_assignment(klass, "lab_1_3")
+    source = klass.path / "source" / "lab_1_3" / "lab_1_3.ipynb"
+    source.write_text(source.read_text().replace("Talker", "Server").replace("Listener", "Client"))
+    return work(klass).replace("Talker", "Server").replace("Listener", "Client")
+
+
+def test_the_cells_say_which_assignment_it_is(klass: TinyClass, tmp_path: Path) -> None:
+    other = other_lab(klass)
+    ada = MOODLE.format("Ada Lovelace", "lab_1_2.ipynb")
+    gathered(klass, tmp_path, {ada: work(klass, 3)}, assignment="lab_1_2")
+    for name in ("lab_1_3.ipynb", "lab_1_2.ipynb", "homework.ipynb"):
+        report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", name): other}, assignment="lab_1_2")
+        assert report.exit_code == 2
+        assert "it is not for lab_1_2: it is the notebook of lab_1_3" in why(report)
+        assert lies(klass, "ada") == work(klass, 3)
+    report = gathered(klass, tmp_path, {ada: other})
+    assert "its name says lab_1_2 and its cells are those of lab_1_3" in why(report)
+    report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "homework.ipynb"): other})
+    assert [one.assignment for one in report.having(State.PLACED)] == ["lab_1_3"]
+
+
+# -- when
+# ------------------------------------------------------------------------------------------------------
+
+
+def test_times_come_from_a_list_of_ones_own_also_later(klass: TinyClass, tmp_path: Path) -> None:
+    late = {
+        "lovelaceada_LATE_101_9001_lab_1_2.ipynb": work(klass),
+        "bärben_102_9002_lab_1_2.ipynb": work(klass),
+    }
+    report = gathered(klass, tmp_path, late)
+    assert report.untimed == {"lab_1_2": ("ada", "ben")}
+    klass.submit("zoe")
+    times = tmp_path / "times.csv"
+    times.write_text("id,handed_in\nada,2025-10-03T14:05\nzoe@uni.example,2025-10-04 10:00:00 +0200\n")
+    collect(klass.path, [], times=[times], zone=UTC)
+    assert stamp(klass, "ada") == "2025-10-03 14:05:00.000000 UTC"
+    assert stamp(klass, "zoe") == "2025-10-04 08:00:00.000000 UTC"
+    assert not (klass.path / "submitted" / "ben" / "lab_1_2" / "timestamp.txt").exists()
+    mine = lies(klass, "zoe")
+    gathered(klass, tmp_path, {"zusezoe_105_9002_lab_1_2.ipynb": work(klass, 2)})
+    assert lies(klass, "zoe") == mine, "what the instructor has put there is not overwritten for it"
+    times.write_text("who,when\nada,today\n")
+    with pytest.raises(GradingError, match="columns id and handed_in"):
+        collect(klass.path, [], times=[times])
+
+
+def test_handed_in_says_it_of_what_nothing_else_does(klass: TinyClass, tmp_path: Path) -> None:
+    gathered(
+        klass,
+        tmp_path,
+        {"lovelaceada_LATE_101_9001_lab_1_2.ipynb": work(klass)},
+        handed_in=datetime(2025, 10, 3, 14, 5),
+    )
+    assert stamp(klass, "ada") == "2025-10-03 14:05:00.000000 UTC"
+    archive = str(tmp_path / "c.zip")
+    said = CliRunner().invoke(cli, ["collect", str(klass.path), archive, "--handed-in", "noon"])
+    assert (said.exit_code, "--handed-in noon is no time" in said.output) == (2, True)
+
+
+def test_what_came_without_a_time_does_not_replace_what_has_one(klass: TinyClass, tmp_path: Path) -> None:
+    gathered(klass, tmp_path, {"Lab_ada_attempt_2025-10-03-14-00-00_lab_1_2.ipynb": work(klass, 1)})
+    report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "lab_1_2.ipynb"): work(klass, 2)})
+    assert "say when, with --handed-in TIME or --times FILE" in why(report)
+    assert lies(klass, "ada") == work(klass, 1)
+
+
+# -- whatever is collected, in any order and again
+# --------------------------------------------------------------------
+
+
+def a_download(klass: TinyClass, chance: random.Random) -> dict[str, bytes | str]:
+    """What students may hand in: notebooks of several names, archives in archives, pictures, rubbish."""
+    files: dict[str, bytes | str] = {}
+    for _ in range(chance.randint(1, 7)):
+        student = chance.choice(["ada", "ben", "jose", "guest"])
+        when = f"2025-10-0{chance.randint(1, 5)}-14-00-00"
+        name = chance.choice(
+            ["lab_1_2.ipynb", "lab_1_2 (1).ipynb", "old.ipynb", "lab_1_2.ipynb.txt", "a.png", "a.rar"]
+        )
+        held: bytes | str = work(klass, chance.randint(0, 4)) if "ipynb" in name else f"{chance.random()}"
+        for depth in range(chance.choice([0, 0, 1, 2])):
+            held, name = zipped({f"in/{name}": held}), f"pack{depth}.zip"
+        style = chance.choice(["blackboard", "folder"])
+        at = f"Lab_{student}_attempt_{when}_{name}" if style == "blackboard" else f"{student}/{when}/{name}"
+        files[at] = held
+    return files
+
+
+def count(files: Mapping[str, bytes | str]) -> int:
+    """How many files there are, those in archives included."""
+    total = 0
+    for name, held in files.items():
+        if name.endswith(".zip") and isinstance(held, bytes):
+            with zipfile.ZipFile(io.BytesIO(held)) as archive:
+                total += count({one: archive.read(one) for one in archive.namelist()})
+        else:
+            total += 1
+    return total
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_whatever_is_collected_each_file_has_one_outcome_and_nothing_older_replaces_anything(
+    klass: TinyClass, tmp_path: Path, seed: int
+) -> None:
+    chance = random.Random(seed)
+    downloads = [a_download(klass, chance) for _ in range(4)]
+    newest: dict[str, str] = {}
+    seen: set[str] = set()
+    for turn, place in enumerate([*range(4), *chance.sample(range(4), 4)]):
+        files = downloads[place]
+        report = collect(klass.path, [write_zip(tmp_path / f"{place}.zip", files)], zone=UTC)
+        assert len(report.outcomes) == count(files), (turn, report.outcomes)
+        for one in report.outcomes:
+            assert one.student or one.state == State.NOT_PLACED, one
+            assert one.reason or one.state in (State.PLACED, State.UNCHANGED), one
+            if one.state in (State.PLACED, State.UNCHANGED):
+                at = stamp(klass, one.student) if one.when else newest.get(one.student, "")
+                assert at >= newest.get(one.student, ""), (turn, one)
+                newest[one.student] = at
+            if one.state in (State.PLACED, State.UNCHANGED, State.EARLIER):
+                seen.add(one.student)
+    held = CollectedRecords(ClassDirectory(klass.path).state)
+    bytes_there = {path.read_text() for path in (klass.path / "submitted").rglob("*.ipynb")}
+    bytes_there |= {path.read_text() for path in (klass.path / ".autograder" / "collected").rglob("*.ipynb")}
+    for student in seen:
+        history = held.get("lab_1_2", student)
+        assert history is not None
+        assert lies(klass, student) in bytes_there
+    for one in WaitingList(ClassDirectory(klass.path)).read():
+        assert one.reason
+
+
+class Killed(BaseException):
+    """The process ends here."""
+
+
+@pytest.mark.parametrize("at", range(1, 14))
+def test_killed_at_any_write_nothing_is_lost_and_nothing_is_there_twice(
+    klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, at: int
+) -> None:
+    first = {
+        "Lab_ada_attempt_2025-10-03-14-00-00_lab_1_2.ipynb": work(klass, 1),
+        "Lab_ben_attempt_2025-10-03-14-00-00_lab_1_2.ipynb": work(klass, 1),
+    }
+    second = {
+        "Lab_ada_attempt_2025-10-04-14-00-00_lab_1_2.ipynb": work(klass, 2),
+        "Lab_ben_attempt_2025-10-02-14-00-00_lab_1_2.ipynb": work(klass, 3),
+        "Lab_eve_attempt_2025-10-02-14-00-00_lab_1_2.rar": "Rar!",
+    }
+    written = placing.write_whole
+    left = at
+
+    def write(path: Path, data: bytes) -> None:
+        nonlocal left
+        left -= 1
+        if left == 0:
+            raise Killed
+        written(path, data)
+
+    with monkeypatch.context() as patch:
+        for module in (placing, records, outcomes):
+            patch.setattr(module, "write_whole", write)
+        try:
+            gathered(klass, tmp_path, first)
+            gathered(klass, tmp_path, second)
+        except Killed:
+            pass
+    gathered(klass, tmp_path, first)
+    report = gathered(klass, tmp_path, second)
+    assert (lies(klass, "ada"), lies(klass, "ben")) == (work(klass, 2), work(klass, 1))
+    assert (stamp(klass, "ada")[:10], stamp(klass, "ben")[:10]) == ("2025-10-04", "2025-10-03")
+    assert {student for _, student in named(report, State.NOT_PLACED)} == {"eve"}
+    kept = (klass.path / ".autograder" / "collected").rglob("*.ipynb")
+    assert {work(klass, 1), work(klass, 3)} <= {path.read_text() for path in kept}
