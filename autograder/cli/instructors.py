@@ -221,7 +221,7 @@ def grade(
     "--column",
     "columns",
     multiple=True,
-    metavar='"lab_1_2=Lab 1.2 (5001)"',
+    metavar="ASSIGNMENT=COLUMN",
     help="What an assignment's column is called in --into; may be given several times.",
 )
 @click.option(
@@ -248,7 +248,7 @@ def export(
     pairs = (one.partition("=") for one in columns)
     named = {name.strip(): called.strip() for name, _, called in pairs}
     if not all(named.values()):
-        fail('--column is an assignment and its column: --column "lab_1_2=Lab 1.2 (5001)"')
+        fail('--column is an assignment and what its column is called: --column "ASSIGNMENT=COLUMN"')
     with grading_errors():
         done = write_files(
             folder,

@@ -125,7 +125,7 @@ def test_only_the_named_students_and_assignments(tiny: TinyClass, fake_engine: F
     report = tiny.grade(students=["ben"], assignments=["lab_1_2"])
     assert fake_engine.ran == ["ben"]
     assert {row.student for row in report.rows} == {"ben"}
-    assert "ada,lab_1_2,lab_1_2.talker,0,10,not_graded" in (tiny.path / "grades.csv").read_text()
+    assert "ada,lab_1_2,lab_1_2.talker,,10,not_graded" in (tiny.path / "grades.csv").read_text()
     tiny.grade()
     tiny.submit("ben", 2)
     tiny.grade(students=["ben"])

@@ -21,6 +21,7 @@ from autograder.grading.collecting import outcomes, placing, records
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.outcomes import CollectReport, State, WaitingList
 from autograder.grading.collecting.records import CollectedRecords
+from autograder.grading.entering.journal import write_whole
 from autograder.grading.errors import GradingError
 from autograder.grading.exporting.export import export
 from autograder.grading.overview.page import write_report
@@ -313,8 +314,7 @@ def test_whatever_is_collected_each_file_has_one_outcome_and_nothing_older_repla
         history = held.get("lab_1_2", student)
         assert history is not None
         assert lies(klass, student) in bytes_there
-    for one in WaitingList(ClassDirectory(klass.path)).read():
-        assert one.reason
+    assert all(waiting.reason for waiting in WaitingList(ClassDirectory(klass.path)).read())
 
 
 class Killed(BaseException):
@@ -334,7 +334,7 @@ def test_killed_at_any_write_nothing_is_lost_and_nothing_is_there_twice(
         "Lab_ben_attempt_2025-10-02-14-00-00_lab_1_2.ipynb": work(klass, 3),
         "Lab_eve_attempt_2025-10-02-14-00-00_lab_1_2.rar": "Rar!",
     }
-    written = placing.write_whole
+    written = write_whole
     left = at
 
     def write(path: Path, data: bytes) -> None:
