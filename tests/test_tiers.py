@@ -1,0 +1,52 @@
+"""What the short tier leaves out, and that each name in its lists is a test's."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests import tiers
+
+BANK = "tests/judge/test_bank.py::test_answer_is_judged_right["
+IDS = [f"{BANK}lab.{exercise}/right/{number}.py]" for exercise in "ab" for number in range(9)]
+
+
+def test_as_many_of_each_group_are_drawn_and_other_ones_each_day(monkeypatch: pytest.MonkeyPatch) -> None:
+    chosen = []
+    for day in ("2026-01-01", "2026-01-01", "2026-01-02"):
+        monkeypatch.setenv(tiers.DAY, day)
+        chosen.append(set(IDS) - tiers.left_to_all(IDS, []))
+    assert chosen[0] == chosen[1] != chosen[2]
+    assert [sum(f"lab.{exercise}/" in one for one in chosen[0]) for exercise in "ab"] == [4, 4]
+
+
+def test_what_is_due_runs_whatever_is_drawn() -> None:
+    assert not tiers.left_to_all(IDS, IDS)
+    assert len(tiers.left_to_all(IDS, IDS[:9])) == 5
+
+
+def test_every_name_in_the_lists_is_a_tests(request: pytest.FixtureRequest) -> None:
+    names = [*tiers.NIGHTLY, *(draw.tests for draw in tiers.DRAWS)]
+    root = Path(__file__).parents[1]
+    missing = [name for name in names if not (root / name.partition("::")[0]).exists()]
+    functions = [name.partition("::") for name in names if "::" in name]
+    missing += [
+        f"{file}::{test}"
+        for file, _, test in functions
+        if f"def {test.partition('[')[0]}" not in (root / file).read_text(encoding="utf-8")
+    ]
+    assert missing == []
+
+
+@pytest.mark.parametrize(
+    ("words", "tier"), [((), "short"), (("--all",), "all"), (("tests/test_tiers.py",), "all")]
+)
+def test_whoever_names_tests_gets_all_of_them(words: tuple[str, ...], tier: str, tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "pytest", "--collect-only", "-p", "no:cacheprovider", *words]
+    if not words or words[0].startswith("-"):
+        command += ["-o", "testpaths=tests/test_tiers.py"]
+    done = subprocess.run(command, cwd=Path(__file__).parents[1], capture_output=True, text=True, check=False)
+    assert f"tier: {tier}" in done.stdout
