@@ -18,7 +18,7 @@ from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.collecting.which import NoTarget, Which, is_notebook, stem_of
 from autograder.grading.collecting.whose import Whose
 from autograder.grading.errors import GradingError, clear_disk_errors
-from autograder.grading.rebuilding.submission import read_bytes
+from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.grading.table.roster import Roster, Student, enter_roster, read_roster
 
 if TYPE_CHECKING:
@@ -154,7 +154,10 @@ class _Collecting:
                 if self._is_list(source, file):
                     entries += self._entries(file)
         for path in times:
-            found = read_list(path.name, read_bytes(path))
+            try:
+                found = read_list(path.name, read_bytes(path))
+            except UnreadableSubmission as error:
+                raise GradingError(f"{path} cannot be read: {error}") from error
             if found is None or not any(one.when for one in found):
                 raise GradingError(
                     f"{path} says of nobody when work was handed in. Its first line has to name the columns id and "

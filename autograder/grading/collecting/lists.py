@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
@@ -127,7 +128,10 @@ def read_list(name: str, data: bytes) -> list[Entry] | None:
         return None
     if name == GRADESCOPE:
         return _of_gradescope(text)
-    header, *rows = csv_rows(text) or [[]]
+    try:
+        header, *rows = csv_rows(text) or [[]]
+    except csv.Error:
+        return None
     columns = [column.strip().lower() for column in header]
     records = [dict(zip(columns, (cell.strip() for cell in row), strict=False)) for row in rows]
     form = next((form for form in _FORMS if set(form.has) <= set(columns)), None)

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
     from autograder.grading.collecting.forms import Found
 
+    _Others = list[tuple["Candidate", Outcome]]
+    """The files that do not count, and what became of them."""
+
 
 @dataclass(frozen=True)
 class Candidate:
@@ -86,10 +89,10 @@ class Placing:
             groups[candidate.assignment, candidate.student, candidate.notebook].append(candidate)
         for key in sorted(groups):
             newest, others = _newest(groups[key])
-            for other in others:
-                if other.state == State.EARLIER:
-                    self._keep(next(one for one in groups[key] if one.label == other.label))
-            yield from others
+            for other, outcome in others:
+                if outcome.state == State.EARLIER:
+                    self._keep(other)
+                yield outcome
             if newest is not None:
                 yield self._put(newest)
 
@@ -174,7 +177,7 @@ class Placing:
         self._records.keep(one.assignment, one.student, one.content, one.data)
 
 
-def _newest(group: list[Candidate]) -> tuple[Candidate | None, list[Outcome]]:
+def _newest(group: list[Candidate]) -> tuple[Candidate | None, _Others]:
     """Which of a student's files counts, and what becomes of the others. None where nothing says which.
 
     Of files that were handed in together the one counts that is called as the notebook is.
@@ -182,7 +185,8 @@ def _newest(group: list[Candidate]) -> tuple[Candidate | None, list[Outcome]]:
     together: dict[tuple[Path, datetime | None], list[Candidate]] = defaultdict(list)
     for one in group:
         together[one.download, one.when].append(one)
-    firsts, outcomes = [], []
+    firsts: list[Candidate] = []
+    outcomes: _Others = []
     for files in together.values():
         first, others = _best(files, lambda one: (one.is_named, one.found.order, one.number))
         outcomes += others
@@ -196,7 +200,7 @@ def _newest(group: list[Candidate]) -> tuple[Candidate | None, list[Outcome]]:
 
 def _best(
     files: list[Candidate], rank: Callable[[Candidate], tuple[float, ...]]
-) -> tuple[Candidate | None, list[Outcome]]:
+) -> tuple[Candidate | None, _Others]:
     """The file of the highest rank, and what becomes of the others; None where several different ones have it."""
     best = max(files, key=rank, default=None)
     if best is None:
@@ -206,14 +210,14 @@ def _best(
             f"{best.student} has several different files for {best.assignment}, and nothing says which is the newest: "
             "collect the one that counts"
         )
-        return None, [one.outcome(State.NOT_PLACED, reason) for one in files]
-    others = []
+        return None, [(one, one.outcome(State.NOT_PLACED, reason)) for one in files]
+    others: _Others = []
     for one in files:
         if one is not best:
             same = one.content == best.content
             counts = "is newer" if best.is_named <= one.is_named else "has the notebook's own name"
             reason = "" if same else f"{best.label} {counts} and counts; this one is kept"
-            others.append(one.outcome(State.UNCHANGED if same else State.EARLIER, reason))
+            others.append((one, one.outcome(State.UNCHANGED if same else State.EARLIER, reason)))
     return best, others
 
 

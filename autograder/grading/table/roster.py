@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import itertools
 import unicodedata
 from dataclasses import dataclass, field, replace
@@ -182,7 +183,10 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
         return []
     except (OSError, UnicodeDecodeError) as error:
         raise RosterError(f"{path} cannot be read: {error}. Save it as CSV in UTF-8.") from error
-    header, *rows = csv_rows(text) or [[]]
+    try:
+        header, *rows = csv_rows(text) or [[]]
+    except csv.Error as error:
+        raise RosterError(f"{path} cannot be read: {error}. Save it as CSV in UTF-8.") from error
     columns = [name.strip().lower() for name in header]
     lines = [
         dict(itertools.zip_longest(columns, (cell.strip() for cell in row[: len(columns)]), fillvalue=""))

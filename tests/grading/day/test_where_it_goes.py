@@ -173,6 +173,19 @@ def test_of_two_notebooks_the_one_with_the_exact_name_counts(klass: TinyClass, t
     assert [path.read_text() for path in kept.iterdir()] == [work(klass, 4)]
 
 
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+def test_two_files_of_one_name_in_an_archive_are_told_apart(klass: TinyClass, tmp_path: Path) -> None:
+    names = ("lab_1_2.ipynb", "my.ipynb", "my.ipynb")
+    with zipfile.ZipFile(tmp_path / "c.zip", "w") as archive:
+        for points, name in enumerate(names):
+            archive.writestr(MOODLE.format("Ada Lovelace", name), work(klass, points))
+    report = collect(klass.path, [tmp_path / "c.zip"])
+    assert lies(klass, "ada") == work(klass, 0)
+    assert len(report.having(State.EARLIER)) == 2
+    kept = klass.path / ".autograder" / "collected" / "lab_1_2" / "ada"
+    assert {path.read_text() for path in kept.iterdir()} == {work(klass, 1), work(klass, 2)}
+
+
 def test_who_hands_in_the_first_work_again_has_it_counted_again(klass: TinyClass, tmp_path: Path) -> None:
     for day, points in ((3, 1), (4, 2), (5, 1)):
         name = f"Lab_ada_attempt_2025-10-0{day}-14-00-00_lab_1_2.ipynb"
@@ -227,6 +240,8 @@ def test_times_come_from_a_list_of_ones_own_also_later(klass: TinyClass, tmp_pat
     mine = lies(klass, "zoe")
     gathered(klass, tmp_path, {"zusezoe_105_9002_lab_1_2.ipynb": work(klass, 2)})
     assert lies(klass, "zoe") == mine, "what the instructor has put there is not overwritten for it"
+    with pytest.raises(GradingError, match="cannot be read"):
+        collect(klass.path, [], times=[tmp_path])
     times.write_text("who,when\nada,today\n")
     with pytest.raises(GradingError, match="columns id and handed_in"):
         collect(klass.path, [], times=[times])
