@@ -65,6 +65,7 @@ class BoxGuard:
         self._first = 0
         self._next_look = 0.0
         self._seen: Ended | None = None
+        self._seen_cpu = 0.0
 
     @property
     def cgroups(self) -> list[str]:
@@ -120,6 +121,12 @@ class BoxGuard:
             return Ended.TOO_MANY_PROCESSES
         return self._seen
 
+    @property
+    def cpu_seconds(self) -> float:
+        """Processor time used until now; without a cgroup, until the last look."""
+        counted = self._group.cpu_seconds
+        return self._seen_cpu if counted is None else counted
+
     def close(self) -> None:
         """Take the cgroups away; may be called twice."""
         self._first = 0
@@ -130,8 +137,8 @@ class BoxGuard:
         if self._group.ran_out_of_memory:
             return Ended.OUT_OF_MEMORY
         use = use_of(self._first, None if self._memory else _memory_of)
-        counted = self._group.cpu_seconds
-        if (use.cpu_seconds if counted is None else counted) > self._limits.cpu_seconds:
+        self._seen_cpu = max(self._seen_cpu, use.cpu_seconds)
+        if self.cpu_seconds > self._limits.cpu_seconds:
             return Ended.OUT_OF_CPU
         if use.files > self._limits.all_open_files:
             return Ended.TOO_MANY_FILES
@@ -246,6 +253,8 @@ def _sizes_in(file: Path) -> Counter[str]:
 
 class NoGuard:
     """The guard without a box: it counts nothing, and only the limits of time hold."""
+
+    cpu_seconds = 0.0
 
     def exceeded(self, *, at_once: bool = False) -> Ended | None:  # noqa: ARG002  (the protocol's signature)
         """Nothing is counted."""

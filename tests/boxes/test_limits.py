@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import psutil
@@ -51,7 +52,7 @@ def run(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses) -> Ite
                 scratch_folder(tmp_path) as folder,
                 BoxedPlace(boxed, folder, {}, {}, "JUDGE", JudgeSetting(), limits) as place,
             ):
-                return run_notebook(
+                execution = run_notebook(
                     [Cell(source), CHECK],
                     judge=contextlib.nullcontext(SilentJudge()),
                     start=place.start_kernel,
@@ -59,6 +60,7 @@ def run(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses) -> Ite
                     limits=limits,
                     guard=place.guard,
                 )
+                return replace(execution, cpu_seconds=place.guard.cpu_seconds)
 
         yield go
 
@@ -136,6 +138,7 @@ def test_processor_time(run: Run) -> None:
     execution = run("while True:\n    pass", cpu_seconds=1.0)
     assert execution.cells[0].ended is Ended.OUT_OF_CPU
     assert key(execution) == "out_of_cpu"
+    assert execution.cpu_seconds > 1.0
 
 
 def test_disk(run: Run) -> None:

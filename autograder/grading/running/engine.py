@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import bisect
 import contextlib
+import operator
 import os
 import queue
 import threading
@@ -31,6 +33,8 @@ BOX_BYTES = Limits().beside_bytes + 150_000_000
 _RESERVE_BYTES = 1_000_000_000
 _BUILD_BYTES = 500_000_000
 """Memory that a build takes; enough is kept for one build on each processor."""
+_LEFT_AT_LEAST = 0.1
+"""Part of the budget of processor time that a second execution always has: 20 s, where Lab 1.2 takes 2 s."""
 
 
 def cores() -> int:
@@ -90,25 +94,29 @@ class _Feed:
     """Tasks, for many threads.
 
     What could not be checked, or needs more memory than its share, comes once more when everything else is done, one at
-    a time: whatever the machine was short of was perhaps used up by another submission.
+    a time: whatever the machine was short of was perhaps used up by another submission. Who has used the most processor
+    time comes last.
     """
 
     def __init__(self, tasks: Iterable[Task]) -> None:
         self._tasks: Iterator[Task] = iter(tasks)
         self._changed = threading.Condition()
-        self._again: list[Task] = []
+        self._again: list[tuple[float, Task]] = []
         self._running = 0
         self.taken = 0
         self.exhausted = False
 
-    def next(self) -> tuple[Task, bool] | None:
-        """The next task and whether it may come again, or None where there is none. To be followed by :meth:`done`."""
+    def next(self) -> tuple[Task, float | None] | None:
+        """The next task, or None where there is none. To be followed by :meth:`done`.
+
+        With it, if it comes again, the seconds of processor time that it has used before; else None.
+        """
         with self._changed:
             task = None if self.exhausted else next(self._tasks, None)
             if task is not None:
                 self.taken += 1
                 self._running += 1
-                return task, True
+                return task, None
             self.exhausted = True
             if not self._again:
                 return None
@@ -116,14 +124,15 @@ class _Feed:
             if not self._again:
                 return None
             self._running += 1
-            return self._again.pop(), False
+            used, task = self._again.pop(0)
+            return task, used
 
-    def done(self, again: Task | None = None) -> None:
-        """A task is done, or is to come again."""
+    def done(self, again: tuple[float, Task] | None = None) -> None:
+        """A task is done, or is to come again: the processor time that it has used, and the task."""
         with self._changed:
             self._running -= 1
             if again is not None:
-                self._again.append(again)
+                bisect.insort(self._again, again, key=operator.itemgetter(0))
             self._changed.notify_all()
 
 
@@ -202,16 +211,19 @@ class _WorkerThread(threading.Thread):
             self._done.put(None)
             self.worker.end()
 
-    def _execute(self, task: Task, may_come_again: bool) -> None:
+    def _execute(self, task: Task, used: float | None) -> None:
         again = None
         try:
-            if may_come_again:
+            first = used is None
+            if first:
                 self._on_start(task)
-            limits = replace(task.limits, beside=self._beside and may_come_again)
+            budget = task.limits.cpu_seconds
+            left = max(budget - (used or 0.0), budget * _LEFT_AT_LEAST)
+            limits = replace(task.limits, beside=self._beside and first, cpu_seconds=left)
             execution = self.worker.execute(replace(task, limits=limits))
             says_nothing = bool(execution.trouble) or execution.needs_room
-            if says_nothing and may_come_again and not self.worker.stopping:
-                again = task
+            if says_nothing and first and not self.worker.stopping:
+                again = (execution.cpu_seconds, task)
             else:
                 self._done.put(Done(task, execution))
         finally:

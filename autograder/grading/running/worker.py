@@ -138,7 +138,9 @@ def _execute(
         patient=patiently,
     )
     needs_room = task.limits.beside and place.guard.reason() is Ended.OUT_OF_MEMORY
-    return replace(execution, needs_room=needs_room, evidence=judges.evidence)
+    return replace(
+        execution, needs_room=needs_room, cpu_seconds=place.guard.cpu_seconds, evidence=judges.evidence
+    )
 
 
 def patiently(seconds: float) -> Left:

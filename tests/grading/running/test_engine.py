@@ -87,6 +87,31 @@ def test_who_needs_room_gets_all_of_it_alone(run: Any) -> None:
     assert not any(d.task.limits.beside for d in done), "the task is the one that was given"
 
 
+def test_both_executions_have_one_budget_of_processor_time(run: Any) -> None:
+    given: dict[str, list[float]] = {"a": [], "b": []}
+    used = {"a": 150.0, "b": 199.0}
+
+    def busy(task: Task, times: int) -> Execution:
+        given[task.student].append(task.limits.cpu_seconds)
+        return Execution((), needs_room=task.limits.beside, cpu_seconds=used[task.student])
+
+    _, _, done = run(busy, "ab")
+    assert given["a"] == [200.0, 50.0]
+    assert given["b"] == [200.0, 20.0], "enough that the kernel starts and the limit is met in a cell"
+    assert {d.task.limits.cpu_seconds for d in done} == {200.0}, "which is what the feedback names"
+
+
+def test_of_those_that_come_again_who_was_busiest_comes_last(run: Any) -> None:
+    used = {"a": 90.0, "b": 2.0, "c": 30.0, "d": 60.0}
+
+    def busy(task: Task, times: int) -> Execution:
+        trouble = "no box" if task.student == "b" and not times else ""
+        return Execution((), trouble=trouble, needs_room=task.limits.beside, cpu_seconds=used[task.student])
+
+    _, seen, _ = run(busy, "abcd")
+    assert [student for student, _, _ in seen[4:]] == ["b", "c", "d", "a"]
+
+
 def test_with_one_worker_everybody_has_all_the_memory_at_once(run: Any) -> None:
     _, seen, _ = run(lambda task, times: Execution(()), "ab", 1)
     assert seen == [("a", False, 1), ("b", False, 1)]
