@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from autograder.cards import bundle
 from autograder.messages import checks as messages
+from autograder.notebook.cells.failed_cells import raise_if_stale
 from autograder.notebook.checking.captured_output import CapturedOutput
-from autograder.notebook.checking.card_display import CardDisplay, is_validating
+from autograder.notebook.checking.card_display import CardDisplay, is_live, is_validating
 from autograder.notebook.checking.check_context import CheckContext
 from autograder.notebook.checking.graph_questions import GraphQuestions
 from autograder.notebook.checking.judge_link import JudgeLink, JudgeUnreachable
@@ -51,9 +52,12 @@ def check(exercise: str, subject: Any) -> float:
 
     Raises:
         TypeError: The subject is neither a class nor a function nor a path; the message says what to write instead.
+        StaleCodeError: The cell that defines the subject anew ended with an error. A grader judges what there is.
     """
     if not (inspect.isclass(subject) or callable(subject) or is_path(subject)):
         raise TypeError(what_to_pass(exercise, subject))
+    if is_live():
+        raise_if_stale(subject)
     prepare_environment()
     with CardDisplay(exercise, subject) as place:
         verdict = _ask(exercise, subject, place)

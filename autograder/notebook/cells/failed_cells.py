@@ -1,0 +1,125 @@
+"""Classes and functions that are not what their cell says, because its last run ended with an error.
+
+After a ``SyntaxError`` the class of the run before is still there under its name, or none at all. A check of it would
+repeat the advice on old code, and a ``NameError`` would blame the check's own cell.
+"""
+
+from __future__ import annotations
+
+import re  # noqa: TID251  (a student's cells, in their own kernel)
+from dataclasses import dataclass
+from typing import Any
+
+from autograder.notebook.cells.student_tracebacks import last_student_line, notebook_shell
+
+_DEFINED = re.compile(r"^(?:class|(?:async\s+)?def)\s+(\w+)", re.MULTILINE)
+"""Also finds names in a cell that Python cannot parse."""
+_CHECKED = r"^[^#\n]*\b(?:check|watch)\(.*\b{}\b"
+
+
+@dataclass(frozen=True)
+class _Failure:
+    cell: str
+    error: str
+
+
+class FailedCells:
+    """Follows which names the cells of a notebook were to define, and did not.
+
+    Args:
+        shell: IPython's.
+    """
+
+    def __init__(self, shell: Any) -> None:
+        self._shell = shell
+        self._source = ""
+        self._before: dict[str, Any] = {}
+        self._names_of: dict[str, set[str]] = {}
+        self._failures: dict[str, _Failure] = {}
+        shell.events.register("pre_run_cell", self._cell_begins)
+        shell.events.register("post_run_cell", self._cell_ended)
+        shell.set_custom_exc((NameError,), self._show_name_error)
+
+    def why_missing(self, name: str) -> str:
+        """Why the newest code for a class or function did not come to be, with the error; empty where it did."""
+        failure = self._failures.get(name)
+        if failure is None:
+            return ""
+        return f"Your cell that defines {name} did not run to its definition: {failure.error}."
+
+    def _cell_begins(self, info: Any) -> None:
+        self._source = info.raw_cell or ""
+        known = self._names_of.get(_cell(info), set())
+        self._before = {name: self._shell.user_ns.get(name) for name in known | _defined(self._source)}
+
+    def _cell_ended(self, result: Any) -> None:
+        if result.info is None:
+            return
+        cell, before = _cell(result.info), self._before
+        self._before = {}
+        self._failures = {name: one for name, one in self._failures.items() if one.cell != cell}
+        error = result.error_before_exec or result.error_in_exec
+        names = self._names_of[cell] = set(before) if error else _defined(result.info.raw_cell or "")
+        for name in names:
+            if error is None or self._shell.user_ns.get(name) is not before[name]:
+                self._failures.pop(name, None)
+            else:
+                self._failures[name] = _Failure(cell, _named(error))
+
+    def _show_name_error(self, shell: Any, kind: type, error: NameError, trace: Any, tb_offset: Any) -> None:
+        del kind, tb_offset
+        words = self._what_to_run(str(error.name))
+        if words and trace.tb_next is not None and trace.tb_next.tb_next is None:  # raised by the cell itself
+            error._render_traceback_ = lambda: [words]  # type: ignore[attr-defined]
+        shell.showtraceback(running_compiled_code=True)
+
+    def _what_to_run(self, name: str) -> str:
+        if not re.search(_CHECKED.format(re.escape(name)), self._source, re.MULTILINE):
+            return ""
+        why = self.why_missing(name)
+        if why:
+            return f"NameError: there is no {name} yet. {why} Mend that cell and run it, then run this one again."
+        first = f"NameError: there is no {name} yet. Run the cell that defines {name} first, then run this one again."
+        return f"{first} If you did, compare the two names letter by letter."
+
+
+def _cell(info: Any) -> str:
+    return str(getattr(info, "cell_id", None) or info.raw_cell)
+
+
+def _defined(source: str) -> set[str]:
+    return set() if source.lstrip().startswith("%%") else set(_DEFINED.findall(source))
+
+
+def _named(error: BaseException) -> str:
+    """An error's name, line and message, in one line."""
+    message = error.msg if isinstance(error, SyntaxError) else str(error)
+    place = last_student_line(error)
+    line = error.lineno if isinstance(error, SyntaxError) else place and place[1]
+    named = type(error).__name__ + (f" in line {line}" if line else "")
+    return f"{named}, {message}" if message else named
+
+
+_cells = FailedCells(notebook_shell()) if notebook_shell() is not None else None
+
+
+class StaleCodeError(Exception):
+    """A class or function of before is there under its name; its newest code is not."""
+
+    def _render_traceback_(self) -> list[str]:
+        """Called by IPython in place of a traceback, which would lead to the wrong cell."""
+        return [f"Not checked. {self}"]
+
+
+def raise_if_stale(subject: Any) -> None:
+    """End a check of old code with words that say so; nothing happens outside a notebook.
+
+    Raises:
+        StaleCodeError: The cell that defines the subject anew ended with an error.
+    """
+    name = getattr(subject, "__name__", "")
+    why = _cells.why_missing(name) if _cells is not None else ""
+    if why:
+        raise StaleCodeError(
+            f"{why} The {name} that is there is older code. Mend that cell and run it, then check again."
+        )
