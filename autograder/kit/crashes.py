@@ -105,7 +105,7 @@ def _cut_off(evidence: Evidence) -> Advice | None:
     )
 
 
-_NO_PACKAGE = re2.compile(r"(?i)\bpackage (?:'(?P<name>[^']*)' )?not found")
+_NO_PACKAGE = re2.compile(r"^Package (?:'(?P<name>[^']*)' )?not found")
 
 
 def _package_not_found(evidence: Evidence) -> Advice | None:
