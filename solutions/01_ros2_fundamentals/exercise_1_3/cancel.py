@@ -140,8 +140,9 @@ cancel.asks("refused", 1, "Says when the goal is rejected", tells_of_refusal)
 EXERCISE = cancel.exercise(
     limit=120.0,
     text={
-        "After the **third** feedback message (the fourth and the fifth count, too), ask to cancel": "cancel",
-        "ask **once** in all, also when more feedback arrives": "once late_feedback",
+        "After the **third** feedback message, ask to cancel the goal "
+        "(after the fourth or the fifth is accepted as well)": "cancel",
+        "ask **once** in all, also when more feedback arrives or the server refuses to cancel": "once late_feedback",
         "Send a goal of order 20": "goal",
         "Send the goal: call `send_goal`": "goal",
         "If it was not accepted (`client.goal_handle.accepted`), raise a `RuntimeError` that says so.": "refused",
@@ -149,6 +150,7 @@ EXERCISE = cancel.exercise(
         "Otherwise get the result": "status",
         "While you wait, the client is spun": "cancel status",
         "report the status that you *really* got": "status",
-        "Log the name of the final status, or print it: both count, and so does its number.": "status",
+        "Log or print the name of the final status": "status",
+        "(Its number is accepted as well.)": "status",
     },
 )

@@ -427,5 +427,7 @@ EXERCISE = question.exercise(
     text={
         "returns the name as soon as it sees a service of the type": "late other",
         "After `patience_sec` seconds without one it raises `TimeoutError`.": "none",
+        "A program of your own has no `patience_sec`: "
+        "without such a service it says so and ends within 12 seconds": "none",
     },
 )

@@ -332,6 +332,8 @@ EXERCISE = mismatched.exercise(
     text={
         "where the talker *publishes*": "topic_published type_published",
         "where the listener *subscribes*": "topic_subscribed type_subscribed",
-        "Ask about each node separately, because topic and type can both be wrong.": "topic_subscribed type_subscribed",
+        "Ask about each node separately, because topic and type can both be wrong.": (
+            "topic_published type_published topic_subscribed type_subscribed"
+        ),
     },
 )

@@ -21,9 +21,9 @@ EXERCISE = interface.exercise(
     limit=400.0,
     runner=recipe.runner,
     text={
-        "The request of your service has two integers, `a` and `b`, and its response has one, `sum`. "
+        "The request of your service has two integers, first `a` and then `b`, and its response has one, `sum`. "
         "All three are `int64`": "fields wire",
-        "Three lines make yours a package with interfaces:": "declares",
+        "Three lines make yours a package with interfaces:": "declares builds",
         "One point is for `package.xml`: it has to name what the package needs.": "declares",
         '`rosidl_generate_interfaces(${PROJECT_NAME} "FILE" ...)` generates the code.': "builds",
     },

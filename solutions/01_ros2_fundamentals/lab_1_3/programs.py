@@ -30,6 +30,6 @@ EXERCISE = Programs(
         "Copy your class from step 2 into it:": "add_server",
         "Copy your function from step 3:": "add_client",
         "Then it runs `add_server`, calls it, and presses <kbd>Ctrl</kbd>+<kbd>C</kbd>.": "ctrl_c",
-        "once there is none: the client should say so and end.": "add_client ctrl_c",
+        "once there is none: the client then does what step 3 says.": "add_client ctrl_c",
     },
 )

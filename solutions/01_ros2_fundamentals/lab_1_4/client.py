@@ -34,6 +34,7 @@ EXERCISE = client.exercise(
         "In every case it must log or print how the goal ended": "refused aborted",
         "If the goal was not accepted, log that it was `REJECTED`, and return an empty list.": "refused",
         "Log the name of the status, and the sequence of the result.": "result aborted",
+        "The given `on_feedback` logs each feedback message.": "feedback",
         "Return the sequence as a list.": "result",
     },
 )

@@ -254,7 +254,7 @@ EXERCISE = server.exercise(
     limit=180.0,
     text={
         "Reject a goal whose order is negative or greater than 46, and accept any other.": "refuse sequence",
-        "0 is a good order: its sequence is a single number (`[0, 1]` counts, too).": "sequence",
+        "0 is a good order: its sequence is a single number. (For order 0, `[0, 1]` is accepted as well.)": "sequence",
         "Return one of two constants, `GoalResponse.ACCEPT` or `GoalResponse.REJECT`.": "refuse",
         "Call exactly one of the last three:": "sequence cancel",
         "A canceled goal has a result, too: the numbers so far.": "cancel",
