@@ -33,7 +33,7 @@ COMMANDS = {
     "execute": ("running.worker", [*COURSE, "execute", "lab_1_2", "--reports", "{folder}/reports"]),
     "bank": (
         "talker.answers",
-        [sys.executable, "-m", "tests.measure", "bank", "lab_1_2.talker", "--busy", "1"],
+        [sys.executable, "-m", "tests.measure", "bank", "lab_1_2.talker"],
     ),
 }
 """By name: what the command line of a process has that shows that it is in its middle, and how it is called."""
