@@ -36,6 +36,15 @@ NIGHTLY = (
     "tests/benchmarks/test_short_run.py",
     "tests/measure/test_compare.py::test_two_commits_are_judged_each_by_its_own_judge",
     "tests/mutation/test_mutation.py::test_a_sample_of_mutants_is_caught",
+    "tests/benchmarks/test_ros2_command.py::test_no_command_misses_anything_beside_open_notebooks",
+    # A class once more by stock nbgrader, and by each student's Validate: the class itself is graded in both tiers.
+    "tests/grading/classes/test_sample_class.py::test_plain_nbgrader_gives_the_same_points",
+    "tests/grading/classes/test_sample_class.py::test_validate_tells_a_student_the_truth",
+    # All notebooks in one folder; two of them are executed each day.
+    "tests/masters/test_run_again.py",
+    # Recording a changed exercise; what has changed in truth is recorded in both tiers.
+    "tests/test_recording.py::test_a_changed_reference_solution_changes_what_is_expected",
+    "tests/test_recording.py::test_inputs_that_were_changed_and_not_recorded_again_are_noticed",
     "tests/grading/rebuilding/test_course_version.py::test_a_changed_byte_in_any_of_them_moves_it",
     # A chapter and an exercise of somebody else's.
     "tests/test_second_chapter.py",
@@ -78,6 +87,10 @@ DRAWS = (
     Draw("tests/judge/test_bank.py::test_answer_is_judged_right[", 4, "/"),
     Draw("tests/attacks/test_attacks.py::test_it_is_defeated[", 1, "-"),
     Draw("tests/test_recording.py::test_recording_again_gives_the_same_file[", 2),
+    Draw(
+        "tests/authoring/test_new_exercise.py::test_an_example_is_in_step_and_judged_as_its_author_expects[",
+        1,
+    ),
     Draw("tests/execution/test_notebooks.py::test_master_and_chapter_show_what_they_have_to[", 2),
 )
 
