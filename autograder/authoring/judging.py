@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import multiprocessing
-import os
 import select
 import tempfile
 from dataclasses import dataclass
@@ -12,11 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 from autograder.clean_stdout import private_stdout
-from autograder.parent_death import die_with_parent
 from autograder.verdict import State, Verdict, from_json
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from autograder.authoring.answers import Answer
     from autograder.judge.verdicts.trial import Checked
@@ -149,22 +145,3 @@ def warm_up() -> None:
     from autograder.judge.serving import preimport
 
     preimport.imports()
-
-
-@contextlib.contextmanager
-def busy_loops(number: int) -> Iterator[None]:
-    """Keep so many processors busy as long as the block runs."""
-    loops = [multiprocessing.Process(target=_busy, daemon=True) for _ in range(number)]
-    for loop in loops:
-        loop.start()
-    try:
-        yield
-    finally:
-        for loop in loops:
-            loop.terminate()
-
-
-def _busy() -> None:
-    die_with_parent(os.getppid())
-    while True:
-        pass

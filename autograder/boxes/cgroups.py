@@ -86,9 +86,8 @@ class Group:
                 return int((self._folders["cpuacct"] / "cpuacct.usage").read_text()) / 1e9
             for kind, folder in self._folders.items():
                 if self._controllers[kind].version == 2:
-                    return (
-                        int((folder / "cpu.stat").read_text().split()[1]) / 1e6
-                    )  # usage_usec is the first line
+                    # Its first line is usage_usec.
+                    return int((folder / "cpu.stat").read_text().split()[1]) / 1e6
         return None
 
     def close(self) -> None:

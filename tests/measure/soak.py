@@ -6,22 +6,45 @@ machine's load. A diagnosis that is only one of several right ones is no excuse:
 
 from __future__ import annotations
 
+import contextlib
+import multiprocessing
+import os
 import time
 from random import Random
 from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.authoring.judging import Turn, busy_loops, judge_all, warm_up
+from autograder.authoring.judging import Turn, judge_all, warm_up
+from autograder.parent_death import die_with_parent
 from tests.measure import bank
 from tests.measure.ends import Ends, Repeated, end_of
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from autograder.authoring.answers import Answer
     from autograder.verdict import Verdict
+
+
+@contextlib.contextmanager
+def busy_loops(number: int) -> Iterator[None]:
+    """Keep so many processors busy as long as the block runs."""
+    loops = [multiprocessing.Process(target=_busy, daemon=True) for _ in range(number)]
+    for loop in loops:
+        loop.start()
+    try:
+        yield
+    finally:
+        for loop in loops:
+            loop.terminate()
+
+
+def _busy() -> None:
+    die_with_parent(os.getppid())
+    while True:
+        pass
 
 
 def drawn(wanted: Sequence[Answer], number: int, seed: int, *, same_inputs: bool) -> list[Turn[Answer]]:

@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from autograder import course
-from autograder.authoring.judging import busy_loops
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.classes.new_class import new_class
 from autograder.grading.classes.sample_class import BANK, SampleNotebook, made_notebook
 from autograder.grading.rebuilding import nodes
 from tests.measure.ends import Ends, Repeated, in_one_line
+from tests.measure.soak import busy_loops
 
 if TYPE_CHECKING:
     import argparse

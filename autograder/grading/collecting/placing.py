@@ -96,8 +96,8 @@ class Placing:
             if newest is not None:
                 yield self._put(newest)
 
-    def note_times(self, whose: Iterable[tuple[str, str, datetime]]) -> int:
-        """Write down when work was handed in that is in ``submitted`` already; of how many that is news.
+    def note_times(self, whose: Iterable[tuple[str, str, datetime]]) -> None:
+        """Write down when work was handed in that is in ``submitted`` already.
 
         Args:
             whose: Student, assignment and time in UTC.
@@ -105,7 +105,6 @@ class Placing:
         Raises:
             OSError: It could not be written.
         """
-        news = 0
         for student, assignment, when in whose:
             folder = self._directory.path / "submitted" / student / assignment
             history = self._records.get(assignment, student) or History({})
@@ -121,8 +120,6 @@ class Placing:
                 now[notebook] = replace(known, when=when)
             if now != history.now:
                 self._write(student, assignment, replace(history, now=now))
-                news += 1
-        return news
 
     def _put(self, newest: Candidate) -> Outcome:
         folder = self._directory.path / "submitted" / newest.student / newest.assignment
