@@ -97,15 +97,15 @@ class Answer:
     def objection(self, verdict: Verdict) -> str:
         """What is not as expected, or an empty string."""
         key = verdict.diagnosis.key if verdict.diagnosis else ""
+        missed = "; ".join(f"{c.name}: {c.seen}" for c in verdict.criteria if not c.passed)
         if not self.diagnoses:
-            missed = "; ".join(f"{c.name}: {c.seen}" for c in verdict.criteria if not c.passed)
             return "" if verdict.passed else f"a correct answer got {verdict.score:g} ({key}: {missed})"
         if verdict.state != "failed":
             return f"a wrong answer is {verdict.state}"
         if verdict.score >= verdict.max_score:
             return "a wrong answer got full marks"
         if key not in self.diagnoses:
-            return f"diagnosed as {key}, not as {' or '.join(self.diagnoses)}"
+            return f"diagnosed as {key}, not as {' or '.join(self.diagnoses)} ({missed})"
         words = f"{verdict.diagnosis.text} {verdict.diagnosis.next_step}" if verdict.diagnosis else ""
         return "" if self.says in words else f"its card does not say “{self.says}”, but: {words}"
 
