@@ -19,17 +19,26 @@ from exercise_1_3._cancel_evidence import (
     LAST_FEEDBACK,
     Request,
     after_result,
+    feedbacks_before_cancel,
     goals,
     request_of,
 )
 
 from autograder.kit.goal_reports import REFUSED
-from autograder.kit.lateness import hold_back, meets_late_action, meets_present
+from autograder.kit.lateness import (
+    ANSWERS_SOON,
+    SOON,
+    again_while,
+    hold_back,
+    meets_late_action,
+    meets_present,
+)
 from autograder.kit.model import Bench, Pace
 from autograder.kit.recipes.action_client import refuse
 
 if TYPE_CHECKING:
     from autograder.kit.counterparts import ActionCounterpart
+    from autograder.kit.evidence import Part
 
 WITHOUT_CANCEL = 19
 """Feedback messages that are sent to a client that does not cancel: all that a goal of order 20 has."""
@@ -41,6 +50,8 @@ AT_A_TIME = 3
 """Late feedback messages that are sent before the client has to have taken them; its queue holds ten."""
 ENDS = {HONOURED: "canceled", CANCEL_REFUSED: "succeeded", AGREED: "aborted"}
 """How a goal ends that somebody asked to cancel, by the name of the part; any other one succeeds."""
+A_MOMENT = 2
+"""Feedback messages that may come before a crowded machine lets a client go on whose sleep is over."""
 LAB_TIME = 1.5
 """Seconds of its own time in which a client must not ask once more; the lab's server takes less to end the goal."""
 
@@ -121,9 +132,20 @@ def run(bench: Bench, name: str, *, accept: bool, pause: float = 0.0) -> Request
         meets_late_action(bench, serve, ["goal", "cancel"])
     else:
         meets_present(bench, serve, "goal", known=True)
+    if bench.pace is Pace.REAL_TIME:
+        again_while(bench, asked_a_moment_late, lambda: serve(SOON, ANSWERS_SOON), done=True)
     request = request_of(bench.seen())
     bench.stop()
     return request
+
+
+def asked_a_moment_late(seen: Part) -> bool:
+    """Return whether it asked to cancel just after the last moment: one that goes by the clock may be a right one.
+
+    A crowded machine lets it wake up late, and never early. One that is late by itself is late again.
+    """
+    count = feedbacks_before_cancel(seen)
+    return count is not None and LAST_FEEDBACK < count <= LAST_FEEDBACK + A_MOMENT
 
 
 def serve_goal(bench: Bench, name: str, *, accept: bool, pause: float, late: float, held: float) -> None:
