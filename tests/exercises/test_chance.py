@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pytest
+from exercise_1_3._cancel_evidence import HONOURED
+from exercise_1_3._cancel_scenario import asked_a_moment_late
 from lab_1_2 import listener, talker
 from lab_1_4 import client as action_client
 
@@ -174,3 +176,12 @@ def test_who_says_something_of_the_answer_and_then_ends_never_asked_for_the_resu
     evidence = Evidence([part], Reference("lab_1_4.client", {"action_client": {}}, [part]))
     assert ended_before_its_answers(evidence) is None
     assert result_not_requested(evidence) is not None
+
+
+@pytest.mark.parametrize(("feedbacks", "again"), [(5, False), (6, True), (7, True), (8, False)])
+def test_a_request_to_cancel_just_after_the_last_moment_is_asked_for_again(
+    feedbacks: int, again: bool
+) -> None:
+    sent = [Event(0.5 * number, "feedback", "/fibonacci", {}) for number in range(feedbacks)]
+    seen = Part(HONOURED, {}, [*sent, Event(9.0, "cancel", "/fibonacci", {"accepted": True})])
+    assert asked_a_moment_late(seen) is again
