@@ -102,7 +102,7 @@ class Execution:
         seconds: Wall time, start of the kernel included.
         start_seconds: Of these, until kernel and judge were ready.
         as_typed: The places of the cells whose text is too costly to be rendered on a page.
-        needs_room: It came to the end of the memory that it may have while others run beside: it says nothing then.
+        crowded_out: It came to a limit that it may well keep when nothing runs beside it: it says nothing then.
         cpu_seconds: Processor time of what was in the student's boxes; 0 where nobody counts it.
         evidence: What the judge's verdicts follow from, by exercise, as the judge has packed it. Nothing looks into it
             while a class is graded.
@@ -114,6 +114,6 @@ class Execution:
     seconds: float = 0.0
     start_seconds: float = 0.0
     as_typed: tuple[int, ...] = ()
-    needs_room: bool = False
+    crowded_out: bool = False
     cpu_seconds: float = 0.0
     evidence: dict[str, bytes] = field(default_factory=dict)

@@ -93,7 +93,7 @@ def execute_all(
 class _Feed:
     """Tasks, for many threads.
 
-    What could not be checked, or needs more memory than its share, comes once more when everything else is done, one at
+    What could not be checked, or was crowded out, comes once more when everything else is done, one at
     a time: whatever the machine was short of was perhaps used up by another submission. Who has used the most processor
     time comes last.
     """
@@ -221,7 +221,7 @@ class _WorkerThread(threading.Thread):
             left = max(budget - (used or 0.0), budget * _LEFT_AT_LEAST)
             limits = replace(task.limits, beside=self._beside and first, cpu_seconds=left)
             execution = self.worker.execute(replace(task, limits=limits))
-            says_nothing = bool(execution.trouble) or execution.needs_room
+            says_nothing = bool(execution.trouble) or execution.crowded_out
             if says_nothing and first and not self.worker.stopping:
                 again = (execution.cpu_seconds, task)
             else:

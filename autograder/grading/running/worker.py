@@ -42,8 +42,9 @@ from autograder.judge.settings import boxed_ros_environment, ros_environment
 from autograder.parent_death import adopt_orphans
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator, Mapping
+    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
+    from autograder.boxes.execution import Cell
     from autograder.boxes.time_left import Left
     from autograder.verdict import Verdict
 
@@ -137,10 +138,21 @@ def _execute(
         guard=place.guard,
         patient=patiently,
     )
-    needs_room = task.limits.beside and place.guard.reason() is Ended.OUT_OF_MEMORY
+    short_of_memory = place.guard.reason() is Ended.OUT_OF_MEMORY
+    crowded_out = task.limits.beside and (short_of_memory or a_check_was_stopped(task.cells, execution))
     return replace(
-        execution, needs_room=needs_room, cpu_seconds=place.guard.cpu_seconds, evidence=judges.evidence
+        execution, crowded_out=crowded_out, cpu_seconds=place.guard.cpu_seconds, evidence=judges.evidence
     )
+
+
+def a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
+    """Return whether a check that the judge makes came to its cell's time limit.
+
+    Each wait of the judge's has a limit of its own, so that mostly tells of a crowded machine.
+    """
+    judged = [cell.check is not None and not cell.check.asserts for cell in cells]
+    runs = zip(judged, execution.cells, strict=True)
+    return any(made and run.ended is Ended.TIMED_OUT for made, run in runs)
 
 
 def patiently(seconds: float) -> Left:

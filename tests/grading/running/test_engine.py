@@ -76,12 +76,12 @@ def test_trouble_that_stays_is_told_after_the_second_time(run: Any) -> None:
     assert len(seen) == 2
 
 
-def test_who_needs_room_gets_all_of_it_alone(run: Any) -> None:
+def test_who_crowded_out_gets_all_of_it_alone(run: Any) -> None:
     def large(task: Task, times: int) -> Execution:
-        return Execution((), needs_room=task.student == "b" and task.limits.beside)
+        return Execution((), crowded_out=task.student == "b" and task.limits.beside)
 
     results, seen, done = run(large, "abc")
-    assert not any(execution.needs_room for execution in results.values())
+    assert not any(execution.crowded_out for execution in results.values())
     assert all(beside for _, beside, _ in seen[:3])
     assert seen[3:] == [("b", False, 1)]
     assert not any(d.task.limits.beside for d in done), "the task is the one that was given"
@@ -93,7 +93,7 @@ def test_both_executions_have_one_budget_of_processor_time(run: Any) -> None:
 
     def busy(task: Task, times: int) -> Execution:
         given[task.student].append(task.limits.cpu_seconds)
-        return Execution((), needs_room=task.limits.beside, cpu_seconds=used[task.student])
+        return Execution((), crowded_out=task.limits.beside, cpu_seconds=used[task.student])
 
     _, _, done = run(busy, "ab")
     assert given["a"] == [200.0, 50.0]
@@ -106,7 +106,7 @@ def test_of_those_that_come_again_who_was_busiest_comes_last(run: Any) -> None:
 
     def busy(task: Task, times: int) -> Execution:
         trouble = "no box" if task.student == "b" and not times else ""
-        return Execution((), trouble=trouble, needs_room=task.limits.beside, cpu_seconds=used[task.student])
+        return Execution((), trouble=trouble, crowded_out=task.limits.beside, cpu_seconds=used[task.student])
 
     _, seen, _ = run(busy, "abcd")
     assert [student for student, _, _ in seen[4:]] == ["b", "c", "d", "a"]
