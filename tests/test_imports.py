@@ -1,4 +1,4 @@
-"""Who imports whom: the rules of docs/architecture.md, held to the code."""
+"""Who imports whom: the rules, held to the code; docs/architecture.md has them in short."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def test_a_part_imports_only_what_it_may(part: str) -> None:
         # A name that is no part, such as autograder.__version__, is the package's own.
         if name.split(".")[1] in PARTS and name.split(".")[1] not in allowed
     ]
-    assert not wrong, "docs/architecture.md, Who may import whom:\n" + "\n".join(wrong)
+    assert not wrong, "MAY_IMPORT above says who may import whom:\n" + "\n".join(wrong)
 
 
 @pytest.mark.parametrize("part", sorted(NOTEBOOK_MAY_IMPORT))
@@ -210,13 +210,13 @@ def test_every_part_has_its_line_in_the_architecture() -> None:
     assert not missing
 
 
-def test_every_dependency_has_its_reason_in_the_architecture() -> None:
+def test_every_dependency_has_its_reason() -> None:
     import tomllib
 
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"].values()
     wanted = [*project["dependencies"], *(name for extra in extras for name in extra)]
-    text = (ROOT / "docs/architecture.md").read_text().partition("## Dependencies")[2]
+    text = (ROOT / "docs/decisions.md").read_text().partition("## Dependencies")[2]
     names = [requirement.partition(">")[0].partition("=")[0].partition("[")[0] for requirement in wanted]
     assert not [name for name in names if name not in text]
 
