@@ -71,7 +71,7 @@ class Figure:
     misses: tuple[str, ...]
 
     def row(self) -> str:
-        """A row of the table in ``docs/ros2-command.md``."""
+        """A row of the table in ``docs/performance.md``."""
         median, longest = statistics.median(self.seconds), max(self.seconds)
         return f"| `{self.command}` | {len(self.seconds)} | {len(self.misses)} | {median:.2f} s | {longest:.2f} s |"
 

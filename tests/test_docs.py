@@ -16,7 +16,8 @@ from autograder.masters.layout import chapter_path, masters
 
 ROOT = Path(__file__).resolve().parents[1]
 MASTERS = masters(ROOT)
-PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *MASTERS])
+DOCS = sorted([*ROOT.glob("docs/*.md"), *ROOT.glob("docs/instructor/*.md")])
+PAGES = sorted([*ROOT.glob("*.md"), *DOCS, *MASTERS])
 NOTEBOOKS = sorted(ROOT.glob("chapters/*/*.ipynb"))
 READ = [*PAGES, *NOTEBOOKS]
 each = pytest.mark.parametrize("path", READ, ids=lambda path: str(path.relative_to(ROOT)))
@@ -97,7 +98,7 @@ def test_every_link_leads_somewhere(path: Path) -> None:
     assert not [why for target in targets if (why := broken(path, target))]
 
 
-IN_A_NEW_SHELL = sorted({*ROOT.glob("docs/*.md"), ROOT / "README.md"} - {ROOT / "docs" / "students-guide.md"})
+IN_A_NEW_SHELL = sorted({*DOCS, ROOT / "README.md"} - {ROOT / "docs" / "students-guide.md"})
 """The student's guide has JupyterLab's own terminal, in which the programs are found."""
 
 
@@ -138,7 +139,7 @@ def test_every_page_of_the_documentation_can_be_reached_from_the_readme() -> Non
         reached.add(page)
         targets = (unquote(found["target"]).partition("#")[0] for found in LINK.finditer(prose(page)))
         ahead += [(page.parent / target).resolve() for target in targets if target and ":" not in target]
-    assert not [page.name for page in ROOT.glob("docs/*.md") if page not in reached]
+    assert not [page.name for page in DOCS if page not in reached]
 
 
 # `me`, `you` and the like stand in examples, `ubuntu` is the user of the official image.

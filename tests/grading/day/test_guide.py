@@ -1,4 +1,4 @@
-"""Every command of the instructor's guide runs, in the order in which it stands there."""
+"""Every command of the instructor's guide runs, page after page in the order of its table."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+import yaml
 from click.testing import CliRunner
 from conftest import TALKER
 from downloads import write_zip
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 GUIDE = Path(__file__).parents[3] / "docs" / "instructors-guide.md"
+ELSEWHERE = {"another-language", "own-ci"}
+"""Pages about the course itself: its tests run the same commands."""
 
 
 def run(*arguments: object) -> str:
@@ -58,6 +61,14 @@ def keep_evidence(tiny: TinyClass, student: str, exercise: str) -> None:
     EvidenceFolder(directory).keep(task, Execution((), evidence={exercise: packed}))
 
 
+def pages() -> list[Path]:
+    """The guide's pages, in the order of the table that leads to them."""
+    linked = re.findall(
+        r"^\|.*\((instructor/[\w-]+\.md)\) \|$", GUIDE.read_text(encoding="utf-8"), re.MULTILINE
+    )
+    return [GUIDE.parent / name for name in dict.fromkeys(linked)]
+
+
 def commands(text: str) -> list[str]:
     """The lines that a reader of a page is to type."""
     blocks = re.findall(r"^```console\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
@@ -77,16 +88,16 @@ def test_every_command_of_the_guide_runs(
     )
     (tmp_path / "Downloads" / "times.csv").write_text("id,handed_in\nada,2026-01-31T12:00\n")
     (tiny.path / "students.csv").write_text(
-        "id,first_name,last_name,email\nada,Ada,Lovelace,ada@uni.example\n"
+        "id,first_name,last_name,email\nada,Ada,Lovelace,ada@uni.example\nben,Ben,Bär,ben@uni.example\n"
     )
     notebook = tiny.submit("x", 4, 7)
-    write_zip(
-        tmp_path / "Downloads" / "submissions.zip", {"lovelaceada_1_2_lab_1_2.ipynb": notebook.read_bytes()}
-    )
+    names = ("lovelaceada_1_2_lab_1_2.ipynb", "barben_2_3_lab_1_2.ipynb")
+    write_zip(tmp_path / "Downloads" / "submissions.zip", dict.fromkeys(names, notebook.read_bytes()))
     for part in (notebook, notebook.parent, notebook.parent.parent):
         part.unlink() if part.is_file() else part.rmdir()
     ran = []
-    for command in commands(GUIDE.read_text(encoding="utf-8")):
+    day = [page for page in pages() if page.stem not in ELSEWHERE]
+    for command in (command for page in day for command in commands(page.read_text(encoding="utf-8"))):
         typed = command.replace("~/robotics-2025", str(tiny.path)).replace("~", str(tmp_path))
         words = shlex.split(typed, comments=True)
         if words[0] == "cd":
@@ -123,3 +134,19 @@ def test_every_command_of_the_guide_runs(
     assert (tiny.path / "nbgrader_export.csv").is_file()
     filled = (tiny.path / "export" / "Grades-lab_1_2.csv").read_text()
     assert "Participant 1,Ada Lovelace,ada@uni.example,11" in filled
+
+
+def test_the_table_of_the_guide_leads_to_every_page() -> None:
+    assert sorted(pages()) == sorted((GUIDE.parent / "instructor").glob("*.md"))
+
+
+def test_the_workflow_of_the_guide_types_commands_that_there_are() -> None:
+    """A word or an option that a command does not know ends the parsing with an error."""
+    page = (GUIDE.parent / "instructor" / "own-ci.md").read_text(encoding="utf-8")
+    (text,) = re.findall(r"^```yaml\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    steps = yaml.safe_load(text)["jobs"]["course"]["steps"]
+    typed = [shlex.split(step["run"])[1:] for step in steps if step.get("run", "").startswith("./course ")]
+    assert typed.pop(0) == ["setup", "--tests"]  # the script's own
+    for name, *words in typed:
+        cli.commands[name].make_context(name, words)
+    assert {name for name, *_ in typed} == {"build", "execute", "demo"}
