@@ -17,7 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.workspaces.building.colcon import build
+from autograder.workspaces.building.colcon import look
+from autograder.workspaces.building.own import build
 from autograder.workspaces.building.placing import CannotPlace, place
 from autograder.workspaces.running.prefixes import package_prefixes, python_folders, with_prefixes
 
@@ -78,7 +79,7 @@ def build_workspace(folder: str | os.PathLike[str] = "ros2_ws") -> WorkspaceBuil
     Args:
         folder: The workspace, the folder that holds ``src``.
     """
-    made = build(Path(folder))
+    made = build(look(Path(folder)))
     if not made.ok:
         return WorkspaceBuild(made)
     try:

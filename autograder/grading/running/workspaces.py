@@ -14,7 +14,7 @@ from autograder.boxes.environment import kernel_environment
 from autograder.boxes.place import SHARED_FOLDER, BoxedPlace
 from autograder.judge.settings import boxed_ros_environment, ros_environment
 from autograder.kit.runners import Launches
-from autograder.workspaces.building import cache, colcon
+from autograder.workspaces.building import cache, own
 from autograder.workspaces.grading.boxed_jobs import BoxedJobs
 from autograder.workspaces.grading.plain_jobs import PlainJobs
 from autograder.workspaces.grading.service import ServiceSockets, WorkspaceService
@@ -64,7 +64,7 @@ class Arrangement:
             return {}
         robot = {PACKAGE_VARIABLE: str(SHARED_FOLDER / _ROBOT)} if self.robot else {}
         path = f"{SHARED_FOLDER / _PROGRAMS}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
-        return {"PATH": path, colcon.GRADERS: str(SHARED_FOLDER / _BUILDS), **robot}
+        return {"PATH": path, own.GRADERS: str(SHARED_FOLDER / _BUILDS), **robot}
 
 
 def arrange(task: Task, folder: Path) -> Arrangement:

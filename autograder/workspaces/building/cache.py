@@ -115,7 +115,7 @@ def _is_of(key: str, marker: Path) -> bool:
 
 
 @contextlib.contextmanager
-def entry(key: str, base: Path | None = None, cancelled: Callable[[], bool] | None = None) -> Iterator[Entry]:
+def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -> Iterator[Entry]:
     """Hold the entry of a key: nobody else builds it at the same time.
 
     An entry that was not finished is empty when it is handed over, and is removed when it is not finished
@@ -123,13 +123,12 @@ def entry(key: str, base: Path | None = None, cancelled: Callable[[], bool] | No
 
     Args:
         key: Says what is in it.
-        base: The cache; the user's own where None.
+        base: The cache.
         cancelled: Asked now and then, while somebody else has the entry, whether it is still wanted.
 
     Raises:
         GivenUp: It is not.
     """
-    base = base or root()
     # Opened for appending: opened for writing, it would forget who builds before it is one's own.
     with (base / f"{key}.lock").open("a+") as lock:
         _await_turn(lock, cancelled)
@@ -160,10 +159,7 @@ def _end_builder(lock: IO[str]) -> None:
             end_session(int(session), began)
 
 
-def _await_turn(lock: IO[str], cancelled: Callable[[], bool] | None) -> None:
-    if cancelled is None:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        return
+def _await_turn(lock: IO[str], cancelled: Callable[[], bool]) -> None:
     while True:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

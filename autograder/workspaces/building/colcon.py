@@ -1,93 +1,27 @@
-"""Build a workspace with colcon, unless the same sources were built before."""
+"""What is there to be built, how colcon is told to build it, and what its output says of a failure."""
 
 from __future__ import annotations
 
-import os
-import shutil
 import sys
-import time
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.workspaces.building import cache
-from autograder.workspaces.building.alone import or_alone
 from autograder.workspaces.building.failures import telling_line
 from autograder.workspaces.building.result import Build
-from autograder.workspaces.running.own_session import OwnSession
-from autograder.workspaces.running.prefixes import without_workspaces
-from autograder.workspaces.sources.packages import key, needed, sources_of, survey
-from autograder.workspaces.sources.tree import BadSources
+from autograder.workspaces.sources.packages import needed, survey
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+    from pathlib import Path
 
     from autograder.workspaces.building.result import Targets
     from autograder.workspaces.sources.packages import Package
 
-LIMIT = 300.0
-"""Seconds of wall time in which colcon must have ended."""
-GRADERS = "AUTOGRADER_BUILDS"
-"""Names the socket of the grader's side in a graded notebook's environment."""
 MAX_LOG = 40_000
 """Characters of a failed build's log that are kept: its end."""
 _FAILED = re2.compile(r"(?m)^Failed\s+<<< (?P<name>\S+)")
-
-
-def build(workspace: Path, targets: Targets | None = None) -> Build:
-    """Build packages in a workspace's ``src``, each time as if for the first time.
-
-    The result is in the cache, not in the workspace: what an earlier build left in ``install`` has no part in it. The
-    workspace is not written to.
-
-    Args:
-        workspace: The folder that holds ``src``.
-        targets: Which packages are needed; they are built with what they depend on, or without it where only that
-            fails. None for all.
-    """
-    found = look(workspace)
-    return found if found.trouble else or_alone(found, targets, lambda there: _build(there, targets))
-
-
-def _build(found: Build, targets: Targets | None) -> Build:
-    began = time.monotonic()
-    chosen, found = choose(found, targets)
-    if found.trouble:
-        return found
-    src = found.workspace / "src"
-    try:
-        tree = sources_of(src, chosen)
-    except BadSources as error:
-        return replace(found, trouble="bad_package", line=str(error))
-    with cache.entry(key(tree, *command(moved(chosen, src, Path("src")), Path()))) as entry:
-        install = entry.folder / "install"
-        if entry.complete:
-            return replace(found, ok=True, install=install, seconds=time.monotonic() - began, reused=True)
-        graders = _ask_the_grader(found, chosen, install)
-        if graders is not None:
-            if graders.ok:
-                entry.finish()
-            return graders
-        tree.write(entry.folder / "src")
-        log = _colcon(found.workspace, moved(chosen, src, entry.folder / "src"), entry)
-        if log is None:
-            for made in ("src", "build"):
-                shutil.rmtree(entry.folder / made, ignore_errors=True)
-            entry.finish()
-            return replace(found, ok=True, install=install, seconds=time.monotonic() - began)
-    return failed(replace(found, seconds=time.monotonic() - began), log)
-
-
-def _ask_the_grader(found: Build, chosen: Sequence[Package], install: Path) -> Build | None:
-    """A build that a graded notebook's grader has made; None where there is no grader, as at every start of a check."""
-    socket = os.environ.get(GRADERS)
-    if not socket:
-        return None
-    from autograder.workspaces.building import client
-
-    return client.ask(socket, found, chosen, install)
 
 
 def failed(found: Build, log: str) -> Build:
@@ -160,22 +94,6 @@ def command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()
         "--cmake-args", f"-DPython3_EXECUTABLE={sys.executable}", "-DCMAKE_BUILD_TYPE=Release",
         "-DBUILD_TESTING=OFF", "--no-warn-unused-cli", "-Wno-dev", *cmake,
     ]  # fmt: skip
-
-
-def _colcon(workspace: Path, packages: Sequence[Package], entry: cache.Entry) -> str | None:
-    """Run colcon; its output where it failed, else None."""
-    environment = without_workspaces(os.environ, workspace)
-    environment.pop("PYTHONDONTWRITEBYTECODE", None)  # setuptools warns of it in every log
-    environment["COLCON_DEFAULTS_FILE"] = os.devnull
-    with OwnSession(command(packages, entry.folder), environment, entry.folder) as colcon:
-        entry.built_by(colcon.pid)
-        said, late = colcon.collect(LIMIT, sys.maxsize)
-        code = colcon.exit_code()
-    output = "\n".join(said.decode("utf-8", "replace").splitlines())
-    output = output.replace(str(entry.folder / "src"), str(workspace / "src"))
-    if late:
-        return f"{output}\nerror: the build did not end within {LIMIT:g} s"
-    return None if code == 0 else output
 
 
 def _log_of(log: str, package: str) -> str:

@@ -12,7 +12,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.workspaces.building.colcon import GRADERS, build, look
+from autograder.workspaces.building.colcon import look
+from autograder.workspaces.building.own import GRADERS, build
 from autograder.workspaces.building.placing import CannotPlace, place
 from autograder.workspaces.sources.packages import needed
 
@@ -30,13 +31,12 @@ def main(arguments: Sequence[str]) -> int:
     Args:
         arguments: Of the command line.
     """
-    here = Path.cwd()
     chosen = _chosen(arguments)
-    found = look(here)
+    found = look(Path.cwd())
     if os.environ.get(GRADERS) and chosen is not None and not found.trouble and not found.unusable:
         option, names = chosen
         if set(names) <= {package.name for package in found.packages}:
-            made = build(here, _targets(option, names))
+            made = build(found, _targets(option, names))
             try:
                 return _told(made)
             except CannotPlace:

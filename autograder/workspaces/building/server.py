@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import io
 import tarfile
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder.messages.lines import NotUnderstood
 from autograder.messages.workspaces import Build, BuildDone, BuildFailed, NotBuilt, Piece, Source
+from autograder.workspaces.building.builds import BuildTookTooLong
 from autograder.workspaces.building.colcon import look
-from autograder.workspaces.building.trusted import BuildTookTooLong
 from autograder.workspaces.sources import collecting
 from autograder.workspaces.sources.finding import WORKSPACE
 from autograder.workspaces.sources.tree import BadSources, Tree
@@ -63,7 +62,7 @@ def serve_builds(lines: Lines, builds: TrustedBuilds, folder: Path, cancelled: C
                 cancelled=cancelled,
             )
         except BuildTookTooLong as error:
-            made = replace(found, trouble="build", line=str(error), log=str(error))
+            made = error.build
     if not made.ok or made.install is None:
         told = (text.replace(f"{tree}/", "") for text in (made.trouble, made.package, made.line, made.log))
         lines.say(BuildFailed(made.seconds, *told))

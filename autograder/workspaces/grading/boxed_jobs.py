@@ -21,14 +21,16 @@ from autograder.boxes.guards import BoxGuard
 from autograder.boxes.limits import Limits
 from autograder.boxes.mounts import HOME, WORK
 from autograder.boxes.sandbox import Bind, Enclosure
-from autograder.workspaces.grading.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, Built
+from autograder.workspaces.building.jobs import Built
+from autograder.workspaces.grading.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES
 from autograder.workspaces.running.processes import descendants
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from autograder.boxes.boxed_command import Running
-    from autograder.workspaces.grading.jobs import BuildJob, ProgramJob
+    from autograder.workspaces.building.jobs import BuildJob
+    from autograder.workspaces.grading.jobs import ProgramJob
 
 BUILD_LIMITS = Limits(
     cpu_seconds=300.0,
@@ -103,7 +105,7 @@ class BoxedJobs:
         place = self.place(job.name, job.entry)
         folder = Path(tempfile.mkdtemp(prefix="build-", dir=self._folder))
         binds = [Bind(job.entry / "src", place / "src"), *_covers(job.hidden, folder)]
-        environment = box_environment({"COLCON_DEFAULTS_FILE": os.devnull, **job.variables})
+        environment = box_environment(job.variables)
         guard = BoxGuard(limits)
         try:
             with Enclosure(
@@ -119,7 +121,7 @@ class BoxedJobs:
                     output = running.said
                 if returncode != 0:
                     needs_room = limits.beside and guard.reason() is Ended.OUT_OF_MEMORY
-                    return Built(returncode, output, late=late), needs_room
+                    return Built(returncode, output, late=BUILD_SECONDS if late else 0.0), needs_room
                 packing = f"exec tar -cf - -C {shlex.quote(str(place / 'install'))} . 2>/dev/null"
                 packed = enclosure.run(
                     ["/bin/sh", "-c", packing], limit=60.0, cwd=Path("/"), output_bytes=MAX_ARCHIVE_BYTES

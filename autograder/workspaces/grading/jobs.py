@@ -1,16 +1,14 @@
-"""The jobs that the grader's trusted side has done for it: build a student's sources, run what was built.
-
-Whatever a job does, it only ever yields bytes: output, and the files that it left in its install folder. Nothing of
-it is executed or unpickled by who has asked for it.
-"""
+"""The jobs that the grader's trusted side has done for it: build a student's sources, run what was built."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
+from autograder.workspaces.building.jobs import Builder
+
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
 BUILD_SECONDS = 170.0
@@ -20,28 +18,6 @@ MAX_LOG_BYTES = 1_000_000
 """Output that is kept of a build."""
 MAX_ARCHIVE_BYTES = 64_000_000
 """All that a build may have made, as an archive; an interface package has 1.3 million."""
-
-
-@dataclass(frozen=True)
-class BuildJob:
-    """A build that is wanted.
-
-    Attributes:
-        name: See :meth:`Jobs.place`.
-        entry: Holds ``src``, which the build may read. All that it writes is gone afterwards, but for what is in the
-            archive: ``install`` of the place.
-        command: Names everything as it is seen from the job.
-        variables: More variables of its environment.
-        cancelled: Asked now and then; the build is ended when it says so.
-        hidden: Files and folders of the environment that the build must not find.
-    """
-
-    name: str
-    entry: Path
-    command: Sequence[str]
-    variables: Mapping[str, str]
-    cancelled: Callable[[], bool]
-    hidden: Sequence[Path]
 
 
 @dataclass(frozen=True)
@@ -61,24 +37,6 @@ class ProgramJob:
     sources: Path
     entries: Mapping[str, Path]
     hidden: Sequence[Path]
-
-
-@dataclass(frozen=True)
-class Built:
-    """How a build ended.
-
-    Attributes:
-        returncode: Of colcon; None where it was ended, at a limit or because nobody waits for it any more.
-        output: What it said.
-        archive: Its install folder as a tar file, made once nothing of the build was alive any more; None where
-            it failed.
-    """
-
-    returncode: int | None
-    output: bytes
-    archive: bytes | None = field(default=None, repr=False)
-    late: bool = False
-    """Whether it was ended because it took too long, which may be the machine's fault."""
 
 
 class Program(Protocol):
@@ -108,7 +66,7 @@ class Program(Protocol):
         ...
 
 
-class Jobs(Protocol):
+class Jobs(Builder, Protocol):
     """Builds and runs for one submission."""
 
     @property
@@ -116,21 +74,8 @@ class Jobs(Protocol):
         """The whole environment of a job, before anything is added to it."""
         ...
 
-    def place(self, name: str, entry: Path) -> Path:
-        """Where jobs see a folder of the cache of builds.
-
-        Args:
-            name: What stands for the kind of workspace, such as ``"ros2_ws"``: each has a place of its own.
-            entry: The folder.
-        """
-        ...
-
     def tree(self, sources: Path) -> Path:
         """Where programs see the folder with what was submitted."""
-        ...
-
-    def build(self, job: BuildJob) -> Built:
-        """Run colcon."""
         ...
 
     def start(self, job: ProgramJob) -> Program:

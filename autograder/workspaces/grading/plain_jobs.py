@@ -6,20 +6,22 @@ Reports are made as with boxes, but nothing keeps a build or a program away from
 from __future__ import annotations
 
 import io
-import os
 import subprocess
 import tarfile
 import tempfile
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from autograder.workspaces.grading.jobs import BUILD_SECONDS, MAX_LOG_BYTES, Built
+from autograder.workspaces.building.own import run
+from autograder.workspaces.grading.jobs import BUILD_SECONDS, MAX_LOG_BYTES
 from autograder.workspaces.running.own_session import OwnSession
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from autograder.workspaces.grading.jobs import BuildJob, ProgramJob
+    from autograder.workspaces.building.jobs import BuildJob, Built
+    from autograder.workspaces.grading.jobs import ProgramJob
 
 
 class PlainJobs:
@@ -48,21 +50,16 @@ class PlainJobs:
 
     def build(self, job: BuildJob) -> Built:
         """Build in the entry, pack what came of it and remove that again."""
-        environment = {**self._environment, "COLCON_DEFAULTS_FILE": os.devnull, **job.variables}
-        program = PlainProgram(job.command, environment, job.entry)
-        try:
-            output, late = program.collect(BUILD_SECONDS, MAX_LOG_BYTES, job.cancelled)
-            code = program.exit_code()
-        finally:
-            program.end()
-        if code != 0:
-            return Built(code, output, late=late)
+        program = PlainProgram(job.command, {**self._environment, **job.variables}, job.entry)
+        built = run(program, job, BUILD_SECONDS, MAX_LOG_BYTES)
+        if built.returncode != 0:
+            return built
         archive = io.BytesIO()
         with tarfile.open(fileobj=archive, mode="w") as tar:
             tar.add(job.entry / "install", arcname=".")
         for made in ("install", "build", "log"):
             subprocess.run(["rm", "-rf", str(job.entry / made)], check=True)
-        return Built(0, output, archive.getvalue())
+        return replace(built, archive=archive.getvalue())
 
     def start(self, job: ProgramJob) -> PlainProgram:
         """Start it as a process."""

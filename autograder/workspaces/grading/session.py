@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import threading
 from typing import TYPE_CHECKING, Self
 
@@ -10,21 +11,13 @@ from autograder.kit.launch_report import process_line
 from autograder.kit.runners import Launches, ServesInterface
 from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, NotUnderstood
-from autograder.workspaces.building.colcon import look
 from autograder.workspaces.grading.jobs import ProgramJob
-from autograder.workspaces.running.launching import watch_processes
-from autograder.workspaces.running.plans import (
-    course_interfaces,
-    lacks_programs,
-    launch_targets,
-    plan_for,
-    reference_workspace,
-    ros2,
-)
-from autograder.workspaces.running.prefixes import relocated, with_prefixes
-from autograder.workspaces.running.reporting import built_line, found_line, no_sources_line
+from autograder.workspaces.running.launching import watched
+from autograder.workspaces.running.plans import course_interfaces, plan_for, ros2
+from autograder.workspaces.running.preparing import COURSE, Preparation
+from autograder.workspaces.running.reporting import no_sources_line
 from autograder.workspaces.sources import collecting
-from autograder.workspaces.sources.finding import WORKSPACE, workspace_of
+from autograder.workspaces.sources.finding import workspace_of
 from autograder.workspaces.sources.tree import BadSources, Tree
 
 if TYPE_CHECKING:
@@ -33,13 +26,11 @@ if TYPE_CHECKING:
 
     from autograder.kit.runners import Runner
     from autograder.messages.lines import Lines
-    from autograder.workspaces.building.result import Build
+    from autograder.workspaces.building.result import Build, Targets
     from autograder.workspaces.building.trusted import TrustedBuilds
     from autograder.workspaces.grading.jobs import Jobs, Program
-    from autograder.workspaces.running.plans import Plan
+    from autograder.workspaces.running.preparing import Prepared
 
-COURSE = "course_ws"
-"""The place of the course's own packages, behind the student's."""
 MAX_LINE = 4_000
 """Bytes of one line of a program's output that are kept."""
 MAX_OUTPUT = 2_000_000
@@ -121,7 +112,7 @@ class Session:
             run.end()
 
 
-class _Run(threading.Thread):
+class _Run(Preparation):
     """One start of what was submitted, until it ends or is ended."""
 
     def __init__(
@@ -133,7 +124,7 @@ class _Run(threading.Thread):
         order: messages.Start,
         variables: Mapping[str, str],
     ) -> None:
-        super().__init__(daemon=True)
+        super().__init__(session._jobs.environment)
         self._lines, self._jobs, self._builds = session._lines, session._jobs, session._builds
         self._tree = session._tree
         self._runner, self._path, self._trouble = runner, path, trouble
@@ -142,12 +133,13 @@ class _Run(threading.Thread):
         self._cancelled = threading.Event()
         self._program: Program | None = None
         self._changing = threading.Lock()
-        self.start()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
 
     def end(self) -> None:
         """Kill what runs, and wait until nothing of it is left."""
         self._cancelled.set()
-        self.join()
+        self._thread.join()
 
     def interrupt(self) -> None:
         """Press Ctrl-C at what runs, where it runs."""
@@ -155,7 +147,7 @@ class _Run(threading.Thread):
             if self._program is not None:
                 self._program.interrupt()
 
-    def run(self) -> None:
+    def _run(self) -> None:
         """Look, build, report, run, tell."""
         try:
             self._work()
@@ -166,105 +158,49 @@ class _Run(threading.Thread):
 
     def _work(self) -> None:
         if self._trouble:
-            self._report(no_sources_line(self._trouble))
+            self.report(no_sources_line(self._trouble))
             self._exited(1)
         elif self._runner is None:
             raise LookupError("this exercise takes no path")
         elif isinstance(self._runner, Launches):
             self._launch(self._tree / self._path)
         else:
-            self._workspace(plan_for(self._runner, self._arguments))
-
-    def _workspace(self, plan: Plan) -> None:
-        found = look(self._tree / self._path)
-        self._report(found_line(found, plan))
-        made = found
-        if not found.trouble:
-            made = self._builds.build(found, plan.targets, name=WORKSPACE, cancelled=self._cancelled.is_set)
-        missing = plan.missing(made) if made.ok else ""
-        self._lines.say(messages.BuildEnded(self.number))
-        self._report(built_line(made, plan, missing))
-        if not made.ok or missing:
-            self._exited(1)
-            return
-        self._follow(plan.command(made), self._environment(made), {WORKSPACE: made})
+            plan = plan_for(self._runner, self._arguments)
+            self._follow(self.workspace(plan, self._tree / self._path))
 
     def _launch(self, file: Path) -> None:
         if not file.is_file():
             self._lines.say(messages.Output(self.number, f"there is no launch file {self._path}"))
             self._exited(1)
             return
-        entries = {COURSE: self._course_build()}
         workspace = workspace_of(file, (file.parent, self._tree))
-        environment, first = self._jobs.environment, False
-        if workspace is not None and workspace.is_relative_to(self._tree):
-            made = self._builds.build(
-                look(workspace), launch_targets(file), name=WORKSPACE, cancelled=self._cancelled.is_set
-            )
-            self._lines.say(messages.BuildEnded(self.number))
-            self._report(built_line(made))
-            if not made.ok:
-                self._exited(1)
-                return
-            entries[WORKSPACE] = made
-            first = lacks_programs(file, made, entries[COURSE])
-            environment = self._environment(made)
-        environment = self._environment(entries[COURSE], environment, name=COURSE, last=not first)
+        if workspace is not None and not workspace.is_relative_to(self._tree):
+            workspace = None
         seen = self._jobs.tree(self._tree) / file.relative_to(self._tree)
-        self._follow([ros2(), "launch", str(seen)], environment, entries, watch=True)
-
-    def _course_build(self) -> Build:
-        made = self._builds.build(look(reference_workspace()), None, name=COURSE)
-        if not made.ok:
-            raise RuntimeError(f"the course's own packages could not be built: {made.line}")
-        return made
+        prepared = self.launch([ros2(), "launch", str(seen)], file, workspace)
+        self._follow(prepared, watch=True)
 
     def _hidden(self) -> Sequence[Path]:
         """Where the task is to make interfaces, those that came with the course are not there to be copied."""
         return course_interfaces() if isinstance(self._runner, ServesInterface) else ()
 
-    def _environment(
-        self,
-        made: Build,
-        base: Mapping[str, str] | None = None,
-        *,
-        name: str = WORKSPACE,
-        last: bool = False,
-    ) -> Mapping[str, str]:
-        """An environment in which a build is found, by somebody who sees it at its place."""
-        assert made.install is not None
-        entry = made.install.parent
-        environment = with_prefixes(base or self._jobs.environment, made.prefixes, last=last)
-        return relocated(environment, entry, self._jobs.place(name, entry))
-
-    def _follow(
-        self,
-        command: Sequence[str],
-        environment: Mapping[str, str],
-        entries: Mapping[str, Build],
-        *,
-        watch: bool = False,
-    ) -> None:
+    def _follow(self, prepared: Prepared | None, *, watch: bool = False) -> None:
         """Run a program to its end, or until nobody wants it any more."""
-        folders = {name: made.install.parent for name, made in entries.items() if made.install is not None}
-        variables = {**environment, **self._variables}
-        program = self._jobs.start(ProgramJob(command, variables, self._tree, folders, self._hidden()))
+        if prepared is None:
+            self._exited(1)
+            return
+        folders = {name: one.install.parent for name, one in prepared.builds.items() if one.install}
+        variables = {**prepared.environment, **self._variables}
+        program = self._jobs.start(
+            ProgramJob(prepared.command, variables, self._tree, folders, self._hidden())
+        )
         with self._changing:
             self._program = program
-        ended = threading.Event()
-        watcher = threading.Thread(
-            target=watch_processes,
-            args=(program.pid, ended, lambda process: self._report(process_line(process))),
-            daemon=True,
-        )
-        if watch:
-            watcher.start()
+        watching = watched(program.pid, lambda process: self.report(process_line(process)))
         try:
-            self._pass_on(program)
+            with watching if watch else contextlib.nullcontext():
+                self._pass_on(program)
         finally:
-            ended.set()
-            if watch:
-                watcher.join()
             with self._changing:
                 self._program = None
             program.end()
@@ -288,9 +224,32 @@ class _Run(threading.Thread):
         text = line[:MAX_LINE].decode("utf-8", "replace").rstrip("\r")
         self._lines.say(messages.Output(self.number, text))
 
-    def _report(self, line: str) -> None:
+    def build(self, found: Build, targets: Targets | None, name: str) -> Build:
+        """Let it be built by the jobs; the course's own packages must be.
+
+        Raises:
+            RuntimeError: They could not.
+        """
+        if name != COURSE:
+            return self._builds.build(found, targets, name=name, cancelled=self._cancelled.is_set)
+        made = self._builds.build(found, targets, name=name)
+        if not made.ok:
+            raise RuntimeError(f"the course's own packages could not be built: {made.line}")
+        return made
+
+    def place(self, name: str, entry: Path) -> Path:
+        """Where the jobs see it."""
+        return self._jobs.place(name, entry)
+
+    def report(self, line: str) -> None:
+        """Tell it to the judge."""
         text = line.replace(f"{self._tree}/", "").replace(str(self._tree), ".")
         self._lines.say(messages.ReportLine(self.number, text))
+
+    def built(self, line: str) -> None:
+        """Tell the judge before that it waits for no build any more."""
+        self._lines.say(messages.BuildEnded(self.number))
+        self.report(line)
 
     def _exited(self, code: int | None) -> None:
         self._lines.say(messages.Exited(self.number, code))

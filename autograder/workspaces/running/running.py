@@ -17,17 +17,17 @@ from typing import TYPE_CHECKING
 from autograder import exercises
 from autograder.kit.runners import Launches, RunsPrograms
 from autograder.parent_death import die_with_parent
-from autograder.workspaces.building.colcon import build, look
-from autograder.workspaces.running.launching import launch
+from autograder.workspaces.building.own import build
+from autograder.workspaces.running.launching import run_launch
 from autograder.workspaces.running.plans import plan_for, ros2
-from autograder.workspaces.running.prefixes import with_prefixes
+from autograder.workspaces.running.preparing import Preparation
 from autograder.workspaces.running.processes import tell
-from autograder.workspaces.running.reporting import built_line, found_line
+from autograder.workspaces.sources.finding import workspace_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.workspaces.running.plans import Plan
+    from autograder.workspaces.building.result import Build, Targets
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -42,34 +42,35 @@ def main(arguments: Sequence[str]) -> int:
     if exercise.runner is None or (len(arguments) > 2) != isinstance(exercise.runner, RunsPrograms):
         print(f"{exercise.id} takes no path: give it the class or function, or a command", file=sys.stderr)
         return 2
-    return run(plan_for(exercise.runner, arguments[2:]), Path(arguments[1]))
-
-
-def run(plan: Plan, workspace: Path) -> int:
-    """Report what is there, build what the exercise needs, report, and become the program.
-
-    Returns:
-        An exit code, where there is nothing to become.
-    """
-    found = look(workspace)
-    tell(found_line(found, plan))
-    if found.trouble:
-        tell(built_line(found, plan))
-        return 1
-    made = build(workspace, plan.targets)
-    missing = plan.missing(made) if made.ok else ""
-    tell(built_line(made, plan, missing))
-    if not made.ok or missing:
-        return 1
-    command = plan.command(made)
-    os.execvpe(command[0], list(command), with_prefixes(os.environ, made.prefixes))
+    prepared = Here().workspace(plan_for(exercise.runner, arguments[2:]), Path(arguments[1]))
+    if prepared is not None:
+        os.execvpe(prepared.command[0], list(prepared.command), prepared.environment)
     return 1
+
+
+class Here(Preparation):
+    """Builds and reports in this process, and runs what was built in its environment."""
+
+    def __init__(self) -> None:
+        super().__init__(os.environ)
+
+    def build(self, found: Build, targets: Targets | None, name: str) -> Build:
+        """Build it as the student does."""
+        del name
+        return build(found, targets)
+
+    def report(self, line: str) -> None:
+        """Print it."""
+        tell(line)
 
 
 def _launch(rest: Sequence[str]) -> int:
     if rest[0] == "--":
-        return launch(rest[1:], None)
-    if not Path(rest[0]).is_file():
-        print(f"there is no launch file {rest[0]}", file=sys.stderr)
+        prepared = Here().launch(rest[1:], None, None)
+    elif not (file := Path(rest[0])).is_file():
+        print(f"there is no launch file {file}", file=sys.stderr)
         return 1
-    return launch([ros2(), "launch", rest[0]], Path(rest[0]))
+    else:
+        workspace = workspace_of(file, (file.resolve().parent, Path.cwd()))
+        prepared = Here().launch([ros2(), "launch", rest[0]], file, workspace)
+    return run_launch(prepared.command, prepared.environment) if prepared else 1

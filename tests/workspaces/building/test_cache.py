@@ -17,17 +17,17 @@ from autograder.workspaces.running.processes import started_at
 
 
 def fill(key: str, size: int = 10) -> None:
-    with cache.entry(key) as entry:
+    with cache.entry(key, cache.root()) as entry:
         (entry.folder / "file").write_bytes(b"x" * size)
         entry.finish()
 
 
 def test_an_interrupted_entry_does_not_count(empty_cache: Path) -> None:
-    with contextlib.suppress(KeyboardInterrupt), cache.entry("a") as entry:
+    with contextlib.suppress(KeyboardInterrupt), cache.entry("a", cache.root()) as entry:
         (entry.folder / "half").touch()
         raise KeyboardInterrupt
     assert not (empty_cache / "a").exists()
-    with cache.entry("a") as entry:
+    with cache.entry("a", cache.root()) as entry:
         assert not entry.complete
 
 
@@ -35,7 +35,7 @@ def test_an_entry_counts_for_the_key_that_it_was_built_for_alone(empty_cache: Pa
     fill("a")
     (empty_cache / "a").rename(empty_cache / "b")
     assert not cache.is_complete("b", empty_cache)
-    with cache.entry("b") as entry:
+    with cache.entry("b", cache.root()) as entry:
         assert not entry.complete
         assert list(entry.folder.iterdir()) == []
 
@@ -44,7 +44,7 @@ def test_what_a_killed_builder_left_is_removed(empty_cache: Path) -> None:
     (empty_cache / "a").mkdir(parents=True)
     empty_cache.chmod(0o700)
     (empty_cache / "a" / "half").touch()
-    with cache.entry("a") as entry:
+    with cache.entry("a", cache.root()) as entry:
         assert not entry.complete
         assert list(entry.folder.iterdir()) == []
 
@@ -56,7 +56,7 @@ import os, signal, subprocess, sys
 from autograder.workspaces.building import cache
 # The session's first process is gone, and one that it has started goes on writing.
 below = "while true; do mkdir -p half; echo x > half/$$; done"
-with cache.entry("a") as entry:
+with cache.entry("a", cache.root()) as entry:
     colcon = subprocess.Popen(
         ["/bin/sh", "-c", f"({below}) & echo $!"], cwd=entry.folder, start_new_session=True, stdout=subprocess.PIPE
     )
@@ -68,18 +68,18 @@ with cache.entry("a") as entry:
     assert killed.returncode == -signal.SIGKILL
     writing = int(killed.stdout)
     assert started_at(writing)
-    with cache.entry("a") as entry:
+    with cache.entry("a", cache.root()) as entry:
         assert state_of(writing) in ("", "Z")  # nobody may have waited for it yet
         assert list(entry.folder.iterdir()) == []
 
 
 def test_a_later_program_of_the_same_number_is_left_alone(empty_cache: Path) -> None:
-    with cache.entry("a") as entry:
+    with cache.entry("a", cache.root()) as entry:
         entry.finish()
     other = subprocess.Popen(["/bin/sleep", "60"], start_new_session=True)
     try:
         (empty_cache / "a.lock").write_text(f"{other.pid} 1", encoding="utf-8")
-        with cache.entry("a"):
+        with cache.entry("a", cache.root()):
             assert other.poll() is None
     finally:
         other.kill()
@@ -99,13 +99,13 @@ def test_two_builders_of_one_key_take_turns() -> None:
     entered = threading.Event()
 
     def builder(name: str) -> None:
-        with cache.entry("a") as entry:
+        with cache.entry("a", cache.root()) as entry:
             entered.set()
             if not entry.complete:
                 built.append(name)
                 entry.finish()
 
-    with cache.entry("a") as entry:
+    with cache.entry("a", cache.root()) as entry:
         waiting = threading.Thread(target=builder, args=("second",))
         waiting.start()
         assert not entered.wait(0.1)
@@ -117,11 +117,11 @@ def test_two_builders_of_one_key_take_turns() -> None:
 
 def test_who_waits_for_an_entry_can_give_up(empty_cache: Path) -> None:
     empty_cache.mkdir(mode=0o700)
-    with cache.entry("a") as held:
-        with pytest.raises(cache.GivenUp), cache.entry("a", cancelled=lambda: True):
+    with cache.entry("a", cache.root()) as held:
+        with pytest.raises(cache.GivenUp), cache.entry("a", cache.root(), cancelled=lambda: True):
             pass
         held.finish()
-    with cache.entry("a", cancelled=lambda: True) as entry:
+    with cache.entry("a", cache.root(), cancelled=lambda: True) as entry:
         assert entry.complete
 
 
@@ -152,6 +152,6 @@ def test_the_oldest_go_first_and_those_in_use_stay(empty_cache: Path) -> None:
 def test_an_entry_that_somebody_holds_is_not_removed(empty_cache: Path) -> None:
     fill("a")
     os.utime(empty_cache / "a" / "complete", (0, 0))
-    with cache.entry("a"):
+    with cache.entry("a", cache.root()):
         os.utime(empty_cache / "a" / "complete", (0, 0))
         assert cache.make_room(empty_cache, limit=0) == []

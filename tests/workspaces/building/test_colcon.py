@@ -6,14 +6,25 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.workspaces import Build, build, with_prefixes
+from autograder.workspaces.building import own
+from autograder.workspaces.building.colcon import look
 from autograder.workspaces.building.placing import CannotPlace, place
+from autograder.workspaces.running.prefixes import with_prefixes
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from made_workspaces import python_package
+
+if TYPE_CHECKING:
+    from autograder.workspaces.building.result import Build, Targets
+
+
+def build(workspace: Path, targets: Targets | None = None) -> Build:
+    """What comes of building a folder."""
+    return own.build(look(workspace), targets)
 
 
 def run_program(made: Build) -> str:

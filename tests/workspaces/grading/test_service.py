@@ -19,9 +19,10 @@ import pytest
 from autograder.kit.evidence import REPORTS
 from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, Lines
-from autograder.workspaces.building import colcon, colcon_stand_in
+from autograder.workspaces.building import colcon_stand_in, own
+from autograder.workspaces.building.jobs import BuildJob, Built
 from autograder.workspaces.grading import service, session
-from autograder.workspaces.grading.jobs import BuildJob, Built, ProgramJob
+from autograder.workspaces.grading.jobs import ProgramJob
 from autograder.workspaces.grading.plain_jobs import PlainProgram
 from autograder.workspaces.grading.service import ServiceSockets, WorkspaceService
 from autograder.workspaces.running.prefixes import LIBRARY
@@ -468,7 +469,7 @@ def test_a_notebook_s_build_comes_from_the_grader(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.setenv(colcon.GRADERS, str(sockets.notebook))
+    monkeypatch.setenv(own.GRADERS, str(sockets.notebook))
     monkeypatch.chdir(lab)
     assert colcon_stand_in.main(["build", "--packages-select", "my_robot_pkg"]) == 0
     assert "Finished <<< my_robot_pkg" in capsys.readouterr().out
@@ -487,7 +488,7 @@ def test_a_notebook_s_failed_build_shows_what_colcon_said(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     jobs.built = Built(1, b"SyntaxError: invalid syntax\nFailed   <<< my_robot_pkg\n")
-    monkeypatch.setenv(colcon.GRADERS, str(sockets.notebook))
+    monkeypatch.setenv(own.GRADERS, str(sockets.notebook))
     monkeypatch.chdir(lab)
     assert colcon_stand_in.main(["build"]) == 1
     assert "SyntaxError" in capsys.readouterr().out
@@ -583,7 +584,7 @@ def test_what_fails_in_nobody_s_words_is_told_in_the_student_s(
 def test_a_build_that_takes_too_long_says_nothing_about_the_sources(
     sockets: ServiceSockets, jobs: FakeJobs, lab: Path
 ) -> None:
-    jobs.built = Built(None, b"", late=True)
+    jobs.built = Built(None, b"", late=170.0)
     judge = FakeJudge(sockets)
     judge.check(lab)
     heard = judge.run()
