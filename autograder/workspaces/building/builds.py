@@ -1,7 +1,7 @@
 """Builds of workspaces, each made once for the same sources: in a student's kernel, in a terminal and for a class.
 
 The sources are read once. What comes of a build depends on these bytes and on the tools: their hash is the key under
-which it is kept. Who runs it (:class:`autograder.workspaces.building.jobs.Builder`) is all that differs between the
+which it is kept. Who runs it (:class:`autograder.workspaces.jobs.Builder`) is all that differs between the
 places.
 """
 
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from autograder.workspaces.building import artefacts, cache
 from autograder.workspaces.building.colcon import choose, command, failed, moved
-from autograder.workspaces.building.jobs import BuildJob
+from autograder.workspaces.jobs import BuildJob
 from autograder.workspaces.sources.finding import WORKSPACE
 from autograder.workspaces.sources.packages import key, sources_of
 from autograder.workspaces.sources.tree import BadSources
@@ -24,8 +24,8 @@ from autograder.workspaces.sources.tree import BadSources
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from autograder.workspaces.building.jobs import Builder, Built
     from autograder.workspaces.building.result import Build, Targets
+    from autograder.workspaces.jobs import Builder, Built
     from autograder.workspaces.sources.packages import Package
     from autograder.workspaces.sources.tree import Tree
 
@@ -55,7 +55,7 @@ class Order:
     """A build that is ordered.
 
     Attributes:
-        name: See :meth:`autograder.workspaces.building.jobs.Builder.place`.
+        name: See :meth:`autograder.workspaces.jobs.Builder.place`.
         tree: What the build gets to see.
         packages: The packages in it; their folders are relative to the place of the build.
         cancelled: Says when nobody waits for it any more.
@@ -106,7 +106,7 @@ class Builds:
             found: The workspace, looked at.
             targets: Which packages are needed; they are built with what they depend on, or without it where only that
                 fails. None for all.
-            name: See :meth:`autograder.workspaces.building.jobs.Builder.place`.
+            name: See :meth:`autograder.workspaces.jobs.Builder.place`.
             cancelled: Says when nobody waits for it any more.
 
         Returns:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from autograder.workspaces.building import cache
 from autograder.workspaces.building.builds import Builds, BuildTookTooLong
-from autograder.workspaces.building.jobs import Built
+from autograder.workspaces.jobs import Built
 from autograder.workspaces.running.own_session import OwnSession
 from autograder.workspaces.running.prefixes import without_workspaces
 
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.workspaces.building.builds import Order
-    from autograder.workspaces.building.jobs import BuildJob
     from autograder.workspaces.building.result import Build, Targets
+    from autograder.workspaces.jobs import BuildJob
 
 LIMIT = 300.0
 """Seconds of wall time in which colcon must have ended."""
@@ -56,7 +56,7 @@ class _OwnBuilds(Builds):
 
 
 class _Here:
-    """Implements :class:`autograder.workspaces.building.jobs.Builder`.
+    """Implements :class:`autograder.workspaces.jobs.Builder`.
 
     Args:
         workspace: What lies in it is not found by the build.

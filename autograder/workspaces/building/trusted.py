@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from autograder.workspaces.building.builds import Order
-    from autograder.workspaces.building.jobs import Builder, Built
     from autograder.workspaces.building.result import Build
+    from autograder.workspaces.jobs import Builder, Built
     from autograder.workspaces.sources.packages import Package
 
 ROOM = 16_000_000
@@ -54,7 +54,7 @@ class TrustedBuilds(Builds):
         self._room = room
 
     def place(self, name: str, entry: Path) -> Path:
-        """See :meth:`autograder.workspaces.building.jobs.Builder.place`."""
+        """See :meth:`autograder.workspaces.jobs.Builder.place`."""
         return self._builder.place(name, entry)
 
     def _find_or_make(self, found: Build, chosen: Sequence[Package], order: Order) -> Build:

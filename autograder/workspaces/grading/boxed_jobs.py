@@ -21,16 +21,14 @@ from autograder.boxes.guards import BoxGuard
 from autograder.boxes.limits import Limits
 from autograder.boxes.mounts import HOME, WORK
 from autograder.boxes.sandbox import Bind, Enclosure
-from autograder.workspaces.building.jobs import Built
-from autograder.workspaces.grading.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES
+from autograder.workspaces.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, Built
 from autograder.workspaces.running.processes import descendants
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from autograder.boxes.boxed_command import Running
-    from autograder.workspaces.building.jobs import BuildJob
-    from autograder.workspaces.grading.jobs import ProgramJob
+    from autograder.workspaces.jobs import BuildJob, ProgramJob
 
 BUILD_LIMITS = Limits(
     cpu_seconds=300.0,
@@ -51,7 +49,7 @@ _ITS_TIME = 1e6
 
 
 class BoxedJobs:
-    """Implements :class:`autograder.workspaces.grading.jobs.Jobs`.
+    """Implements :class:`autograder.workspaces.jobs.Jobs`.
 
     Args:
         supervisors: Where the fork server of supervisors listens.
@@ -147,7 +145,7 @@ class BoxedJobs:
 
 
 class BoxedProgram:
-    """Implements :class:`autograder.workspaces.grading.jobs.Program`."""
+    """Implements :class:`autograder.workspaces.jobs.Program`."""
 
     def __init__(self, running: Running) -> None:
         self._running = running

@@ -13,19 +13,18 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder.workspaces.building.own import run
-from autograder.workspaces.grading.jobs import BUILD_SECONDS, MAX_LOG_BYTES
+from autograder.workspaces.jobs import BUILD_SECONDS, MAX_LOG_BYTES
 from autograder.workspaces.running.own_session import OwnSession
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from autograder.workspaces.building.jobs import BuildJob, Built
-    from autograder.workspaces.grading.jobs import ProgramJob
+    from autograder.workspaces.jobs import BuildJob, Built, ProgramJob
 
 
 class PlainJobs:
-    """Implements :class:`autograder.workspaces.grading.jobs.Jobs`.
+    """Implements :class:`autograder.workspaces.jobs.Jobs`.
 
     Args:
         environment: The whole environment of what is run.
@@ -67,7 +66,7 @@ class PlainJobs:
 
 
 class PlainProgram(OwnSession):
-    """Implements :class:`autograder.workspaces.grading.jobs.Program`: its home and temporary files are its own."""
+    """Implements :class:`autograder.workspaces.jobs.Program`: its home and temporary files are its own."""
 
     def __init__(self, command: Sequence[str], environment: Mapping[str, str], cwd: Path) -> None:
         self._home = tempfile.TemporaryDirectory(prefix="job-", ignore_cleanup_errors=True)

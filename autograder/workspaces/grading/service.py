@@ -30,7 +30,7 @@ from autograder.workspaces.grading.session import Session
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from autograder.workspaces.grading.jobs import Jobs
+    from autograder.workspaces.jobs import Jobs
 
 MAX_BUILDS = 20
 """Builds that one notebook may ask for; after that colcon does its work in the box."""

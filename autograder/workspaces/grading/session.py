@@ -11,7 +11,7 @@ from autograder.kit.launch_report import process_line
 from autograder.kit.runners import Launches, ServesInterface
 from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, NotUnderstood
-from autograder.workspaces.grading.jobs import ProgramJob
+from autograder.workspaces.jobs import ProgramJob
 from autograder.workspaces.running.launching import watched
 from autograder.workspaces.running.plans import course_interfaces, plan_for, ros2
 from autograder.workspaces.running.preparing import COURSE, Preparation
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from autograder.messages.lines import Lines
     from autograder.workspaces.building.result import Build, Targets
     from autograder.workspaces.building.trusted import TrustedBuilds
-    from autograder.workspaces.grading.jobs import Jobs, Program
+    from autograder.workspaces.jobs import Jobs, Program
     from autograder.workspaces.running.preparing import Prepared
 
 MAX_LINE = 4_000

@@ -64,7 +64,7 @@ class Preparation(ABC):
         """Where the program sees a folder of the cache, which is its own place unless there is a box.
 
         Args:
-            name: See :meth:`autograder.workspaces.building.jobs.Builder.place`.
+            name: See :meth:`autograder.workspaces.jobs.Builder.place`.
             entry: The folder.
         """
         del name

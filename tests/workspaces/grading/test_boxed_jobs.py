@@ -17,7 +17,7 @@ from autograder.boxes.sandbox import Enclosure, why_impossible
 from autograder.workspaces.building.colcon import look
 from autograder.workspaces.building.trusted import TrustedBuilds
 from autograder.workspaces.grading.boxed_jobs import BoxedJobs, BoxedProgram
-from autograder.workspaces.grading.jobs import ProgramJob
+from autograder.workspaces.jobs import ProgramJob
 from autograder.workspaces.running.plans import course_interfaces
 
 sys.path.insert(0, str(Path(__file__).parents[1]))

@@ -20,11 +20,10 @@ from autograder.kit.evidence import REPORTS
 from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, Lines
 from autograder.workspaces.building import colcon_stand_in, own
-from autograder.workspaces.building.jobs import BuildJob, Built
 from autograder.workspaces.grading import service, session
-from autograder.workspaces.grading.jobs import ProgramJob
 from autograder.workspaces.grading.plain_jobs import PlainProgram
 from autograder.workspaces.grading.service import ServiceSockets, WorkspaceService
+from autograder.workspaces.jobs import BuildJob, Built, ProgramJob
 from autograder.workspaces.running.prefixes import LIBRARY
 from autograder.workspaces.sources import collecting
 
