@@ -23,7 +23,7 @@ from autograder.workspaces.building.placing import CannotPlace, place
 from autograder.workspaces.running.prefixes import package_prefixes, python_folders, with_prefixes
 
 if TYPE_CHECKING:
-    from autograder.workspaces.building.result import Build
+    from autograder.workspaces.building.colcon import Build
 
 MAX_LOG = 4_000
 """Characters of a failed build's log that are shown."""

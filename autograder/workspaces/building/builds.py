@@ -24,7 +24,7 @@ from autograder.workspaces.sources.tree import BadSources
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from autograder.workspaces.building.result import Build, Targets
+    from autograder.workspaces.building.colcon import Build, Targets
     from autograder.workspaces.jobs import Builder, Built
     from autograder.workspaces.sources.packages import Package
     from autograder.workspaces.sources.tree import Tree

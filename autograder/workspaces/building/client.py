@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from autograder.workspaces.building.result import Build
+    from autograder.workspaces.building.colcon import Build
     from autograder.workspaces.sources.packages import Package
 
 LIMIT = 300.0

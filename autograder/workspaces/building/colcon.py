@@ -1,27 +1,85 @@
-"""What is there to be built, how colcon is told to build it, and what its output says of a failure."""
+"""A workspace as it is found and built, how colcon is told to build it, and what its output says of a failure."""
 
 from __future__ import annotations
 
 import sys
-from dataclasses import replace
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import re2
 
 from autograder.workspaces.building.failures import telling_line
-from autograder.workspaces.building.result import Build
+from autograder.workspaces.running.prefixes import package_prefixes, python_folders
 from autograder.workspaces.sources.packages import needed, survey
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
-    from autograder.workspaces.building.result import Targets
     from autograder.workspaces.sources.packages import Package
 
 MAX_LOG = 40_000
 """Characters of a failed build's log that are kept: its end."""
 _FAILED = re2.compile(r"(?m)^Failed\s+<<< (?P<name>\S+)")
+
+
+@dataclass(frozen=True)
+class Build:
+    """A workspace: what is there to be built, and what building it has brought.
+
+    Attributes:
+        workspace: Its folder.
+        ok: Whether every package was built.
+        install: Where the packages are installed; empty where it failed.
+        packages: The packages of the workspace, as their files describe them.
+        unusable: What is wrong with those that cannot be used.
+        seconds: Wall time that it took.
+        reused: Whether the same sources had been built before.
+        trouble: ``"no_workspace"``, ``"no_package"``, ``"bad_package"`` or ``"build"``; empty where it is
+            well.
+        package: The package that failed, else empty.
+        line: The one line that matters of a failure.
+        log: The log of a failure.
+    """
+
+    workspace: Path
+    ok: bool
+    install: Path | None = None
+    packages: tuple[Package, ...] = ()
+    unusable: tuple[str, ...] = ()
+    seconds: float = 0.0
+    reused: bool = False
+    trouble: str = ""
+    package: str = ""
+    line: str = ""
+    log: str = field(default="", repr=False)
+
+    @property
+    def prefixes(self) -> list[Path]:
+        """One folder for each installed package."""
+        return package_prefixes(self.install) if self.install else []
+
+    def programs(self, package: str) -> tuple[str, ...]:
+        """The names of the programs that ``ros2 run`` finds of an installed package; empty where it is none."""
+        folders = [prefix / "lib" / package for prefix in self.prefixes if prefix.name == package]
+        return tuple(sorted(file.name for folder in folders for file in folder.glob("*") if file.is_file()))
+
+    def entry_points(self, package: str) -> tuple[str, ...]:
+        """The entry points of an installed Python package, as ``name = module:function``, however it names them."""
+        folders = [f for prefix in self.prefixes if prefix.name == package for f in python_folders(prefix)]
+        files = [file for folder in folders for file in folder.glob("*/entry_points.txt")]
+        texts = (file.read_text(encoding="utf-8", errors="replace") for file in files)
+        return tuple(
+            line
+            for text in texts
+            for line in text.splitlines()
+            if re2.fullmatch(r"\S+ = [\w.]+:[\w.]+", line)
+        )
+
+
+Targets = Callable[[Build], Iterable[str]]
+"""Says of a workspace that was looked at which of its packages are needed; none of them means all."""
 
 
 def failed(found: Build, log: str) -> Build:

@@ -20,7 +20,7 @@ from autograder.workspaces.sources.packages import needed
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.workspaces.building.result import Build, Targets
+    from autograder.workspaces.building.colcon import Build, Targets
 
 UP_TO = "--packages-up-to"
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.workspaces.building.builds import Order
-    from autograder.workspaces.building.result import Build, Targets
+    from autograder.workspaces.building.colcon import Build, Targets
     from autograder.workspaces.jobs import BuildJob
 
 LIMIT = 300.0

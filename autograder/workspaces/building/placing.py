@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from autograder.workspaces.building.artefacts import rename_paths
 
 if TYPE_CHECKING:
-    from autograder.workspaces.building.result import Build
+    from autograder.workspaces.building.colcon import Build
 
 _LAYOUT = ".colcon_install_layout"
 

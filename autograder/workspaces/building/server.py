@@ -7,12 +7,12 @@ import tarfile
 from typing import TYPE_CHECKING
 
 from autograder.messages.lines import NotUnderstood
-from autograder.messages.workspaces import Build, BuildDone, BuildFailed, NotBuilt, Piece, Source
+from autograder.messages.workspaces import Build, BuildDone, BuildFailed, NotBuilt, Piece
 from autograder.workspaces.building.builds import BuildTookTooLong
 from autograder.workspaces.building.colcon import look
-from autograder.workspaces.sources import collecting
+from autograder.workspaces.sources.collecting import receive
 from autograder.workspaces.sources.finding import WORKSPACE
-from autograder.workspaces.sources.tree import BadSources, Tree
+from autograder.workspaces.sources.tree import BadSources
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -42,12 +42,7 @@ def serve_builds(lines: Lines, builds: TrustedBuilds, folder: Path, cancelled: C
     tree.mkdir()
     try:
         order = lines.hear(Build)
-        if not 0 <= order.count <= collecting.MAX_FILES:
-            raise BadSources("there is too much in src")
-        taken = [lines.hear(Source) for _ in range(order.count)]
-        collecting.check_path(order.path)
-        Tree(tuple(collecting.checked(taken))).write(tree)
-        only = set(order.only)
+        receive(lines, order.count, order.path, tree)
     except (BadSources, NotUnderstood) as error:
         lines.say(NotBuilt(str(error)))
         return
@@ -57,8 +52,7 @@ def serve_builds(lines: Lines, builds: TrustedBuilds, folder: Path, cancelled: C
         try:
             made = builds.build(
                 found,
-                lambda f: [p.name for p in f.packages if p.name in only],
-                name=WORKSPACE,
+                lambda f: [p.name for p in f.packages if p.name in order.only],
                 cancelled=cancelled,
             )
         except BuildTookTooLong as error:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from autograder.workspaces.building.builds import Order
-    from autograder.workspaces.building.result import Build
+    from autograder.workspaces.building.colcon import Build
     from autograder.workspaces.jobs import Builder, Built
     from autograder.workspaces.sources.packages import Package
 

@@ -7,18 +7,17 @@ import threading
 from typing import TYPE_CHECKING, Self
 
 from autograder import exercises
-from autograder.kit.launch_report import process_line
 from autograder.kit.runners import Launches, ServesInterface
 from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, NotUnderstood
 from autograder.workspaces.jobs import ProgramJob
-from autograder.workspaces.running.launching import watched
 from autograder.workspaces.running.plans import course_interfaces, plan_for, ros2
 from autograder.workspaces.running.preparing import COURSE, Preparation
+from autograder.workspaces.running.processes import watched
 from autograder.workspaces.running.reporting import no_sources_line
-from autograder.workspaces.sources import collecting
+from autograder.workspaces.sources.collecting import receive
 from autograder.workspaces.sources.finding import workspace_of
-from autograder.workspaces.sources.tree import BadSources, Tree
+from autograder.workspaces.sources.tree import BadSources
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 
     from autograder.kit.runners import Runner
     from autograder.messages.lines import Lines
-    from autograder.workspaces.building.result import Build, Targets
+    from autograder.workspaces.building.colcon import Build, Targets
     from autograder.workspaces.building.trusted import TrustedBuilds
     from autograder.workspaces.jobs import Jobs, Program
     from autograder.workspaces.running.preparing import Prepared
@@ -91,11 +90,7 @@ class Session:
         """Write down what was submitted; what is wrong with it, if anything is."""
         self._tree.mkdir()
         try:
-            if check.count > collecting.MAX_FILES:
-                raise BadSources("there is too much in src")
-            taken = [self._lines.hear(messages.Source) for _ in range(check.count)]
-            collecting.check_path(check.path)
-            Tree(tuple(collecting.checked(taken))).write(self._tree)
+            receive(self._lines, check.count, check.path, self._tree)
         except BadSources as error:
             return str(error)
         except NotUnderstood:
@@ -196,9 +191,8 @@ class _Run(Preparation):
         )
         with self._changing:
             self._program = program
-        watching = watched(program.pid, lambda process: self.report(process_line(process)))
         try:
-            with watching if watch else contextlib.nullcontext():
+            with watched(program.pid, self.report) if watch else contextlib.nullcontext():
                 self._pass_on(program)
         finally:
             with self._changing:

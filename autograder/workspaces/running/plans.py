@@ -19,7 +19,7 @@ from autograder.workspaces.sources.finding import WORKSPACE
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from autograder.workspaces.building.result import Build
+    from autograder.workspaces.building.colcon import Build
     from autograder.workspaces.sources.packages import Package
 
 COURSE_PACKAGE = "my_robot_pkg"

@@ -6,7 +6,17 @@ import contextlib
 import os
 import select
 import signal
+import threading
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+from autograder.kit.launch_report import Process, process_line
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+LOOK_EVERY = 0.05
+"""Seconds between two looks at the launch's processes."""
 
 
 def descendants(pid: int) -> list[int]:
@@ -19,7 +29,7 @@ def descendants(pid: int) -> list[int]:
     return children + [below for child in children for below in descendants(child)]
 
 
-def arguments_of(pid: int) -> list[str]:
+def _arguments_of(pid: int) -> list[str]:
     """The words that a process was started with; none where it is gone."""
     try:
         words = Path(f"/proc/{pid}/cmdline").read_bytes().rstrip(b"\0")
@@ -28,12 +38,12 @@ def arguments_of(pid: int) -> list[str]:
     return [word.decode("utf-8", "replace") for word in words.split(b"\0")] if words else []
 
 
-def own_id(pid: int) -> int:
+def _own_id(pid: int) -> int:
     """The id by which a process knows itself, which is another one in a PID namespace; 0 where it is gone."""
     return int((_status(pid, "NSpid") or ["0"])[-1])
 
 
-def parent_of(pid: int) -> int:
+def _parent_of(pid: int) -> int:
     """The process that started this one, or has adopted it; 0 where it is gone."""
     return int((_status(pid, "PPid") or ["0"])[0])
 
@@ -89,3 +99,31 @@ def _status(pid: int, name: str) -> list[str]:
 def tell(line: str) -> None:
     """Print a line in one piece: what else writes to the same pipe cannot come between it and its end."""
     os.write(1, f"{line}\n".encode("utf-8", "replace"))
+
+
+@contextlib.contextmanager
+def watched(pid: int, report: Callable[[str], None]) -> Iterator[None]:
+    """Look at the processes below one, in a thread.
+
+    Args:
+        pid: That one.
+        report: Told each process and command line once, in the line of the report that a check reads.
+    """
+    ended = threading.Event()
+    watcher = threading.Thread(target=_watch, args=(pid, ended, report), daemon=True)
+    watcher.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        watcher.join()
+
+
+def _watch(pid: int, ended: threading.Event, report: Callable[[str], None]) -> None:
+    known: set[tuple[int, tuple[str, ...]]] = set()
+    while not ended.wait(LOOK_EVERY):
+        for child in descendants(pid):
+            argv = tuple(_arguments_of(child))
+            if argv and (child, argv) not in known:
+                known.add((child, argv))
+                report(process_line(Process(_own_id(child), _own_id(_parent_of(child)), argv)))

@@ -11,7 +11,7 @@ from autograder.kit.workspace_report import Interface, PackageReport, WorkspaceR
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from autograder.workspaces.building.result import Build
+    from autograder.workspaces.building.colcon import Build
     from autograder.workspaces.running.plans import Plan
     from autograder.workspaces.sources.packages import Package
 

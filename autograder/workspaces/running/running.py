@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,16 +19,16 @@ from autograder import exercises
 from autograder.kit.runners import Launches, RunsPrograms
 from autograder.parent_death import die_with_parent
 from autograder.workspaces.building.own import build
-from autograder.workspaces.running.launching import run_launch
 from autograder.workspaces.running.plans import plan_for, ros2
 from autograder.workspaces.running.preparing import Preparation
-from autograder.workspaces.running.processes import tell
+from autograder.workspaces.running.processes import tell, watched
 from autograder.workspaces.sources.finding import workspace_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.workspaces.building.result import Build, Targets
+    from autograder.workspaces.building.colcon import Build, Targets
+    from autograder.workspaces.running.preparing import Prepared
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -73,4 +74,22 @@ def _launch(rest: Sequence[str]) -> int:
     else:
         workspace = workspace_of(file, (file.resolve().parent, Path.cwd()))
         prepared = Here().launch([ros2(), "launch", rest[0]], file, workspace)
-    return run_launch(prepared.command, prepared.environment) if prepared else 1
+    return _run(prepared) if prepared else 1
+
+
+def _run(launch: Prepared) -> int:
+    """Run a launch to its end, and report how it starts its processes; its exit code.
+
+    A topic that is renamed in the code and one that is remapped by the launch file look the same on the wire. What
+    tells them apart is the command line of the process: that is how every launch hands a remapping to a node.
+    """
+    # Ctrl-C reaches the whole process group: the launch ends its nodes and then itself, and this waits for it.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    process = subprocess.Popen(launch.command, env=launch.environment, preexec_fn=_listen_to_interrupts)
+    signal.signal(signal.SIGTERM, lambda *_: process.terminate())
+    with watched(process.pid, tell):
+        return process.wait()
+
+
+def _listen_to_interrupts() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -10,10 +10,12 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from autograder.messages.workspaces import Source
-from autograder.workspaces.sources.tree import BadSources, is_source, read, read_file
+from autograder.workspaces.sources.tree import BadSources, Tree, is_source, read, read_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
+
+    from autograder.messages.lines import Lines
 
 MAX_FILES = 1_000
 """Files and folders that one submission may send."""
@@ -48,7 +50,7 @@ def collect_launch(file: Path, workspace: Path | None) -> tuple[str, list[Source
 
     Args:
         file: The launch file.
-        workspace: What :func:`autograder.workspaces.running.launching.workspace_of` finds for it.
+        workspace: What :func:`autograder.workspaces.sources.finding.workspace_of` finds for it.
 
     Returns:
         The file's path among the sources, and these.
@@ -85,6 +87,27 @@ def checked(sources: Iterable[Source]) -> list[Source]:
         if any(taken[name].data is not None for name in above if name in taken):
             raise BadSources(f"{path} lies in a file")
     return [source for source in _bounded(list(taken.values())) if is_source(source.path)]
+
+
+def receive(lines: Lines, count: int, path: str, folder: Path) -> None:
+    """Write down sources that somebody else sends, once nothing about them can do harm.
+
+    Args:
+        lines: Their end.
+        count: How many they say that there are.
+        path: What they call the workspace or the launch file among them.
+        folder: Empty, ours alone.
+
+    Raises:
+        BadSources: Something could.
+        NotUnderstood: They send something else.
+        Hangup: They are gone.
+    """
+    if not 0 <= count <= MAX_FILES:
+        raise BadSources("there is too much in src")
+    taken = [lines.hear(Source) for _ in range(count)]
+    check_path(path)
+    Tree(tuple(checked(taken))).write(folder)
 
 
 def check_path(path: str) -> None:

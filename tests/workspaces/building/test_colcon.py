@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from made_workspaces import python_package
 
 if TYPE_CHECKING:
-    from autograder.workspaces.building.result import Build, Targets
+    from autograder.workspaces.building.colcon import Build, Targets
 
 
 def build(workspace: Path, targets: Targets | None = None) -> Build:

@@ -25,7 +25,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from autograder.workspaces.building.result import Build
+    from autograder.workspaces.building.colcon import Build
 
 pytestmark = pytest.mark.skipif(bool(why_impossible()), reason=f"no boxes here: {why_impossible()}")
 

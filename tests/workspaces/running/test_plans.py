@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.workspaces.building.result import Build
+from autograder.workspaces.building.colcon import Build
 from autograder.workspaces.running.plans import lacks_programs, launch_targets
 from autograder.workspaces.sources.packages import Package
 

@@ -17,7 +17,7 @@ from autograder.kit.workspace_report import (
     as_line,
     report_of,
 )
-from autograder.workspaces.building.result import Build
+from autograder.workspaces.building.colcon import Build
 from autograder.workspaces.running.plans import Plan
 from autograder.workspaces.running.prefixes import LIBRARY
 from autograder.workspaces.running.reporting import built_line, found_line
