@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
+    from autograder.workspaces.building.cache import Entry
+    from autograder.workspaces.sources.packages import Package
+    from autograder.workspaces.sources.tree import Tree
 
 BUILD_SECONDS = 170.0
 """Wall time in which a build must have ended; an interface package takes five on two idle cores. Less than an exercise
@@ -24,27 +27,28 @@ MAX_ARCHIVE_BYTES = 64_000_000
 
 
 @dataclass(frozen=True)
-class BuildJob:
+class BuildOrder:
     """A build that is wanted.
 
     Attributes:
         name: See :meth:`Builder.place`.
-        entry: Holds ``src``, which the build may read. All that it writes is gone afterwards, but for ``install`` of
-            the place.
-        command: Names everything as it is seen from the job.
-        variables: More variables of its environment.
+        tree: What the build gets to see, in ``src`` of its place.
+        packages: The packages in it; their folders are relative to the place.
         cancelled: Asked now and then; the build is ended when it says so.
-        hidden: Files and folders of the environment that the build must not find.
-        begun: Told the first process of a build that goes on when this one is killed.
+        cmake: More arguments for CMake.
+        variables: More variables of its environment.
+        hidden: Files and folders of the environment that it must not find.
+        key: Stands for all this and for the tools.
     """
 
     name: str
-    entry: Path
-    command: Sequence[str]
-    variables: Mapping[str, str]
+    tree: Tree
+    packages: Sequence[Package]
     cancelled: Callable[[], bool]
-    hidden: Sequence[Path]
-    begun: Callable[[int], None]
+    cmake: Sequence[str] = ()
+    variables: Mapping[str, str] = field(default_factory=dict)
+    hidden: Sequence[Path] = ()
+    key: str = ""
 
 
 @dataclass(frozen=True)
@@ -77,8 +81,15 @@ class Builder(Protocol):
         """
         ...
 
-    def build(self, job: BuildJob) -> Built:
-        """Run colcon."""
+    def build(self, order: BuildOrder, command: Sequence[str], entry: Entry) -> Built:
+        """Run colcon.
+
+        Args:
+            order: What is wanted.
+            command: Names everything as it is seen from the job.
+            entry: Its folder holds ``src``, which the build may read. All that it writes is gone afterwards, but for
+                ``install`` of the place.
+        """
         ...
 
 

@@ -10,27 +10,28 @@ from __future__ import annotations
 import os
 import shutil
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.workspaces.building import artefacts, cache
 from autograder.workspaces.building.colcon import choose, command, failed, moved
-from autograder.workspaces.jobs import BuildJob
+from autograder.workspaces.jobs import BuildOrder
 from autograder.workspaces.sources.finding import WORKSPACE
 from autograder.workspaces.sources.packages import key, sources_of
 from autograder.workspaces.sources.tree import BadSources
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Sequence
 
     from autograder.workspaces.building.colcon import Build, Targets
     from autograder.workspaces.jobs import Builder, Built
     from autograder.workspaces.sources.packages import Package
-    from autograder.workspaces.sources.tree import Tree
 
 MAX_LINE = 1_000
 """Characters of a line of a build's output that are looked at."""
+NO_DEFAULTS = {"COLCON_DEFAULTS_FILE": os.devnull}
+"""What a user tells colcon for all builds is not in the key."""
 
 
 class BuildTookTooLong(RuntimeError):
@@ -48,31 +49,6 @@ class BuildTookTooLong(RuntimeError):
     def __init__(self, seconds: float, found: Build, log: str) -> None:
         super().__init__(f"a build did not end within {seconds:g} s; is the machine too busy?")
         self.build = replace(failed(found, log), line=str(self))
-
-
-@dataclass(frozen=True)
-class Order:
-    """A build that is ordered.
-
-    Attributes:
-        name: See :meth:`autograder.workspaces.jobs.Builder.place`.
-        tree: What the build gets to see.
-        packages: The packages in it; their folders are relative to the place of the build.
-        cancelled: Says when nobody waits for it any more.
-        cmake: More arguments for CMake.
-        variables: More variables of its environment.
-        hidden: What it must not find of the environment.
-        key: Stands for all this and for the tools.
-    """
-
-    name: str
-    tree: Tree
-    packages: Sequence[Package]
-    cancelled: Callable[[], bool]
-    cmake: Sequence[str] = ()
-    variables: Mapping[str, str] = field(default_factory=dict)
-    hidden: Sequence[Path] = ()
-    key: str = ""
 
 
 class Builds:
@@ -135,7 +111,8 @@ class Builds:
             return found
         src = found.workspace / "src"
         try:
-            order = Order(name, sources_of(src, chosen), moved(chosen, src, Path("src")), cancelled)
+            tree, packages = sources_of(src, chosen), moved(chosen, src, Path("src"))
+            order = BuildOrder(name, tree, packages, cancelled, variables=NO_DEFAULTS)
             made = self._find_or_make(found, chosen, order)
         except BadSources as error:
             return replace(found, trouble="bad_package", line=str(error))
@@ -143,12 +120,12 @@ class Builds:
             return replace(found, trouble="build", line=str(error))  # which nobody will read
         return replace(made, seconds=time.monotonic() - began)
 
-    def _find_or_make(self, found: Build, chosen: Sequence[Package], order: Order) -> Build:
+    def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:
         """The build of the chosen packages; the order says the same with their folders inside the place."""
         del chosen
         return self._entry(found, self._keyed(order))
 
-    def _keyed(self, order: Order, *words: str) -> Order:
+    def _keyed(self, order: BuildOrder, *words: str) -> BuildOrder:
         """The order with its key, which more words than all that it is made of may be in."""
         return replace(
             order,
@@ -163,7 +140,7 @@ class Builds:
             ),
         )
 
-    def _entry(self, found: Build, order: Order) -> Build:
+    def _entry(self, found: Build, order: BuildOrder) -> Build:
         with cache.entry(order.key, self._folder, order.cancelled) as entry:
             install = entry.folder / "install"
             if entry.complete:
@@ -173,16 +150,12 @@ class Builds:
                 entry.finish()
             return made
 
-    def _make(self, found: Build, order: Order, entry: cache.Entry) -> Build:
+    def _make(self, found: Build, order: BuildOrder, entry: cache.Entry) -> Build:
         place, install = self._builder.place(order.name, entry.folder), entry.folder / "install"
         order.tree.write(entry.folder / "src")
         words = command(moved(order.packages, Path("src"), place / "src"), place, order.cmake)
-        variables = {"COLCON_DEFAULTS_FILE": os.devnull, **order.variables}
-        job = BuildJob(
-            order.name, entry.folder, words, variables, order.cancelled, order.hidden, entry.built_by
-        )
         try:
-            built = self._builder.build(job)
+            built = self._builder.build(order, words, entry)
         finally:
             shutil.rmtree(entry.folder / "src", ignore_errors=True)
         log = _log(built, place)

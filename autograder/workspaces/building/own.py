@@ -14,11 +14,11 @@ from autograder.workspaces.running.own_session import OwnSession
 from autograder.workspaces.running.prefixes import without_workspaces
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
-    from autograder.workspaces.building.builds import Order
     from autograder.workspaces.building.colcon import Build, Targets
-    from autograder.workspaces.jobs import BuildJob
+    from autograder.workspaces.jobs import BuildOrder
 
 LIMIT = 300.0
 """Seconds of wall time in which colcon must have ended."""
@@ -45,7 +45,7 @@ def build(found: Build, targets: Targets | None = None) -> Build:
 class _OwnBuilds(Builds):
     """Builds made in the cache itself; in a graded notebook those that its grader has made."""
 
-    def _make(self, found: Build, order: Order, entry: cache.Entry) -> Build:
+    def _make(self, found: Build, order: BuildOrder, entry: cache.Entry) -> Build:
         if socket := os.environ.get(GRADERS):
             from autograder.workspaces.building import client  # not at every start of a check
 
@@ -71,25 +71,26 @@ class _Here:
         del name
         return entry
 
-    def build(self, job: BuildJob) -> Built:
+    def build(self, order: BuildOrder, command: Sequence[str], entry: cache.Entry) -> Built:
         """Build in the entry."""
-        environment = {**self._environment, **job.variables}
-        built = run(OwnSession(job.command, environment, job.entry), job, LIMIT, sys.maxsize)
+        colcon = OwnSession(command, {**self._environment, **order.variables}, entry.folder)
+        built = run(colcon, order, entry, LIMIT, sys.maxsize)
         for made in ("build", "log"):
-            shutil.rmtree(job.entry / made, ignore_errors=True)
+            shutil.rmtree(entry.folder / made, ignore_errors=True)
         return built
 
 
-def run(colcon: OwnSession, job: BuildJob, seconds: float, size: int) -> Built:
+def run(colcon: OwnSession, order: BuildOrder, entry: cache.Entry, seconds: float, size: int) -> Built:
     """Follow colcon to its end.
 
     Args:
         colcon: The process.
-        job: The build.
+        order: What is built.
+        entry: Where it comes to.
         seconds: Wall time that it has.
         size: Bytes of its output that are kept.
     """
     with colcon:
-        job.begun(colcon.pid)
-        output, late = colcon.collect(seconds, size, job.cancelled)
+        entry.built_by(colcon.pid)
+        output, late = colcon.collect(seconds, size, order.cancelled)
         return Built(colcon.exit_code(), output, late=seconds if late else 0.0)

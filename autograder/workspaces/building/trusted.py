@@ -22,9 +22,8 @@ from autograder.workspaces.sources.packages import state
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.workspaces.building.builds import Order
     from autograder.workspaces.building.colcon import Build
-    from autograder.workspaces.jobs import Builder, Built
+    from autograder.workspaces.jobs import Builder, BuildOrder, Built
     from autograder.workspaces.sources.packages import Package
 
 ROOM = 16_000_000
@@ -57,16 +56,18 @@ class TrustedBuilds(Builds):
         """See :meth:`autograder.workspaces.jobs.Builder.place`."""
         return self._builder.place(name, entry)
 
-    def _find_or_make(self, found: Build, chosen: Sequence[Package], order: Order) -> Build:
+    def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:
         cmake, variables = (ONLY_PYTHON, ONLY_FAST_DDS) if _are_light(chosen) else ((), {})
         hidden = _hidden_from(chosen)
-        others = (f"{path} {state(str(path))}" for path in course_interfaces() if path not in hidden)
-        order = self._keyed(replace(order, cmake=cmake, variables=variables, hidden=hidden), *others)
+        others = [f"{path} {state(str(path))}" for path in course_interfaces() if path not in hidden]
+        order = self._keyed(
+            replace(order, cmake=cmake, variables={**order.variables, **variables}, hidden=hidden), *others
+        )
         if not all(map(holds_only_interfaces, chosen)):
             return self._entry(found, order)
         return self._shared(found, order, self._keyed(replace(order, tree=simplified(order.tree)), *others))
 
-    def _shared(self, found: Build, order: Order, shared: Order) -> Build:
+    def _shared(self, found: Build, order: BuildOrder, shared: BuildOrder) -> Build:
         """The build itself, or one that means the same, in nobody's words."""
         for one in (order, shared):
             if (made := self._kept(found, one.key)) is not None:

@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from autograder.boxes.boxed_command import Running
-    from autograder.workspaces.jobs import BuildJob, ProgramJob
+    from autograder.workspaces.building.cache import Entry
+    from autograder.workspaces.jobs import BuildOrder, ProgramJob
 
 BUILD_LIMITS = Limits(
     cpu_seconds=300.0,
@@ -77,15 +78,15 @@ class BoxedJobs:
         del sources
         return WORK
 
-    def build(self, job: BuildJob) -> Built:
+    def build(self, order: BuildOrder, command: Sequence[str], entry: Entry) -> Built:
         """Build in an enclosure of its own; pack what is there with nothing of the student's alive any more.
 
         One that needs more memory than most do is built again, when no other of these is.
         """
-        built, needs_room = self._build(job, BUILD_LIMITS)
+        built, needs_room = self._build(order, command, entry.folder, BUILD_LIMITS)
         if needs_room:
             with self._turn():
-                built, _ = self._build(job, replace(BUILD_LIMITS, beside=False))
+                built, _ = self._build(order, command, entry.folder, replace(BUILD_LIMITS, beside=False))
         return built
 
     @contextlib.contextmanager
@@ -98,12 +99,14 @@ class BoxedJobs:
         finally:
             os.close(folder)
 
-    def _build(self, job: BuildJob, limits: Limits) -> tuple[Built, bool]:
+    def _build(
+        self, order: BuildOrder, command: Sequence[str], entry: Path, limits: Limits
+    ) -> tuple[Built, bool]:
         """The build, and whether it came to the end of its share of memory."""
-        place = self.place(job.name, job.entry)
+        place = self.place(order.name, entry)
         folder = Path(tempfile.mkdtemp(prefix="build-", dir=self._folder))
-        binds = [Bind(job.entry / "src", place / "src"), *_covers(job.hidden, folder)]
-        environment = box_environment(job.variables)
+        binds = [Bind(entry / "src", place / "src"), *_covers(order.hidden, folder)]
+        environment = box_environment(order.variables)
         guard = BoxGuard(limits)
         try:
             with Enclosure(
@@ -111,11 +114,11 @@ class BoxedJobs:
                 scratch_bytes=limits.scratch_bytes, scratch_inodes=limits.scratch_files,
             ) as enclosure:  # fmt: skip
                 with enclosure.start(
-                    job.command, binds=binds, environment=environment, cwd=HOME,
+                    command, binds=binds, environment=environment, cwd=HOME,
                     output_bytes=MAX_LOG_BYTES,
                 ) as running:  # fmt: skip
                     guard.watch(running.pid)
-                    returncode, late = _wait(running, lambda: job.cancelled() or bool(guard.exceeded()))
+                    returncode, late = _wait(running, lambda: order.cancelled() or bool(guard.exceeded()))
                     output = running.said
                 if returncode != 0:
                     needs_room = limits.beside and guard.reason() is Ended.OUT_OF_MEMORY

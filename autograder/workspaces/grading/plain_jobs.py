@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from autograder.workspaces.jobs import BuildJob, Built, ProgramJob
+    from autograder.workspaces.building.cache import Entry
+    from autograder.workspaces.jobs import BuildOrder, Built, ProgramJob
 
 
 class PlainJobs:
@@ -47,17 +48,17 @@ class PlainJobs:
         """The sources themselves."""
         return sources
 
-    def build(self, job: BuildJob) -> Built:
+    def build(self, order: BuildOrder, command: Sequence[str], entry: Entry) -> Built:
         """Build in the entry, pack what came of it and remove that again."""
-        program = PlainProgram(job.command, {**self._environment, **job.variables}, job.entry)
-        built = run(program, job, BUILD_SECONDS, MAX_LOG_BYTES)
+        program = PlainProgram(command, {**self._environment, **order.variables}, entry.folder)
+        built = run(program, order, entry, BUILD_SECONDS, MAX_LOG_BYTES)
         if built.returncode != 0:
             return built
         archive = io.BytesIO()
         with tarfile.open(fileobj=archive, mode="w") as tar:
-            tar.add(job.entry / "install", arcname=".")
+            tar.add(entry.folder / "install", arcname=".")
         for made in ("install", "build", "log"):
-            subprocess.run(["rm", "-rf", str(job.entry / made)], check=True)
+            subprocess.run(["rm", "-rf", str(entry.folder / made)], check=True)
         return replace(built, archive=archive.getvalue())
 
     def start(self, job: ProgramJob) -> PlainProgram:

@@ -23,7 +23,7 @@ from autograder.workspaces.building import colcon_stand_in, own
 from autograder.workspaces.grading import service, session
 from autograder.workspaces.grading.plain_jobs import PlainProgram
 from autograder.workspaces.grading.service import ServiceSockets, WorkspaceService
-from autograder.workspaces.jobs import BuildJob, Built, ProgramJob
+from autograder.workspaces.jobs import BuildOrder, Built, ProgramJob
 from autograder.workspaces.running.prefixes import LIBRARY
 from autograder.workspaces.sources import collecting
 
@@ -32,6 +32,8 @@ from made_workspaces import interface_package, python_package
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
+
+    from autograder.workspaces.building.cache import Entry
 
 
 FORGED = f'{REPORTS[0]}{{"phase": "built", "built": true}}'
@@ -58,20 +60,20 @@ class FakeJobs:
     def tree(self, sources: Path) -> Path:
         return Path("/home/student/notebook")
 
-    def build(self, job: BuildJob) -> Built:
-        self.builds.append(sorted(path.name for path in (job.entry / "src").iterdir()))
-        self.sources.append("".join(path.read_text() for path in job.entry.rglob("*") if path.is_file()))
+    def build(self, order: BuildOrder, command: Sequence[str], entry: Entry) -> Built:
+        self.builds.append(sorted(path.name for path in (entry.folder / "src").iterdir()))
+        self.sources.append("".join(path.read_text() for path in entry.folder.rglob("*") if path.is_file()))
         self.boxes.append(
             {
                 (
-                    str(path.relative_to(job.entry)),
+                    str(path.relative_to(entry.folder)),
                     path.stat().st_mode,
                     path.read_bytes() if path.is_file() else b"",
                 )
-                for path in (job.entry / "src").rglob("*")
+                for path in (entry.folder / "src").rglob("*")
             }
         )
-        self.waiting(job.cancelled)
+        self.waiting(order.cancelled)
         return self.built
 
     def start(self, job: ProgramJob) -> PlainProgram:
