@@ -10,6 +10,7 @@ import os
 import shutil
 import sys
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
@@ -28,6 +29,10 @@ if TYPE_CHECKING:
 MAX_FILES = 5_000
 MAX_BYTES = 100_000_000
 """Files and bytes of sources beyond which something else than a workspace was named."""
+MAX_PACKAGES = 50
+"""Packages that are looked at; a workspace of the course has a few."""
+MAX_PACKAGE_XML = 20_000
+"""Bytes of a package.xml; real ones have a few thousand. To validate one takes time that grows with the square."""
 FORMAT = "3"
 """Part of every key: change it when what is kept of a build changes."""
 
@@ -105,7 +110,10 @@ def find_packages(src: Path) -> list[Package]:
 def survey(src: Path) -> tuple[list[Package], list[str]]:
     """The packages below ``src`` in the order of their names, and what is wrong with those that cannot be used."""
     packages, unusable = [], []
-    for file in sorted(_package_files(src)):
+    files = sorted(islice(_package_files(src), MAX_PACKAGES + 1))
+    if len(files) > MAX_PACKAGES:
+        return [], [f"there are more than {MAX_PACKAGES} packages below {src.name}"]
+    for file in files:
         try:
             packages.append(_package(file))
         except BadPackage as error:
@@ -116,12 +124,15 @@ def survey(src: Path) -> tuple[list[Package], list[str]]:
 def needed(packages: Iterable[Package], targets: Iterable[str]) -> list[Package]:
     """The targets and all that they depend on, as far as it is among the packages; in the packages' order."""
     there = list(packages)
+    dependencies: dict[str, set[str]] = {}
+    for package in there:
+        dependencies.setdefault(package.name, set()).update(package.dependencies)
     wanted, waiting = set[str](), list(targets)
     while waiting:
         name = waiting.pop()
         if name not in wanted:
             wanted.add(name)
-            waiting += [other for package in there if package.name == name for other in package.dependencies]
+            waiting += dependencies.get(name, ())
     return [package for package in there if package.name in wanted]
 
 
@@ -210,8 +221,12 @@ def _package_files(src: Path) -> Iterator[Path]:
 
 def _package(file: Path) -> Package:
     shown = f"{file.parent.name}/package.xml"
+    with file.open("rb") as opened:
+        text = opened.read(MAX_PACKAGE_XML + 1)
+    if len(text) > MAX_PACKAGE_XML:
+        raise BadPackage(f"{shown} is larger than {MAX_PACKAGE_XML // 1000} kB")
     try:
-        root = ElementTree.fromstring(file.read_bytes())
+        root = ElementTree.fromstring(text)
     except UNREADABLE as error:
         raise BadPackage(f"{shown} is not valid XML: {_told(error)}") from error
     name = (root.findtext("name") or "").strip()

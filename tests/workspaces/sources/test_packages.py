@@ -81,7 +81,7 @@ def test_far_too_much_is_refused(workspace: Path, monkeypatch: pytest.MonkeyPatc
         b"<?xml version='1.0' encoding='nonsense'?><package/>",
         b"<?xml version='1.0' encoding='shift_jis'?><package/>",
         "<?xml version='1.0' encoding='utf-16'?><package><name>tiny_pkg</name></package>".encode("utf-16"),
-        b"<package><name>tiny_pkg</name>" + b"<a>" * 50_000 + b"</a>" * 50_000 + b"</package>",
+        b"<package><name>tiny_pkg</name>" + b"<a>" * 2_500 + b"</a>" * 2_500 + b"</package>",
     ],
     ids=["unknown encoding", "several bytes a character", "UTF-16", "deep"],
 )
@@ -90,6 +90,23 @@ def test_an_odd_package_file_is_the_packages_own_fault(workspace: Path, content:
     with pytest.raises(packages.BadPackage, match="is not valid"):
         list(packages.find_packages(workspace / "src"))
     assert simple_package_xml(content.decode("utf-8", "replace"))
+
+
+def test_a_package_file_with_thousands_of_dependencies_is_not_validated(workspace: Path) -> None:
+    # catkin_pkg compares each of them with each other: 20,000 took minutes, outside of any box.
+    depends = "".join(f"<depend>p{number}</depend>" for number in range(1_000))
+    content = f"<package><name>tiny_pkg</name>{depends}</package>"
+    (workspace / "src" / "tiny_pkg" / "package.xml").write_text(content)
+    with pytest.raises(packages.BadPackage, match="larger than 20 kB"):
+        list(packages.find_packages(workspace / "src"))
+
+
+def test_nobody_looks_at_hundreds_of_packages(workspace: Path) -> None:
+    for number in range(60):
+        (folder := workspace / "src" / f"p{number}").mkdir()
+        (folder / "package.xml").write_text("<package/>")
+    with pytest.raises(packages.BadPackage, match="more than 50 packages below src"):
+        packages.find_packages(workspace / "src")
 
 
 @pytest.mark.parametrize("deep", ["-" * 100_000 + "1", "+".join(["1"] * 100_000), "(" * 300 + ")" * 300])
