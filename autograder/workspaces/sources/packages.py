@@ -33,6 +33,8 @@ MAX_PACKAGES = 50
 """Packages that are looked at; a workspace of the course has a few."""
 MAX_PACKAGE_XML = 20_000
 """Bytes of a package.xml; real ones have a few thousand. To validate one takes time that grows with the square."""
+MAX_SETUP = 50_000
+"""Bytes of a setup.py that is read. Python's own parser takes minutes for half a megabyte of one f-string."""
 FORMAT = "3"
 """Part of every key: change it when what is kept of a build changes."""
 
@@ -260,6 +262,8 @@ def _told(error: Exception) -> str:
 
 
 def _entry_points(setup: str) -> Iterator[str]:
+    if len(setup) > MAX_SETUP:
+        return
     try:
         tree = ast.parse(setup)
     except UNREADABLE:

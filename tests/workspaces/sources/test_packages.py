@@ -109,7 +109,15 @@ def test_nobody_looks_at_hundreds_of_packages(workspace: Path) -> None:
         packages.find_packages(workspace / "src")
 
 
-@pytest.mark.parametrize("deep", ["-" * 100_000 + "1", "+".join(["1"] * 100_000), "(" * 300 + ")" * 300])
+@pytest.mark.parametrize(
+    "deep",
+    [
+        "-" * 100_000 + "1",
+        "+".join(["1"] * 100_000),
+        "(" * 300 + ")" * 300,
+        'f"' + "{1}" * 150_000 + '"',  # minutes for Python's parser
+    ],
+)
 def test_a_setup_too_deep_to_be_read_has_no_programs(workspace: Path, deep: str) -> None:
     (workspace / "src" / "tiny_pkg" / "setup.py").write_text(deep)
     (package,) = packages.find_packages(workspace / "src")
