@@ -29,7 +29,7 @@ def ros_environment() -> dict[str, str]:
 
 
 def boxed_ros_environment() -> dict[str, str]:
-    """What holds instead where both sides are in boxes that share a network of their own, and nothing else.
+    """The variables for two sides in boxes that share a network of their own, and nothing else.
 
     The discovery range must not be restricted there: rmw_fastrtps then sets up transports itself, shared memory among
     them, whatever ``FASTDDS_BUILTIN_TRANSPORTS`` says (participant.cpp). The two would discover each other and

@@ -1,1 +1,1 @@
-"""What a scenario works with: the judge's node, its publishers, servers and clients, its clock, its record."""
+"""The bench that a scenario works with: the judge's node with its endpoints, its clock, its record."""

@@ -1,4 +1,4 @@
-"""Which processes have made a node: heard also of a program that is gone before the graph tells of it.
+"""The processes that have made a node, heard also of a program that is gone before the graph tells of it.
 
 A participant of DDS announces itself when it is made, and rmw_fastrtps makes it with the first node of a process. What
 the graph shows needs several messages to and fro after that, for which a program that ends at once may not live long
@@ -35,8 +35,8 @@ _PLACE = 31
 participant.cpp), and who makes a participant takes the lowest that is free."""
 _RTPS = b"RTPS"
 _PREFIX = slice(8, 16)
-"""What a message's header tells of the process that it comes from (DDSI-RTPS 2.5, 8.3.3.1; the rest of the identifier
-counts the participants of a process)."""
+"""The part of a message's header that names the process that it comes from (DDSI-RTPS 2.5, 8.3.3.1; the rest of the
+identifier counts the participants of a process)."""
 _LARGEST = 65_536
 MOST = 1_000
 """Processes that are told apart, and messages that are taken at once: a flood must neither fill the memory nor keep the
@@ -92,7 +92,7 @@ class Announcements:
 
 
 def process_of(node: Node) -> bytes:
-    """What :class:`Announcements` hears of a node's process; empty where the node does not listen to ``/rosout``."""
+    """The process of a node, as in :class:`Announcements`; empty where the node does not listen to ``/rosout``."""
     infos = node.get_subscriptions_info_by_topic("/rosout")
     own = (bytes(info.endpoint_gid) for info in infos if info.node_name == node.get_name())
     return next((identifier[: _PREFIX.stop - _PREFIX.start] for identifier in own), b"")

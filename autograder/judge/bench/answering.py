@@ -12,14 +12,14 @@ if TYPE_CHECKING:
     from rclpy.service import Service
 
     Take = Callable[[Any, Any], Any]
-    """What a service does with a request and an empty response."""
+    """The callback of a service, called with a request and an empty response."""
 
 ATTEMPTS = 30
-"""How often an answer is tried; the middleware waits about 0.1 s each time for the client's reader."""
+"""The number of times that an answer is tried; the middleware waits about 0.1 s each time for the client's reader."""
 
 
 def patiently(service: Service, wanted: Callable[[], bool] = lambda: True) -> Callable[[Any, Any], None]:
-    """How to send an answer of this service, and make the service send its own answers so, as long as they are wanted.
+    """Return a function that sends answers of this service; the service uses it as long as answers are wanted.
 
     A client whose request came at once may not be able to hear yet. The middleware waits 0.1 s for it, drops the
     answer and warns ("client will not receive response", rmw_fastrtps_shared_cpp/rmw_response.cpp): on a busy machine

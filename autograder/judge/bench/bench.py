@@ -167,7 +167,7 @@ class TestBench:
 
     @property
     def _time(self) -> SubjectTime:
-        """How time passes for the subject in this part."""
+        """The time of the subject in this part."""
         if self._time_of_part is None:
             raise RuntimeError(_NO_PART)
         return self._time_of_part
@@ -183,7 +183,7 @@ class TestBench:
         self._subject.start(self._recorder, arguments, options)
 
     def _has_announced_itself(self) -> bool:
-        """Whether a process that was not there before the subject's start has made a node."""
+        """True if a process that was not there before the subject's start has made a node."""
         return self._announcements is not None and bool(self._announcements.heard() - self._older_processes)
 
     def release(self) -> None:
@@ -248,11 +248,11 @@ class TestBench:
         self._open.callback(self.wire.node.destroy_subscription, subscription.subscription)
 
     def seen(self) -> Part:
-        """What has been seen so far in this part."""
+        """The events of this part so far."""
         return self._recorder.part()
 
     def heard(self, topic: str) -> int:
-        """How many messages arrived on a topic so far in this part."""
+        """The number of messages that arrived on a topic so far in this part."""
         return len(self._recorder.part().of("message", topic))
 
     def speak(self, topic: str, type_name: str) -> RecordedPublisher:
@@ -351,7 +351,7 @@ class TestBench:
         self._time.await_attention()
 
     def doubt(self) -> None:
-        """What is seen in this look must be confirmed in real time."""
+        """Have this look confirmed in real time."""
         self.doubtful = True
 
     def note_whether_it_spins(self) -> None:
@@ -380,7 +380,7 @@ class TestBench:
     def _wait_for(
         self, condition: Callable[[Evidence], bool], look: Callable[[], Evidence], within: float, **how: Any
     ) -> bool:
-        """Whether a condition held when it was asked last; it is not asked again, as it need not hold for ever."""
+        """True if a condition held when it was asked last; it is not asked again, as it need not hold for ever."""
         held = False
 
         def over() -> bool:

@@ -1,4 +1,4 @@
-"""Who is on the graph, besides the judge: the public face of a subject.
+"""Nodes and endpoints on the graph, besides the judge's own: the public face of a subject.
 
 rclpy has no event for changes of the graph, so these queries are polled; one costs well under a millisecond.
 """
@@ -20,7 +20,7 @@ RCLError = rclpy_implementation.RCLError
 ROLES = ("publisher", "subscription", "service", "client", "action_server", "action_client")
 
 _FAST_DDS = b"\x01\x0f"
-"""How its identifiers begin (DDSI-RTPS, vendor ids)."""
+"""The first bytes of its identifiers (DDSI-RTPS, vendor ids)."""
 _EVERY_NODE_HAS = frozenset({"/rosout", "/parameter_events", "/clock"})
 _EVERY_NODE_SERVES = (
     "/describe_parameters",
@@ -47,7 +47,7 @@ class NodeName:
 
 
 UNNAMED = "_NODE_"
-"""How names begin of nodes that are not named yet (rmw_dds_common)."""
+"""The beginning of the names of nodes that are not named yet (rmw_dds_common)."""
 
 Interface = dict[str, dict[str, str]]
 """Role -> {name: type}; where a name has several types they are joined with a comma."""
@@ -123,7 +123,7 @@ def topic_ends(judge: Node) -> list[TopicEnd]:
 
 
 def _process(gid: bytes) -> int:
-    """What an endpoint's identifier tells of its process: Fast DDS writes it into the fifth and sixth byte."""
+    """The process in an endpoint's identifier: Fast DDS writes it into the fifth and sixth byte."""
     return int.from_bytes(gid[4:6], "little") if gid[:2] == _FAST_DDS else 0
 
 
@@ -149,7 +149,7 @@ def owners(judge: Node, role: str, name: str) -> list[NodeName]:
 
 
 def shows(judge: Node, marker: str) -> bool:
-    """Whether a node is known to have both a publisher and a subscription of this name.
+    """True if a node is known to have both a publisher and a subscription of this name.
 
     Made last, they are known last: each kind of endpoint is announced in order (DDSI-RTPS, 8.5.4).
     """

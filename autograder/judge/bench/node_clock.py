@@ -60,7 +60,7 @@ class NodeClock:
         )
 
     def is_rivalled(self) -> bool:
-        """Whether somebody else publishes on /clock, too."""
+        """True if somebody else publishes on /clock, too."""
         return self._wire.node.count_publishers("/clock") > 1
 
     def show(self, now: float) -> bool:
@@ -106,7 +106,7 @@ def _is_there(future: Any, limit: float) -> bool:
 
 
 def answers(wire: Wire, recorder: Recorder, node: NodeName, limit: float = PATIENT_ANSWER) -> bool:
-    """Whether a node answers, within ``limit`` seconds, a question that every spun node answers."""
+    """True if a node answers, within ``limit`` seconds, a question that every spun node answers."""
     client = wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
     try:
         return ask(recorder, client, _QUESTION, limit) is not None

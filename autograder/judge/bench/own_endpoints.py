@@ -1,4 +1,4 @@
-"""What the judge serves, by the identifiers under which every participant of the domain knows it.
+"""The judge's own services and actions, by the identifiers under which every participant of the domain knows it.
 
 Names do not tell one server from the next: the one of an earlier run is taken away, and its name comes again.
 """

@@ -1,4 +1,4 @@
-"""How long to wait for a student's program: the seconds that the machine had for it, not those of the wall.
+"""The time that a student's program has: the seconds that the machine had for it, not those of the wall.
 
 A limit that is generous on a quiet machine is none where thirty processes wait for a processor: there, a program that
 does all it should is late. So a second counts less while the machine is crowded. It is still a limit: no more than
@@ -62,7 +62,7 @@ class Patience:
 
 
 def machine_slowness() -> float:
-    """How long a second of patience lasts now; 1 where nobody says how many threads are runnable (proc(5), loadavg)."""
+    """The seconds that a second of patience lasts now; 1 where /proc/loadavg cannot be read (proc(5))."""
     try:
         runnable = int(_LOAD.read_text().split()[3].partition("/")[0])
     except (OSError, ValueError, IndexError):
@@ -71,7 +71,7 @@ def machine_slowness() -> float:
 
 
 def slowness(runnable: int, processors: int) -> float:
-    """How long a second of patience lasts.
+    """The seconds that a second of patience lasts.
 
     Args:
         runnable: Threads that run or could run if a processor were free.

@@ -1,4 +1,4 @@
-"""What the graph tells of the subject in one part: its endpoints and nodes, as they come and go.
+"""The subject on the graph in one part: its endpoints and nodes, as they come and go.
 
 A program that ends takes its endpoints along, so what was seen is written down at once and never asked for again.
 """
@@ -26,8 +26,8 @@ APPEAR = 12.0
 """Seconds of patience in which a subject that runs must show up on the graph at all. Generous: starting slowly is
 not wrong, and a program needs a quarter of a second."""
 AT_WORK = 2
-"""How often, in one run, a subject gets that patience anew because it went on starting processes: a command may build
-its package before it runs the program. It is a limit, since others start processes for ever."""
+"""The number of times in one run that a subject gets that patience anew while it goes on starting processes: a
+command may build its package before it runs the program. Limited, because a program may fork without end."""
 MATCH = 5.0
 """Seconds in which two endpoints that fit must have met."""
 GRAPH_POLL = 0.004

@@ -25,7 +25,7 @@ TURNS = 2
 
 @dataclass(frozen=True)
 class _Thread:
-    """What the kernel tells of a thread (proc_pid_status(5)).
+    """A thread, as the kernel describes it (proc_pid_status(5)).
 
     Attributes:
         awake: It runs, or waits for a processor.

@@ -1,4 +1,4 @@
-"""Where everything that the judge sees is written down, in order, from any thread."""
+"""The record of everything that the judge sees, in order, from any thread."""
 
 from __future__ import annotations
 
@@ -122,11 +122,11 @@ class Recorder:
 
     @property
     def count(self) -> int:
-        """How many events were written down so far, in all parts."""
+        """The number of events so far, in all parts."""
         return self._count
 
     def part(self) -> Part:
-        """What has been seen so far in this part."""
+        """The events of this part so far."""
         with self._changed:
             return Part(self._name, self._inputs, tuple(self._events))
 
@@ -184,7 +184,7 @@ def _never_slower() -> float:
 
 
 def _is_speech(event: Event) -> bool:
-    """Whether it is something that a subject said; what a runner reports of a build or a launch is not."""
+    """True if it is something that a subject said; what a runner reports of a build or a launch is not."""
     return event.kind in _SPEECH and not str(event.data.get("text", "")).startswith(REPORTS)
 
 

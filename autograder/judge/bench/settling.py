@@ -1,4 +1,4 @@
-"""When a command has made all that it makes: nobody says so, its graph only stops changing."""
+"""Telling that a command has made all its endpoints: its graph has stopped changing."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Settling:
         self._patience = Patience(seconds)
 
     def unchanged(self, interface: graph.Interface, nodes: int) -> bool:
-        """Whether the graph is as it was ``seconds`` ago, and has nodes at all."""
+        """True if the graph is as it was ``seconds`` ago, and has nodes at all."""
         state = (nodes, interface)
         if state != self._last:
             self._last = state

@@ -1,4 +1,4 @@
-"""How time passes for the subject in one part: stepped where it follows the judge's clock, as on the wall elsewhere."""
+"""The time of the subject in one part: stepped where it follows the judge's clock, wall time elsewhere."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ class SubjectTime:
                 node_clock.answers(self._wire, self._recorder, node, MATCH)
 
     def _follow_clock(self) -> bool:
-        """Whether the subject follows a clock of the judge's; tried once, as soon as the judge has an endpoint."""
+        """True if the subject follows a clock of the judge's; tried once, as soon as the judge has an endpoint."""
         tried = self._clock is not None or self._clock_refused
         if not tried and (self._presence.subscriptions or self._presence.publishers):
             self._clock_refused = True

@@ -31,7 +31,7 @@ _LOG_HISTORY = QoSProfile(
 
 
 class RecordedEndpoint:
-    """What holds for both sides of a topic: it writes down whom it meets, and with whom it does not fit.
+    """One end of a topic: it records the endpoints that it meets, and those with which it does not match.
 
     Attributes:
         matched: How many endpoints of the other side it is matched with now.

@@ -57,6 +57,6 @@ def environment(*, boxed: bool) -> dict[str, str]:
 
 
 def readable() -> list[Path]:
-    """What a judge must be able to read beside the package: the reference outputs, and nothing else of the masters."""
+    """The files that a judge must be able to read beside the package: the reference outputs alone."""
     files = [exercises.reference_path(exercise_id) for exercise_id in exercises.all_ids()]
     return [file for file in files if file.is_file()]

@@ -26,7 +26,7 @@ LAST_WORDS = 2.0
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a child ended.
+    """The end of a child.
 
     Attributes:
         data: What it returned; None where it returned nothing.
@@ -108,7 +108,7 @@ class Child:
         return Outcome(None, f"the judge's process ended with {how} before it had a verdict")
 
     def done(self) -> bool:
-        """Whether the child has ended; frees it then, and kills it once its limit is over."""
+        """True if the child has ended; frees it then, and kills it once its limit is over."""
         ready, _, _ = select.select([self.reading], [], [], 0.0)
         if ready:
             self.result(within=1.0)

@@ -1,4 +1,4 @@
-"""What a judge imports before its first check, so that no check pays for it. Makes no node and no thread."""
+"""Imports that a judge makes before its first check, so that no check pays for them. Makes no node and no thread."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ class JudgeProcess:
         self.workspaces = ""
         """The socket of the grader's side of checks of workspaces, as the judge sees it; empty where there is none."""
         self.keeps_evidence = False
-        """Whether reports bring what their verdicts follow from."""
+        """True if reports carry the evidence of their verdicts."""
         self._start = start or _Child
         self._process: StartedJudge | None = None
         self._control: socket.socket | None = None

@@ -108,7 +108,7 @@ class JudgeServer:
         return True
 
     def _close(self) -> bytes:
-        """What the check has brought, as the JSON of a :class:`Report`: only who has given the order decodes it."""
+        """The result of the check, as the JSON of a :class:`Report`, which only the giver of the order decodes."""
         child, self._child, self._order = self._child, None, None
         if child is None:
             return msgspec.json.encode(Report())

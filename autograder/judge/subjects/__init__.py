@@ -1,1 +1,1 @@
-"""What is under test, seen from the judge: something in a notebook, a command, or a path."""
+"""The subject of a check, seen from the judge: something in a notebook, a command, or a path."""

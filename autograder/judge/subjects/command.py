@@ -30,7 +30,7 @@ class CommandNotFound(LookupError):
 
 
 LAUNCH_FILES = (".py", ".xml", ".yaml", ".yml")
-"""How a launch file's name ends."""
+"""The endings of a launch file's name."""
 FOR_BUILDS = 150.0
 """Seconds that a check of a command may take longer than its exercise says, because the command builds its package
 first: in the first part of each of two looks it is waited for twice as long again, and up to three times as long on a
@@ -93,7 +93,7 @@ def as_run(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> Sequ
 
 
 def is_path(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> bool:
-    """Whether a command is the path of a workspace or a launch file, for an exercise that takes one."""
+    """True if a command is the path of a workspace or a launch file, for an exercise that takes one."""
     if not exercise.runner or len(command) != 1:
         return False
     path = Path(cwd or ".", command[0])

@@ -36,7 +36,7 @@ POLITE = 1.0
 
 
 class Process(Protocol):
-    """What is used of ``subprocess.Popen``."""
+    """The part of ``subprocess.Popen`` that is used here."""
 
     @property
     def pid(self) -> int:
@@ -45,12 +45,12 @@ class Process(Protocol):
 
     @property
     def stdout(self) -> IO[bytes] | None:
-        """What it prints."""
+        """Its standard output."""
         ...
 
     @property
     def stderr(self) -> IO[bytes] | None:
-        """What it prints as errors."""
+        """Its standard error."""
         ...
 
     def poll(self) -> int | None:
@@ -67,7 +67,7 @@ class Process(Protocol):
 
 
 class Box(Protocol):
-    """Where commands are shut off from the user's files and network; this process is on the same network."""
+    """A place where commands are shut off from the user's files and network; this process is on the same network."""
 
     def enter(self) -> None:
         """Go there; called once, before anything of ROS is loaded.
@@ -78,7 +78,7 @@ class Box(Protocol):
         ...
 
     def start_of(self, command: Sequence[str], environment: Mapping[str, str]) -> tuple[list[str], list[int]]:
-        """What to start in place of a command, and the descriptors to hand down, which the caller closes."""
+        """The command to start in place of another, and the descriptors to hand down, which the caller closes."""
         ...
 
     def limit(self) -> None:
@@ -160,7 +160,7 @@ class CommandSubject(InOwnProcesses):
 
     @property
     def ended(self) -> bool:
-        """Whether the command has exited and all it printed was read."""
+        """True if the command has exited and all it printed was read."""
         return self._done.is_set()
 
     def processes(self) -> frozenset[int]:

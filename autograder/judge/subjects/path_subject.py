@@ -110,7 +110,7 @@ class PathSubject(InOwnProcesses):
 
     @property
     def ended(self) -> bool:
-        """Whether this run has ended by itself, or there is nobody left to run it."""
+        """True if this run has ended by itself, or there is nobody left to run it."""
         return self._ended.is_set()
 
     def stack(self) -> str:
@@ -147,7 +147,7 @@ class PathSubject(InOwnProcesses):
             raise JudgeFailed(self.trouble or f"the grader's side of workspaces is gone: {error}") from error
 
     def _collected(self) -> tuple[list[Source], str]:
-        """What the notebook sends as its sources, and what is wrong with it."""
+        """The sources that the notebook sends, and the reason why they cannot be used."""
         self._notebook.say(Collect())
         sources: list[Source] = []
         size = 0

@@ -1,4 +1,4 @@
-"""What a notebook gives to a check as a subject: the kernel runs it, at the judge's word.
+"""A subject in a notebook: the kernel runs it, at the judge's word.
 
 A Node class or a function lives in the kernel, in one participant for all of its runs. A workspace or a launch file is
 started by the kernel as a process of its own each time.
@@ -30,7 +30,7 @@ MAX_MARKER = 200
 MAX_STACK = 50_000
 """Characters that are kept of a hung subject's stacks."""
 MAX_SECONDS = 3600.0
-"""What is believed of a time that the notebook tells, in seconds; nothing of the course takes as long."""
+"""The longest time, in seconds, that is believed when the notebook tells one; nothing of the course takes as long."""
 CONSTRUCT_LIMIT = 10.0
 """Seconds of wall time in which a node's constructor must have come to its end."""
 NEWS_LIMIT = 20.0
@@ -117,7 +117,7 @@ class RemoteSubject:
 
     @property
     def ended(self) -> bool:
-        """Whether the function has returned or something was raised, or the notebook is gone."""
+        """True if the function has returned or something was raised, or the notebook is gone."""
         return self._ended or self._gone.is_set()
 
     def processes(self) -> frozenset[int]:

@@ -17,7 +17,7 @@ class Subject(Protocol):
     """
 
     shares_participant: bool
-    """Whether one run after the other lives in the same ROS participant."""
+    """True if one run after the other lives in the same ROS participant."""
     keeper: str
     """The name of a node that keeps this participant and has no endpoint of its own; empty where there is none."""
 
@@ -54,7 +54,7 @@ class Subject(Protocol):
 
     @property
     def ended(self) -> bool:
-        """Whether this run has ended by itself."""
+        """True if this run has ended by itself."""
         ...
 
     @property
@@ -67,7 +67,7 @@ class Subject(Protocol):
         ...
 
     def stack(self) -> str:
-        """Where each of its threads is, innermost call first, as faulthandler says it; empty where nobody can tell.
+        """The stack of each of its threads, innermost call first, as faulthandler says it; empty where unknown.
 
         This may end the run, which does not count as ending by itself.
         """
@@ -79,7 +79,7 @@ class Subject(Protocol):
 
 
 class InOwnProcesses:
-    """What subjects have in common of which each run is a process of its own, with a ROS participant of its own."""
+    """The common part of subjects whose runs are processes, each with a ROS participant of its own."""
 
     shares_participant = False
     keeper = ""

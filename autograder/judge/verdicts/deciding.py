@@ -1,4 +1,4 @@
-"""How long the judge may think about what a subject said and sent.
+"""A limit on the time in which the judge decides about a subject's words and messages.
 
 What it looks at was written by a student, so there may be a text that keeps a criterion busy for ever. Thinking needs
 nothing of the machine but a processor, so a limit on processor time says the same on a busy machine as on an idle one.

@@ -32,7 +32,7 @@ MAX_BYTES = 400_000
 MAX_RAW_BYTES = 8_000_000
 """Bytes before they are compressed: what says the same for ever is cut, too."""
 _GZIP = 31
-"""What zlib calls a gzip header with the largest window."""
+"""zlib's number for a gzip header with the largest window."""
 _FLOAT = "$float"
 """Stands for a number that JSON has no word for, such as infinity; no field of a message can be called so."""
 

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 SEED = "reference"
 """Recording draws the same inputs each time."""
 LOOKS = 10
-"""What a busy machine has blurred is looked at again, so often in all. With three looks, 1 recording of 36 was given up
-where eighteen were made at once on two processors."""
+"""The number of looks at a subject whose evidence a busy machine has blurred. With three looks, 1 recording of 36 was
+given up where eighteen were made at once on two processors."""
 
 
 class NotRecordable(RuntimeError):
@@ -93,7 +93,7 @@ def _interface(exercise: Exercise, subject: Subject, domain_id: int) -> dict[str
 
 
 def _programs(exercise: Exercise) -> list[tuple[str, ...]]:
-    """What says which program is meant, once for each; a single time nothing where there is but one subject."""
+    """The arguments that choose each program of the exercise; one empty tuple where there is only one subject."""
     runner = exercise.runner
     return [(name,) for name in runner.programs] if isinstance(runner, RunsPrograms) else [()]
 

@@ -50,10 +50,10 @@ _DIRECTION = {
 
 
 _KEY = {"goal", "cancel", "result", "goal_sent", "cancel_sent", "result_heard", "mismatch"}
-"""What the story of a part hangs on."""
+"""The kinds of events that a timeline always keeps."""
 
 _NUMBERED = {"goal_sent", "goal_answer", "feedback_heard", "cancel_sent", "cancel_answer", "result_heard"}
-"""What the judge says of goals of its own carries their number."""
+"""The kinds of events about the judge's own goals, which carry a goal's number."""
 
 _STATUS = {
     GoalStatus.STATUS_SUCCEEDED: "SUCCEEDED",
@@ -72,7 +72,7 @@ _ENDS = {
 
 
 def moments(evidence: Evidence) -> tuple[Moment, ...]:
-    """What was on the wire, in order. Of too much of it the first ones are kept, and all that the story hangs on."""
+    """The traffic on the wire, in order: of too many events the first, and all of the kinds that matter most."""
     several = len(evidence.parts) > 1
     found = [
         moment
@@ -142,7 +142,7 @@ def _time(event: Event, start: float | None) -> float:
 
 
 def _began(event: Event) -> bool:
-    """Whether it says no more than that the subject got going, which every picture shows by what came after."""
+    """True if the event only shows that the subject has started, which later events show anyway."""
     return event.kind == "subject" and event.name in ("started", "constructed")
 
 

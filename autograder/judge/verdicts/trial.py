@@ -25,7 +25,7 @@ MAX_WORDS = 500
 
 @dataclass(frozen=True)
 class Seen:
-    """What one look brought.
+    """The result of one look.
 
     Attributes:
         evidence: What happened.
@@ -38,7 +38,7 @@ class Seen:
 
 @dataclass(frozen=True)
 class Checked:
-    """What a check brought.
+    """The result of a check.
 
     Attributes:
         verdict: What the judge found.
@@ -87,7 +87,7 @@ def decide(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
 def _look_again(
     exercise: Exercise, subject: Subject, reference: Reference, seen: Seen, *, seed: str, domain_id: int
 ) -> Evidence:
-    """What a look in real time brings, with what the first one brought."""
+    """The evidence of a look in real time, with that of the first look."""
     again = look(
         exercise,
         subject,
@@ -174,7 +174,7 @@ def _recognised(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice
 
 
 def is_certain(exercise: Exercise, evidence: Evidence) -> bool:
-    """Whether the evidence proves a mistake whatever the machine's load was."""
+    """True if the evidence proves a mistake whatever the machine's load was."""
     found = _recognised(exercise, evidence)
     return found is not None and found[0].certain
 
