@@ -1,1 +1,1 @@
-"""What exercises are written with: the model, the evidence, and what several exercises ask of it."""
+"""The words that exercises are written in: the model, the evidence, and what several exercises ask of it."""

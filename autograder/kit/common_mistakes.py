@@ -302,4 +302,4 @@ NOTHING_THERE = (
     Mistake("not_written", _not_written),
     Mistake("ended_too_early", ended_too_early),
 )
-"""What is asked last, when nothing more exact fits."""
+"""The mistakes that are asked about last, when nothing more exact fits."""

@@ -49,7 +49,7 @@ def _recogniser(crash: Crash) -> Mistake:
 
 
 def what_and_where(traceback: str) -> str:
-    """What was raised, and the line of the student's that led to it."""
+    """The exception that was raised, and the line of the student's that led to it."""
     last = [line for line in traceback.splitlines() if line[:1].strip()][-1:]
     frames = [found for found in _FRAME.finditer(traceback) if not _is_a_library(found["file"])]
     where = f" (line {frames[-1]['line']}, in {frames[-1]['function']})" if frames else ""

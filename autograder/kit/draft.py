@@ -22,11 +22,11 @@ View_co = TypeVar("View_co", covariant=True)
 Judge = Callable[[View, View], Finding]
 """Decides a criterion from what was seen and from what was recorded."""
 Recognise = Callable[[View, View], "bool | Advice | None"]
-"""Whether a mistake was made; advice of its own where the decorator's texts do not fit."""
+"""True if a mistake was made; advice of its own where the decorator's texts do not fit."""
 
 
 class Recipe(Protocol[View_co]):
-    """What exercises about one kind of subject share."""
+    """The common part of exercises about one kind of subject."""
 
     @property
     def roles(self) -> tuple[str, ...]:
@@ -43,11 +43,11 @@ class Recipe(Protocol[View_co]):
         ...
 
     def seen(self, evidence: Evidence) -> View_co:
-        """What was seen of the subject."""
+        """The subject, as it was seen."""
         ...
 
     def expected(self, evidence: Evidence) -> View_co:
-        """What was recorded of the reference solution."""
+        """The reference solution, as it was recorded."""
         ...
 
 

@@ -1,4 +1,4 @@
-"""What the judge wrote down, and the questions an exercise asks of it."""
+"""The judge's record, and the questions an exercise asks of it."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Part:
         return next((e for e in self.events if e.kind == kind and (name is None or e.name == name)), None)
 
     def said(self, *, after: Event | None = None) -> list[str]:
-        """What the subject said (log lines, printed lines, what a function returned), in order.
+        """The subject's words (log lines, printed lines, what a function returned), in order.
 
         Args:
             after: Only what was said later than this event.
@@ -69,17 +69,17 @@ class Part:
 
     @property
     def had_node(self) -> bool:
-        """Whether a node of the subject's was there, for however short a time."""
+        """True if a node of the subject's was there, for however short a time."""
         return bool(self.of("announced")) or any(survey.data.get("nodes") for survey in self.of("interface"))
 
     @property
     def ending(self) -> Event | None:
-        """How the subject ended by itself: an event named ``exited``, ``returned`` or ``raised``; or None."""
+        """The end of the subject by itself: an event named ``exited``, ``returned`` or ``raised``; or None."""
         return next((e for e in self.events if e.kind == "subject" and e.name in _ENDINGS), None)
 
     @property
     def returned(self) -> str | None:
-        """What a function returned, as Python writes it (``"None"`` for nothing); None where no function has."""
+        """A function's value, as Python writes it (``"None"`` for nothing); None where no function has returned."""
         ending = self.ending
         return str(ending.data.get("value")) if ending is not None and ending.name == "returned" else None
 
@@ -106,7 +106,8 @@ INTERRUPTED = "Ctrl-C"
 
 _TRACEBACK = "Traceback (most recent call last)"
 _IGNORED = "Exception ignored in"
-"""How Python begins what a destructor raised: it has stopped nothing, and often follows from what did."""
+"""The beginning of Python's words about an error in a destructor: it has stopped nothing, and often follows from what
+did."""
 _OF_A_TRACEBACK = (
     "Exception in thread ",
     _IGNORED,
@@ -119,7 +120,7 @@ _OF_A_TRACEBACK = (
     "During handling of the above exception",
     "The above exception was the direct cause",
 )
-"""How lines of tracebacks and of stacks begin, also where two threads print theirs at once.
+"""The beginnings of lines of tracebacks and stacks, also where two threads print theirs at once.
 
 A Python program that ends while a thread of it still spins is often aborted by the C++ runtime (``terminate called
 without an active exception``), and faulthandler shows what ran.
@@ -142,11 +143,12 @@ def without_tracebacks(events: Sequence[Event]) -> Iterator[tuple[int, Event]]:
 
 
 REPORTS = ("@workspace ", "@process ")
-"""How a line begins that a runner reports: of a build, of a launched process. These are not the subject's words."""
+"""The beginning of a runner's line about a build or a launched process. These are not the subject's words."""
 _ROS2_RUN = "[ros2run]: "
-"""How a line of ``ros2 run`` itself begins, as where the program exited with failure 3: that says nothing of why."""
+"""The beginning of a line of ``ros2 run`` itself, as where the program exited with failure 3: that says nothing of
+why."""
 _PREFIX = re2.compile(r"^\[\w+\] \[[\d.]+\] \[(?P<logger>[^\]]*)\]: ")
-"""What rcutils puts before a line on a terminal: level, time stamp, logger. These are nobody's words."""
+"""The prefix that rcutils puts before a line on a terminal: level, time stamp, logger. These are nobody's words."""
 
 
 _LIBRARIES = re2.compile(r"\.action_(client|server)$|^(rcl|rclpy|rcutils|rmw\w*)(\.|$)")
@@ -155,11 +157,11 @@ _COLOURS = r"(?:\x1b\[[\d;]*m)*"
 _MIDDLEWARE = re2.compile(
     rf"^{_COLOURS}\d{{4}}-\d\d-\d\d [\d:.]+ .*\[{_COLOURS}\w+{_COLOURS} (Error|Warning)\]"
 )
-"""How a line of Fast DDS begins; on a busy machine it may complain beside the best of programs."""
+"""The beginning of a line of Fast DDS; on a busy machine it may complain beside the best of programs."""
 
 
 def spoken_by(event: Event) -> str | None:
-    """What the subject said with an event, without what its terminal puts before it; None where it said nothing."""
+    """The subject's words in an event, without a terminal's prefix; None where it said nothing."""
     if event.kind in ("log", "output"):
         text = str(event.data["text"])
         prefix = _PREFIX.match(text) if text.startswith("[") else None

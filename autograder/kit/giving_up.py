@@ -47,7 +47,7 @@ _SHUT_DOWN = "rclpy.executors.ExternalShutdownException"
 _NUMBER = re2.compile(r"-?\d+(?:\.\d+)?")
 _VALUE = re2.compile(rf"{_NUMBER.pattern}|\b(?:None|True|False)\b")
 AGAIN_AND_AGAIN = 3
-"""How often a client says that it waits, to have said it again and again."""
+"""The number of times that a client says that it waits, to have said it again and again."""
 MOMENT = 0.5
 """Seconds: what is said within these is said once. A log line comes on two ways, and a loop may be in a hurry."""
 
@@ -74,7 +74,7 @@ def waited(part: Part) -> float:
 
 
 def patience(part: Part) -> float | None:
-    """How long the subject was told to wait; None where it has no parameter for that."""
+    """The seconds that the subject was told to wait; None where it has no parameter for that."""
     start = part.first("subject", "started")
     takes = start is not None and PATIENCE in start.data["accepted"]
     return float(part.inputs[PATIENCE]) if takes and PATIENCE in part.inputs else None
@@ -94,7 +94,7 @@ def await_it(bench: Bench) -> None:
 
 
 def says_that_it_waits(part: Part) -> bool:
-    """Whether the subject says the same, but for numbers, again and again, and not only at the beginning."""
+    """True if the subject says the same, but for numbers, again and again, and not only at the beginning."""
     late = GIVE_UP_LIMIT / 2 / MOMENT
     return any(len(times) >= AGAIN_AND_AGAIN and max(times) >= late for times in _moments(part).values())
 
@@ -117,14 +117,14 @@ def shape(line: str) -> str:
 
 
 def goes_on_waiting(part: Part) -> bool:
-    """Whether the subject waits without end and may: it says so, and was not told how long to wait."""
+    """True if the subject waits without end and may: it says so, and was not told how long to wait."""
     return bool(part.events) and part.ending is None and patience(part) is None and says_that_it_waits(part)
 
 
 def objection(
     part: Part, usual: Sequence[Part] = (), *, is_report: Callable[[str], bool] = lambda _: False
 ) -> str:
-    """What is wrong about how a client took it that nobody serves, in words; empty where it is right.
+    """The fault of a client that finds no server, in words; empty where it behaves well.
 
     Args:
         part: The run without a server.
@@ -149,7 +149,7 @@ def returned_answer(part: Part) -> str:
 
 
 def _telling(part: Part, usual: Sequence[Part]) -> list[str]:
-    """What it said in words, and not just so where its server was there, unless it said that again and again."""
+    """Its lines with words that it does not say where its server is there, or says again and again."""
     said = replace(part, events=[event for event in part.events if event.kind != "subject"]).said()
     lines = {line for line in said if re2.search(r"\pL", _VALUE.sub("", line))}
     if len(lines) > MOST_LINES:
@@ -164,7 +164,7 @@ def _telling(part: Part, usual: Sequence[Part]) -> list[str]:
 
 
 def _failed_aloud(part: Part) -> bool:
-    """Whether it has shown what went wrong, by an exception that somebody may have meant.
+    """True if it has shown what went wrong, by an exception that somebody may have meant.
 
     A thread that spins while the program calls ``rclpy.shutdown()`` shows a traceback at every end, also at a good one.
     """
@@ -175,7 +175,7 @@ def _failed_aloud(part: Part) -> bool:
 
 
 def broken_patience(part: Part) -> str:
-    """How a function that has ended kept another time than its patience, in words; empty where it kept that."""
+    """The difference between the time that a function took and its patience, in words; empty where it kept that."""
     limit = patience(part)
     if limit is None or part.ending is None:
         return ""
@@ -191,7 +191,7 @@ def other_names(evidence: Evidence, role: str) -> set[str]:
 
 
 def ended_at_once(part: Part) -> bool:
-    """Whether a function that was told how long to wait has ended much too early for any wait."""
+    """True if a function that was told how long to wait has ended much too early for any wait."""
     limit = patience(part)
     return limit is not None and part.ending is not None and waited(part) < limit * TOO_SHORT
 
@@ -209,7 +209,7 @@ def patience_not_kept(part: Part) -> Advice | None:
 
 
 def remark(part: Part) -> str:
-    """What the card says of a client that goes on waiting; empty where there is nothing to say."""
+    """The card's remark on a client that goes on waiting; empty where there is nothing to say."""
     if not goes_on_waiting(part):
         return ""
     return (
@@ -225,7 +225,7 @@ MOST_LINES = 200
 
 
 def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool]) -> bool:
-    """Whether the subject ended before it had met a server that was there.
+    """True if the subject ended before it had met a server that was there.
 
     On the wire a client that gave up and one that never meant to ask both only end. What tells them apart is that the
     first says of a server that is there what it says of one that is not. In which of the runs it ends too early depends
@@ -259,7 +259,7 @@ class _Words:
     own: tuple[bool, ...]
 
     def says_the_same_as(self, other: _Words) -> bool:
-        """Whether the lines differ in nothing but the inputs of their runs. A number may be an input by chance."""
+        """True if the lines differ in nothing but the inputs of their runs. A number may be an input by chance."""
         return self.shape == other.shape and all(
             mine == theirs or (own and others)
             for mine, theirs, own, others in zip(
@@ -279,7 +279,7 @@ def _all_within(words: set[_Words], others: set[_Words]) -> bool:
 
 
 def _parting_words(part: Part) -> set[_Words]:
-    """What it said; each line once, for a log line may come on two ways."""
+    """Its lines, each once: a log line may come on two ways."""
     last = [_in_words(part, line) for line in part.traceback.splitlines()[-1:] if line.strip()]
     return {*_said(part), *last}
 

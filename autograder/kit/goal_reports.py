@@ -1,4 +1,4 @@
-"""What an action client has made of the judge's goals, and what is missing from it.
+"""An action client's reports of the judge's goals, and their faults.
 
 Any human language is right. So that a goal was refused or aborted counts as said where the client says something that
 it does not say of a goal that succeeds, whatever the words are.
@@ -46,7 +46,7 @@ than this, though its answer was held back; one that spins for 3 ends a second b
 _CANCELED = "cancel+ed"
 """In other languages one word may stand for canceled and for aborted."""
 _FAILURES = (_CANCELED, words.ABORTED)
-"""What nobody may say of a goal that succeeded or was refused."""
+"""Words that nobody may say of a goal that succeeded or was refused."""
 _WAYS = ("log", "output", "subject")
 """The kinds of events in which something is said: on /rosout, printed, returned."""
 _ENDS = re2.compile(rf"(?i)\b(?:status_)?(?:{words.SUCCEEDED}|{'|'.join(_FAILURES)})\b")
@@ -65,7 +65,7 @@ def asked_for(part: Part) -> list[int]:
 
 
 def left_at_once(part: Part, answer: str = "goal_answered") -> bool:
-    """Whether the subject was about to end before the judge gave an answer that it holds back.
+    """True if the subject was about to end before the judge gave an answer that it holds back.
 
     A process that ends takes its last requests along, or it does not: nothing may depend on which of them arrived. Its
     traceback tells that it ends, before it has ended; and one that ends without a word may need a while for it.
@@ -83,7 +83,7 @@ def left_at_once(part: Part, answer: str = "goal_answered") -> bool:
 
 
 def goals_as_seen(evidence: Evidence) -> str:
-    """What is wrong about the goals, in words."""
+    """The faults of the goals, in words."""
     if asked_for(evidence.part(LATE)) and left_at_once(evidence.part(LATE)):
         return NOT_AWAITED
     wanted = len(asked_for(evidence.reference.part(LATE)))
@@ -100,7 +100,7 @@ def goals_as_seen(evidence: Evidence) -> str:
 
 
 def cancels_unasked(part: Part) -> bool:
-    """Whether it asks to cancel its goal before that has ended; one that was interrupted may."""
+    """True if it asks to cancel its goal before that has ended; one that was interrupted may."""
     for event in part.events:
         if event.kind == "result" or event.name == INTERRUPTED:
             return False
@@ -122,7 +122,7 @@ def _sequence(event: Event) -> list[int]:
 
 
 def said_of_result(part: Part) -> list[str]:
-    """What was said after the result was sent, without what is only a late echo of something said before.
+    """The words after the result was sent, without late echoes of something said before.
 
     A log line comes twice, as output and on /rosout, and the second of the two may be slow.
     """
@@ -158,7 +158,7 @@ def _are_in_order(numbers: Sequence[str], lines: Sequence[str]) -> bool:
 
 
 def returned_instead(part: Part, wanted: Sequence[int]) -> str:
-    """What a function has returned in place of these numbers; empty where it is right, and of a subject that is none.
+    """The value that a function returned in place of these numbers; empty where it is right, or no function.
 
     Any kind of sequence is taken for a list.
     """
@@ -202,17 +202,17 @@ def last_line(part: Part) -> str:
 
 
 def raised_on_purpose(part: Part) -> bool:
-    """Whether it ended with an exception that says something."""
+    """True if it ended with an exception that says something."""
     return bool(last_line(part)) and not last_line(part).startswith(SLIPS)
 
 
 def _waits(late: Part) -> bool:
-    """Whether it waits for a late server and for a late answer; in which other runs it gets these is chance if not."""
+    """True if it waits for a late server and a late answer; otherwise timing decides which runs it meets."""
     return bool(asked_for(late)) and not left_at_once(late)
 
 
 def refused_as_seen(evidence: Evidence) -> str:
-    """What is wrong about how a refused goal is told, in words.
+    """The fault in the report of a refused goal, in words.
 
     rclpy's blocking ``send_goal()`` asks for the result of a refused goal by itself. Who makes of its status 0 that the
     goal was refused has seen what there is to see; who says of it what it says of any status has not.
@@ -255,7 +255,7 @@ def _says_accepted(line: str) -> bool:
 
 
 def _tells_another(line: str, evidence: Evidence) -> bool:
-    """Whether a line tells of another end than a refusal: how an accepted goal ends, or that there is no server."""
+    """True if a line tells of another end than a refusal: how an accepted goal ends, or that there is no server."""
     if re2.search(r"(?i)accept|reject|refus", line):
         return False
     if any(words.ends_as(word, line) for word in (words.SUCCEEDED, *_FAILURES)):
@@ -266,7 +266,7 @@ def _tells_another(line: str, evidence: Evidence) -> bool:
 
 
 def aborted_as_seen(evidence: Evidence) -> str:
-    """What is wrong about how an aborted goal is told, in words. The goal's status is on a topic, too."""
+    """The fault in the report of an aborted goal, in words. The goal's status is on a topic, too."""
     part = evidence.part(ABORTED)
     result = part.first("result")
     if result is None or not _waits(evidence.part(LATE)):
@@ -307,7 +307,7 @@ def _names_another(line: str) -> bool:
 
 
 def given_up(evidence: Evidence) -> str:
-    """What is wrong about how it gave up without a server, in words."""
+    """The fault in its giving up without a server, in words."""
     part = evidence.part(ABSENT)
     # Who ends at once whether there is a server or not has not given up. But one that looks under another name has.
     # In which other runs one asks that hardly waits is a matter of chance; where the server is late, in none.

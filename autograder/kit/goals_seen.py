@@ -1,4 +1,4 @@
-"""What the judge's action client has seen of one goal of an action such as Fibonacci: an order, then numbers."""
+"""One goal of an action such as Fibonacci, as the judge's action client has seen it: an order, then numbers."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ STATUS = {
 
 @dataclass(frozen=True)
 class Goal:
-    """What is known of one goal.
+    """One goal, as far as it is known.
 
     Attributes:
         order: What was asked for; None where the goal was not sent.
@@ -70,7 +70,7 @@ class Goal:
         return tuple(after - before for before, after in pairwise(self.sent))
 
     def sent_after(self, moment: float | None) -> int:
-        """How many feedback messages were surely sent after a moment; 0 where the moment is not known."""
+        """The number of feedback messages surely sent after a moment; 0 where the moment is not known."""
         return 0 if moment is None else sum(sent > moment for sent in self.sent)
 
     @property

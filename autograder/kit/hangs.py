@@ -27,7 +27,7 @@ _BLOCKING = {
     "action/client.py": {"send_goal", "cancel_goal", "get_result", "_cancel_goal"},
 }
 _CALLS_BACK = {("executors.py", "await_or_execute"), ("task.py", "__call__")}
-"""What calls a callback: of an entity, of a future."""
+"""The functions that call a callback: of an entity, of a future."""
 _SPINS = {
     "spin",
     "spin_once",
@@ -70,7 +70,7 @@ def _blocks(stack: Stack) -> bool:
 
 
 def _in_callback(stack: Stack) -> bool:
-    """Whether the innermost code of the student's was called by an executor."""
+    """True if the innermost code of the student's was called by an executor."""
     own = next(
         (i for i, frame in enumerate(stack) if not frame.rclpy and frame.function != "wait"), len(stack)
     )
@@ -82,12 +82,12 @@ def _spins(stack: Stack) -> bool:
 
 
 def something_spins(part: Part) -> bool:
-    """Whether one of the subject's threads was spinning when it hung."""
+    """True if one of the subject's threads was spinning when it hung."""
     return any(map(_spins, stacks(part)))
 
 
 def _spins_in_callback(stack: Stack) -> bool:
-    """Whether there is a spin, code of the student's below it, and an executor below that."""
+    """True if there is a spin, code of the student's below it, and an executor below that."""
     spins = [i for i, frame in enumerate(stack) if frame.rclpy and frame.function in _SPINS]
     if not spins:
         return False
@@ -109,7 +109,7 @@ def _stuck_callback(found: list[Stack]) -> str:
 
 
 def _executes_a_goal(stack: Stack) -> bool:
-    """Whether code of the student's was called by an action server to execute a goal."""
+    """True if code of the student's was called by an action server to execute a goal."""
     return bool(_stuck_callback([stack])) and any(frame.rclpy == "action/server.py" for frame in stack)
 
 

@@ -1,4 +1,4 @@
-"""How many there were, and where two texts differ, as a sentence for a student says it."""
+"""Counts, and the difference of two texts, in the words of a sentence for a student."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ def counted(number: int, thing: str) -> str:
 
 
 def first_difference(said: str, wanted: str) -> str:
-    """Where a text stops being the one that was asked for, in a sentence; empty where they are the same."""
+    """The place where a text stops being the one that was asked for, in a sentence; empty where they are the same."""
     if said == wanted:
         return ""
     same = said[

@@ -1,4 +1,4 @@
-"""What a client has to wait for: a server that comes late, and answers that take a moment.
+"""A client's patience: with a server that comes late, and with answers that take a moment.
 
 On a quiet machine everything is there in milliseconds, and who hardly waits is as right as who does. So the judge
 takes its time, as a server on a robot may: long enough to tell the two apart, and well below the few seconds that a
@@ -24,7 +24,7 @@ ANSWERS_LATE, ANSWERS_SOON = 0.5, 0.12
 PATIENT_WITH_AN_ANSWER = 0.9
 """Seconds after which a client that has given up on an answer was patient: on a busy machine it may have missed it."""
 TRIES = 3
-"""How often at most such a client is started again: what comes soon is missed where the machine is slow."""
+"""The number of times that such a client is started again: a slow machine may miss what comes soon."""
 PATIENT = 1.2
 """Seconds after which a client that has given up was patient: it may have missed the server by a moment."""
 
@@ -35,12 +35,12 @@ def answers_late(bench: Bench) -> float:
 
 
 def was_patient(part: Part) -> bool:
-    """Whether a client that ended had waited as long as anybody may ask, from its first sign of life to its last."""
+    """True if a client that ended had waited as long as anybody may ask, from its first sign of life to its last."""
     return _waited_since(part, part.first("interface"), PATIENT)
 
 
 def was_patient_with_an_answer(part: Part, requests: Sequence[str]) -> bool:
-    """Whether a client that ended had waited for the answer to its last request as long as anybody may ask.
+    """True if a client that ended had waited for the answer to its last request as long as anybody may ask.
 
     Args:
         part: What was seen of the client.
@@ -90,7 +90,7 @@ def again_while(
 
 
 def _missed(request: str) -> Callable[[Part], bool]:
-    """Whether a patient client has asked its server nothing, that is, sent no request of this kind."""
+    """True if a patient client has sent its server no request of this kind."""
     return lambda seen: not seen.of(request) and was_patient(seen)
 
 

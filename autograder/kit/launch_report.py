@@ -1,4 +1,4 @@
-"""What a launch tells the judge of its processes: one line of JSON each, among its other output."""
+"""A launch's report to the judge on its processes: one line of JSON each, among its other output."""
 
 from __future__ import annotations
 

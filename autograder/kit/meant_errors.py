@@ -11,7 +11,7 @@ _LIBRARY = re2.compile(r"/(site|dist)-packages/|/lib/python3\.\d+/|/opt/ros/")
 
 
 def meant(traceback: str) -> bool:
-    """Whether the innermost line of a traceback is one of the program's own that says ``raise`` or ``assert``."""
+    """True if the innermost line of a traceback is one of the program's own that says ``raise`` or ``assert``."""
     frames = list(_FRAME.finditer(traceback))
     if not frames or _LIBRARY.search(frames[-1]["file"]):
         return False

@@ -1,4 +1,4 @@
-"""What an exercise is made of: plain data, and the words in which a scenario is written.
+"""The parts of an exercise: plain data, and the words in which a scenario is written.
 
 An exercise module says what to stimulate (a scenario), what must hold (criteria) and which mistakes are known
 (mistakes). It drives the judge through the :class:`Bench` protocol and never imports it, so that an exercise
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Pace(StrEnum):
-    """How time passes while the judge looks at a subject."""
+    """The kind of time in which the judge looks at a subject."""
 
     FAST = "fast"
     """Simulated time is stepped where the subject follows it; counterparts answer as fast as they can."""
@@ -31,7 +31,7 @@ class Pace(StrEnum):
 
 @dataclass(frozen=True)
 class Finding:
-    """Whether a criterion holds, with the two halves of the sentence on the card."""
+    """The decision on a criterion, with the two halves of the sentence on the card."""
 
     passed: bool
     expected: str
@@ -57,7 +57,7 @@ class Criterion:
 
 @dataclass(frozen=True)
 class Advice:
-    """What a recognised mistake tells the student.
+    """The words of a recognised mistake to the student.
 
     Attributes:
         text: What happened and why.
@@ -87,7 +87,7 @@ class Mistake:
 
 
 class Bench(Protocol):
-    """What a scenario can do. Every wait ends at an event or at its limit, and says which."""
+    """The words of a scenario. Every wait ends at an event or at its limit, and says which."""
 
     pace: Pace
     before: Evidence | None
@@ -95,7 +95,7 @@ class Bench(Protocol):
     random: Random
     reference: Any
     in_a_cell: bool
-    """Whether the subject runs in a notebook's kernel, so that somebody may be waiting beside the check cell."""
+    """True if the subject runs in a notebook's kernel, so that somebody may be waiting beside the check cell."""
 
     def part(self, name: str, **inputs: Any) -> None:
         """Begin a part: a fresh run of the subject; ``inputs`` are written into the transcript."""
@@ -222,15 +222,15 @@ class Bench(Protocol):
         ...
 
     def seen(self) -> Part:
-        """What has been seen so far in this part."""
+        """The events of this part so far."""
         ...
 
     def heard(self, topic: str) -> int:
-        """How many messages arrived on a topic so far in this part."""
+        """The number of messages that arrived on a topic so far in this part."""
         ...
 
     def doubt(self) -> None:
-        """What is seen in this look must be confirmed in real time."""
+        """Have this look confirmed in real time."""
         ...
 
     def settle(self) -> None:

@@ -1,4 +1,4 @@
-"""Whether somebody said a number."""
+"""Numbers in what somebody said."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ if TYPE_CHECKING:
 _DASH = r"[\d\-−][\-−]"
 """A dash that is no sign: behind a digit, or one of a row of dashes."""
 _UNSIGNED = rf"(?:^|[^\d\-−]|{_DASH})"
-"""What stands before a number without a sign."""
+"""The characters before a number without a sign."""
 _UNSIGNED_ZERO = rf"(?:^|[^\d.\-−]|{_DASH}|(?:^|\D)\.)"
 """The same before a 0: that of 0.5 and of 1.0 is none, one at the end of a row of dots is."""
 
 
 def mentions(lines: Sequence[str], number: int) -> bool:
-    """Whether the number stands in one of the lines, with or without separators between its digits."""
+    """True if the number stands in one of the lines, with or without separators between its digits."""
     digits = r"[,_' .]?".join(str(abs(number)))
     before, after = _UNSIGNED, r"(?:\D|$)"
     if number < 0:

@@ -36,12 +36,12 @@ def without_lists(line: str) -> str:
 
 
 def names_canceled(line: str) -> bool:
-    """Whether a line speaks of canceling."""
+    """True if a line speaks of canceling."""
     return re2.search(r"(?i)cancel|abgebrochen|annul", without_lists(line)) is not None
 
 
 def flag(word: str, line: str) -> bool | None:
-    """What a line answers to the question whether a goal ended so; None where it says neither yes nor no.
+    """The line's answer, yes or no, to the question whether a goal ended so; None where it says neither.
 
     Args:
         word: One of the words above.
@@ -61,7 +61,7 @@ def flag(word: str, line: str) -> bool | None:
 
 
 def ends_as(word: str, line: str) -> bool:
-    """Whether a line says that the goal ended so, as "the goal was canceled" and "status: CANCELED" do."""
+    """True if a line says that the goal ended so, as "the goal was canceled" and "status: CANCELED" do."""
     plain = _EMPTY_BOX.sub("", _ANSWERED.sub("", without_lists(line)))
     if re2.search(f"(?i){DOUBTFUL}", plain) or _names_another(word, plain):
         return False
@@ -74,7 +74,7 @@ def ends_as(word: str, line: str) -> bool:
 
 
 def _names_another(word: str, line: str) -> bool:
-    """Whether a line names another end beside this one, so that it is a legend or a comparison."""
+    """True if a line names another end beside this one, so that it is a legend or a comparison."""
     if word == SUCCEEDED:
         return names_canceled(line) or re2.search(f"(?i){ABORTED}", line) is not None
     return re2.search(r"\bSUCCEEDED\b" if word == CANCELED else f"(?i){SUCCESS}", line) is not None

@@ -1,4 +1,4 @@
-"""What is known of a package's programs: whether they were built, and where their entry points lead."""
+"""A package's programs, as they are known: built or not, and the modules of their entry points."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Entry:
 
     @property
     def line(self) -> str:
-        """How it is written in setup.py."""
+        """Its line in setup.py."""
         return f"'{self.program} = {self.package}.{self.module}:main'"
 
 
@@ -97,7 +97,7 @@ _LED_NOWHERE = re2.compile(
 
 
 def _again(evidence: Evidence) -> str:
-    """What to do after a change: the judge of a workspace builds it, and `ros2 run` starts what somebody has built."""
+    """The next step after a change: a workspace's judge builds it, `ros2 run` starts what is built."""
     return (
         "Then build and check again."
         if report_of(evidence.main) is None
@@ -159,7 +159,7 @@ def wrong_folder(evidence: Evidence, entry: Entry) -> Advice | None:
 
 
 def lost_entry_point(report: WorkspaceReport | None, package: str, program: str) -> bool:
-    """Whether a module of an earlier lab is in the package, and no program starts it any more.
+    """True if a module of an earlier lab is in the package, and no program starts it any more.
 
     What is installed counts: an entry point can be written, or computed, in more ways than can be read from setup.py.
     """

@@ -1,4 +1,4 @@
-"""What Python's own errors mean in a beginner's node, and what to do: one row for each way in which Python says it.
+"""Python's own errors in a beginner's node: one row for each wording, with its meaning and the next step.
 
 The rows were made from what Python 3.11 and 3.12 and rclpy 7.1 print. The first one that fits wins.
 """
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Meaning(NamedTuple):
-    """What an error means.
+    """The meaning of an error.
 
     Attributes:
         why: What is wrong, in a sentence; it may be empty.
@@ -107,7 +107,7 @@ READING: Sequence[Row] = (
         "before it.",
     ),
 )
-"""What Python says of a text that it cannot read."""
+"""Python's words about a text that it cannot read."""
 
 RUNNING: Sequence[Row] = (
     (
@@ -249,11 +249,11 @@ RUNNING: Sequence[Row] = (
         "yours.",
     ),
 )
-"""What Python says of a program that runs."""
+"""Python's words about a program that runs."""
 
 
 def meaning(traceback: str) -> Meaning:
-    """What the error at the end of a traceback means."""
+    """The meaning of the error at the end of a traceback."""
     for pattern, why, next_step in (*READING, *RUNNING):
         found = _compiled(pattern).search(traceback)
         if found is not None:

@@ -22,11 +22,11 @@ ROW = 7
 LATE = 6
 """One in so many messages of a row may be late."""
 SIMULATED_TOLERANCE = 0.05
-"""How far the mean simulated interval may be from the reference's, as a part of it."""
+"""The part of the reference's interval by which the mean simulated one may differ."""
 SIMULATED_JITTER = 0.1
 """Simulated seconds by which one interval may differ: two steps of the judge's clock."""
 SLOWER, FASTER = 0.18, 0.1
-"""How far the median real interval may be from the reference's, as a part of it: load makes a talker slower only."""
+"""The parts of the reference's interval by which the median real one may differ: load makes a talker slower only."""
 UNEVEN = 0.3
 """The part of the period by which an interval in real time is too long or too short."""
 ON_THE_WAY = 0.3
@@ -78,7 +78,7 @@ def rate_of(messages: Sequence[Event], wanted: float, row: int = ROW) -> Rate | 
 
 
 def sent_times(messages: Sequence[Event]) -> list[float]:
-    """When each message was sent: as its publisher says, where that can be true.
+    """The time at which each message was sent: as its publisher says, where that can be true.
 
     A busy judge hears messages late and close together, so their publisher's clock is the better one; but a publisher
     whose clock was tampered with says what it likes. Both read the clock of one machine.
@@ -112,7 +112,7 @@ def _at_a_glance(times: Sequence[float], wanted: float) -> Rate:
 
 
 def confirmed(rate: Rate, before: Rate, wanted: float) -> bool:
-    """Whether a rate in real time shows the same wrong period as the simulated clock did.
+    """True if a rate in real time shows the same wrong period as the simulated clock did.
 
     A thread that sleeps by that clock may seem slow in simulated time, and only there.
     """

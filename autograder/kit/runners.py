@@ -1,4 +1,4 @@
-"""What is done with a path that is given in place of a command."""
+"""The handling of a path that is given in place of a command."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was seen of a service client in its runs, what can be asked of that, and the mistakes that are common."""
+"""A service client as it was seen in its runs, the questions about it, and the common mistakes."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ CALLED = (LATE, BIASED, EXTREME)
 """The parts in which the service answers."""
 
 _BRACES = re2.compile(r"\{[\pL_][^{}]*\}")
-"""What an f-string would have filled in."""
+"""The part of a text that an f-string would have filled in."""
 HANGS_AFTER = 8.0
 """Seconds without any event after which a client that has its answer is taken to hang."""
 
 
 @dataclass(frozen=True)
 class Client:
-    """What was seen of a service client, or recorded of the reference solution.
+    """A service client, as it was seen, or recorded of the reference solution.
 
     Attributes:
         evidence: All of its runs.
@@ -52,19 +52,19 @@ class Client:
 
     @property
     def calls(self) -> int:
-        """How often it calls where the service comes late."""
+        """The number of calls where the service comes late."""
         return len(requests(self.late))
 
     def called_each_time(self) -> bool:
-        """Whether each run with a service came to a call: time had no part in the number of calls then."""
+        """True if each run with a service came to a call: time had no part in the number of calls then."""
         return all(map(requests, self.served))
 
     def ended_each_time(self) -> bool:
-        """Whether each run came to its own end: time had no part in it then."""
+        """True if each run came to its own end: time had no part in it then."""
         return all(part.ending for part in self.evidence.parts)
 
     def called(self, wanted: int) -> bool:
-        """Whether it called so many times in each run with a service."""
+        """True if it called so many times in each run with a service."""
         return all(len(requests(part)) == wanted for part in self.served)
 
 
@@ -92,13 +92,13 @@ def reports(part: Part) -> bool:
 
 
 def returns_another(part: Part) -> bool:
-    """Whether a notebook's function returned anything but the last answer, whatever it logged."""
+    """True if a notebook's function returned anything but the last answer, whatever it logged."""
     given = answers(part)
     return bool(given) and part.returned not in (None, str(given[-1]))
 
 
 def says_otherwise(part: Part) -> bool:
-    """Whether one of its reports of the last answer is wrong, whatever another one says.
+    """True if one of its reports of the last answer is wrong, whatever another one says.
 
     A function that raised has returned nothing to whoever called it. A line that has the answer with the other sign
     tells its reader a wrong sum.
@@ -125,7 +125,7 @@ def has_reported(part: Part, calls: int) -> bool:
 
 
 def new_words(part: Part, given: Event | None = None) -> list[str]:
-    """What was said after an answer, the last one if none is named, without what is only a late echo.
+    """The words after an answer, the last one if none is named, without late echoes.
 
     A log line comes twice, as output and on /rosout, and the second of the two may be slow.
     """
@@ -200,7 +200,7 @@ def no_limit(evidence: Evidence) -> str:
 
 
 def how_it_went(part: Part) -> str:
-    """How a part ended, in words."""
+    """The end of a part, in words."""
     if not part.events:
         return "not reached"
     ending = part.ending
@@ -263,7 +263,7 @@ def answer_not_awaited(evidence: Evidence) -> Advice | None:
 
 
 def ended_before_its_answer(part: Part) -> bool:
-    """Whether the subject had ended when an answer was given, or a call had not even left it."""
+    """True if the subject had ended when an answer was given, or a call had not even left it."""
     if part.ending is None:
         return False
     asked = max(len(requests(part)), len(part.of("called")))
@@ -272,7 +272,7 @@ def ended_before_its_answer(part: Part) -> bool:
 
 
 def _made_nothing_of_its_answer(part: Part) -> bool:
-    """Whether the subject ended with its first answer, and neither called again nor said a number that came of it.
+    """True if the subject ended with its first answer, and neither called again nor said a number that came of it.
 
     A process takes its time to end, so the answer may be given while one that has not waited for it is on its way out.
     """
@@ -316,7 +316,7 @@ def _says_the_answer(part: Part) -> bool:
 
 
 def cut_short(client: Client) -> str:
-    """What was seen where the judge made no more runs, because the client hung in one; empty where it made all."""
+    """The event that ended the judge's runs early, because the client hung; empty where it made all."""
     hung = next((part for part in client.served if part.events and part.ending is None), None)
     if hung is None or all(part.events for part in client.served):
         return ""

@@ -1,4 +1,4 @@
-"""What a listener's lines say: which texts it heard, what it made up, what it said more than once."""
+"""A listener's lines: the texts that it heard, made up, or said more than once."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 _QUOTED = re2.compile(r"[\"“«].*[\pL\pN_].*[\"”»]")
 _OPENING, _CLOSING = tuple("\"'“‘«`"), tuple("\"'”’»`")
 _A_TALKERS = re2.compile(r"\W*[Hh]ello,? [Ww]orld!?\W*\d+\W*")
-"""What the talkers of this course and of the official tutorials say."""
+"""The texts of the talkers of this course and of the official tutorials."""
 _TWO_WORDS = re2.compile(r"\b([a-z]+) ([a-z]+) \d{4}\b")
-"""What the texts of the judge have in them, see :func:`autograder.kit.recipes.subscriber.random_texts`."""
+"""The special parts of the judge's texts, see :func:`autograder.kit.recipes.subscriber.random_texts`."""
 _BYTE = ("\\x00", "\0")
 """A zero byte, as Python shows it or as it is. A serialized text has them before and behind it."""
 MUCH = 5
@@ -33,18 +33,18 @@ OFTEN = 3
 
 
 def tells(line: str, text: str) -> bool:
-    """Whether a line says a text: as it came, and not among the bytes of a serialized message."""
+    """True if a line says a text: as it came, and not among the bytes of a serialized message."""
     found = _frame(line, text)
     return found is not None and not found.before.endswith(_BYTE) and not found.after.startswith(_BYTE)
 
 
 def is_said(text: str, part: Part, *, after: Event | None = None) -> bool:
-    """Whether the subject said a text, perhaps only after an event."""
+    """True if the subject said a text, perhaps only after an event."""
     return any(tells(line, text) for line in part.said(after=after))
 
 
 def has_much_of(line: str, text: str) -> bool:
-    """Whether a line has a part of a text in it that no line has by chance, in capitals or not."""
+    """True if a line has a part of a text in it that no line has by chance, in capitals or not."""
     if tells(line, text) or any(byte in line for byte in _BYTE):
         return False
     found = SequenceMatcher(None, line.lower(), text.lower(), autojunk=False).find_longest_match()
@@ -64,7 +64,7 @@ class Frame:
     after: str
 
     def content(self, line: str) -> str | None:
-        """What stands in a line in the place of the text; None where the line has other words."""
+        """The part of a line in the place of the text; None where the line has other words."""
         long_enough = len(line) >= len(self.before) + len(self.after)
         if not (long_enough and line.startswith(self.before) and line.endswith(self.after)):
             return None
@@ -72,22 +72,22 @@ class Frame:
 
     @property
     def is_telling(self) -> bool:
-        """Whether it is too long for other lines to have it by chance."""
+        """True if it is too long for other lines to have it by chance."""
         return len(self.before.strip()) > 3
 
     @property
     def has_quotes(self) -> bool:
-        """Whether the text stands in quotation marks."""
+        """True if the text stands in quotation marks."""
         return self.before.endswith(_OPENING) and self.after.startswith(_CLOSING)
 
     @property
     def quotes(self) -> bool:
-        """Whether the marks are there for the text alone, and not for each line, as in JSON or in ``msg="…"``."""
+        """True if the marks are there for the text alone, and not for each line, as in JSON or in ``msg="…"``."""
         rest = self.before[:-1]
         return self.has_quotes and not rest.endswith("=") and not any(mark in rest for mark in _OPENING)
 
     def is_claim(self, content: str) -> bool:
-        """Whether a line with this content claims to tell of a text.
+        """True if a line with this content claims to tell of a text.
 
         Many programs have their name at the front of each line, also of one that tells what they wait for. So what is
         not quoted is a claim only where it is what a talker says.
@@ -96,7 +96,7 @@ class Frame:
 
 
 def invented(part: Part, sent: Sequence[str]) -> list[str]:
-    """What it claims to have heard although nobody sent it.
+    """The texts that it claims to have heard although nobody sent them.
 
     Its own way of saying is learnt from the first line that carries a sent text: what stands before and after the text.
     A line with the same frame and another text in it was invented. Where it said none of the texts, a line with a

@@ -19,7 +19,7 @@ def build_report(part: Part) -> WorkspaceReport | None:
 
 
 def seen_of_build(report: WorkspaceReport) -> str:
-    """How a build went, in a few words for a card."""
+    """The outcome of a build, in a few words for a card."""
     if report.trouble == "build":
         return f"colcon could not build {report.package or 'it'}: {report.line}"
     return report.line or report.trouble.replace("_", " ")

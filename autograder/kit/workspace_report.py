@@ -1,4 +1,4 @@
-"""What a student's side reports about a workspace: one line of JSON behind a mark, among a program's other output.
+"""The report of a student's side on a workspace: one line of JSON behind a mark, among a program's other output.
 
 The judge sees a workspace's programs on the wire. What no wire can tell (which line the build stumbled over) is
 reported by the program that built it, before the student's own program says anything: only the first report counts.
@@ -71,7 +71,7 @@ class PackageReport:
 
 @dataclass(frozen=True)
 class WorkspaceReport:
-    """How a build went.
+    """The outcome of a build.
 
     Attributes:
         phase: ``"found"`` before the build, ``"built"`` after it.

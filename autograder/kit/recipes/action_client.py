@@ -31,7 +31,7 @@ ORDERS = {LATE: (41, 46), REFUSED: (-9, -1), ABORTED: (0, 0), ABSENT: (11, 30)}
 SHOWN_WITHIN = {Pace.FAST: 0.5, Pace.REAL_TIME: 1.5}
 """Seconds at most in which a client shows a feedback message before the next one is sent."""
 HASTE = 0.2
-"""What that is multiplied with once it was used up: who shows nothing is not waited for again and again."""
+"""The factor on that time once it was used up, so that a silent client is not waited for again and again."""
 AT_PACE = 3
 """Feedback messages at the end that come at the pace of the lab's server, whether the ones before were shown or not:
 who shows by a timer of its own what came last leaves some out."""
@@ -167,7 +167,7 @@ def works_on_a_goal(bench: Bench, server: ActionCounterpart, status: str, feedba
 
 
 def is_done(evidence: Evidence) -> bool:
-    """Whether the subject has ended or, as a program may, has said something of the result and goes on spinning."""
+    """True if the subject has ended or, as a program may, has said something of the result and goes on spinning."""
     part = evidence.main
     result = part.first("result")
     return part.ending is not None or (result is not None and bool(part.said(after=result)))
@@ -222,7 +222,7 @@ _WHAT_IS_SAID = (
     ("abort_not_reported", goals.abort_not_reported),
     ("silent_end", goals.silent_end),
 )
-"""What a client asks and says: where it has come to its own end in every part, time had no part in it."""
+"""The criteria on what a client asks and says: where it ended by itself in every part, timing did not decide them."""
 
 
 def _not_by_refusal(mistake: Mistake) -> Mistake:
@@ -259,7 +259,7 @@ class ActionClient:
         )
 
     def seen(self, evidence: Evidence) -> Evidence:
-        """What was seen of the subject."""
+        """The subject, as it was seen."""
         return evidence
 
     def expected(self, evidence: Evidence) -> Evidence:

@@ -47,7 +47,7 @@ class SendsGoals:
         self.scenario, self._good, self.canceled = scenario, good, canceled
 
     def seen(self, evidence: Evidence) -> Evidence:
-        """What was seen of the subject."""
+        """The subject, as it was seen."""
         return evidence
 
     def expected(self, evidence: Evidence) -> Evidence:
@@ -134,7 +134,7 @@ class SendsGoals:
 
 
 def is_quick(seen: Goal) -> bool:
-    """Whether a goal took no time."""
+    """True if a goal took no time."""
     return seen.seconds is not None and seen.seconds < AT_ONCE
 
 

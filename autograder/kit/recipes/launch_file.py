@@ -37,7 +37,7 @@ PART = "launching"
 
 
 class Launched:
-    """What was seen of the programs that a launch file started.
+    """The programs that a launch file started, as they were seen.
 
     Args:
         evidence: All that was seen.
@@ -67,7 +67,7 @@ class Launched:
 
     @property
     def says_what_it_hears(self) -> bool:
-        """Whether the text that the judge sent under the new name was said."""
+        """True if the text that the judge sent under the new name was said."""
         return self.topic in self.subscriptions and _says_its_text(self._part)
 
     @property
@@ -77,17 +77,17 @@ class Launched:
 
     @property
     def talkers(self) -> int:
-        """How many programs publish under the new name. One more listener is nobody's harm."""
+        """The number of programs that publish under the new name. One more listener does no harm."""
         return len(self._sides[0])
 
     @property
     def given_a_rule(self) -> int:
-        """How many of the programs under the new name were given a rule that leads there."""
+        """The number of programs under the new name that were given a rule that leads there."""
         return len(self._given & (self._sides[0] | self._sides[1]))
 
     @property
     def moved_by_rules(self) -> bool:
-        """Whether all programs under the new name were given such a rule.
+        """True if all programs under the new name were given such a rule.
 
         Where an endpoint does not tell whose it is, any process that was given a rule may have it. Who else listens
         there, such as ``ros2 topic echo``, needs no rule.
@@ -98,25 +98,25 @@ class Launched:
 
     @property
     def own_without_a_rule(self) -> bool:
-        """Whether a program of the package is under the new name, and no rule led it there."""
+        """True if a program of the package is under the new name, and no rule led it there."""
         return bool(((self._sides[0] | self._sides[1]) & self._own) - self._given)
 
     @property
     def has_a_talker_of_the_package(self) -> bool:
-        """Whether a program of the package publishes under the new name, or one that does not tell whose it is."""
+        """True if a program of the package publishes under the new name, or one that does not tell whose it is."""
         talk, _ = self._sides
         return bool(talk & self._own) or 0 in talk
 
     @property
     def is_settled(self) -> bool:
-        """Whether all is known of the launch: each program's ends are on the graph, or one too many is."""
+        """True if all is known of the launch: each program's ends are on the graph, or one too many is."""
         if self.elsewhere or not (self.publishers and self.subscriptions):
             return True
         return self.moved_by_rules and self.talkers < NODES and self.all_are_there
 
     @property
     def all_are_there(self) -> bool:
-        """Whether each program that was started has an end of a topic on the graph, or one has that does not tell."""
+        """True if each program that was started has an end of a topic on the graph, or one has that does not tell."""
         known = {process for _, _, process in self._ends}
         started = processes(self._part)
         parents = {process.parent for process in started}
@@ -155,7 +155,7 @@ class Launched:
         return any(self._begins(old) and _leads_to(self.topic, new) for old, new in remappings(argv))
 
     def _begins(self, name: str) -> bool:
-        """Whether a rule is one for the name in the code; a node's name may stand before it, and a namespace."""
+        """True if a rule is one for the name in the code; a node's name may stand before it, and a namespace."""
         return name.rpartition(":")[2].rpartition("/")[2] == self._old_name
 
 
@@ -187,7 +187,7 @@ class LaunchFile:
         )
 
     def seen(self, evidence: Evidence) -> Launched:
-        """What was seen of the programs."""
+        """The programs, as they were seen."""
         return Launched(evidence, self._package, self._old_name)
 
     def expected(self, evidence: Evidence) -> Launched:
@@ -252,7 +252,7 @@ _TODO = (
     (r"keyword argument", "Compare the names of the arguments with those in the example, letter by letter."),
     (r"^NameError", "Compare the name with the imports at the top of the file, letter by letter."),
 )
-"""What to do about what a launch says, the most telling first."""
+"""The next steps for a launch's own messages, the most telling first."""
 _COMPARE = "Compare the file with the example, first the line that is named."
 
 
@@ -270,12 +270,12 @@ def _lower(pid: int) -> int:
 
 
 def _is_a_tool(argv: tuple[str, ...]) -> bool:
-    """Whether a command line is one of the command ``ros2``, perhaps behind its Python."""
+    """True if a command line is one of the command ``ros2``, perhaps behind its Python."""
     return any(word.rpartition("/")[2] == "ros2" for word in argv[:2])
 
 
 def _leads_to(topic: str, target: str) -> bool:
-    """Whether a rule's target is the topic; a relative one has the node's namespace in front."""
+    """True if a rule's target is the topic; a relative one has the node's namespace in front."""
     return topic == target or topic.endswith(f"/{target.removeprefix('~').lstrip('/')}")
 
 
@@ -285,7 +285,7 @@ def _of_nodes(part: Part) -> list[Process]:
 
 
 def _complaint(part: Part) -> str:
-    """What the launch itself says of the file, without the words around it."""
+    """The launch's own message about the file, without the words around it."""
     lines = [str(event.data["text"]) for event in part.of("output")]
     for number, line in enumerate(lines):
         if "[ERROR] [launch]:" not in line and not line.startswith("ros2: "):

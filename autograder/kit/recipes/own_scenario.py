@@ -32,11 +32,11 @@ class OwnScenario:
         self.scenario = scenario
 
     def seen(self, evidence: Evidence) -> Part:
-        """What was seen of the subject."""
+        """The subject, as it was seen."""
         return evidence.main
 
     def expected(self, evidence: Evidence) -> Part:
-        """What was recorded of the reference solution; what was seen itself while that is being recorded."""
+        """The reference solution, as it was recorded; the subject itself while that is being recorded."""
         return evidence.reference.parts[0] if evidence.reference.parts else evidence.main
 
     def is_there(self, evidence: Evidence) -> Finding:
@@ -85,7 +85,7 @@ class OwnLadder:
         self.ladder = ladder
 
     def seen(self, evidence: Evidence) -> Evidence:
-        """What was seen of the subject."""
+        """The subject, as it was seen."""
         return evidence
 
     def expected(self, evidence: Evidence) -> Evidence:

@@ -25,7 +25,7 @@ LATE = 0.3
 
 
 class Ran:
-    """What was seen of a program.
+    """A program, as it was seen.
 
     Args:
         evidence: All that was seen.
@@ -36,7 +36,7 @@ class Ran:
 
     @property
     def line(self) -> str:
-        """What the reference solution logs; empty while that is being recorded."""
+        """The line that the reference solution logs; empty while that is being recorded."""
         recorded = self._evidence.reference.parts
         said = recorded[0].first("said") if recorded else None
         return str(said.data["text"]) if said is not None else ""
@@ -48,23 +48,23 @@ class Ran:
 
     @property
     def has_node(self) -> bool:
-        """Whether it made a node; the name of one that was there for a moment only may be unknown."""
+        """True if it made a node; the name of one that was there for a moment only may be unknown."""
         return any(part.had_node for part in self._evidence)
 
     @property
     def words(self) -> list[str]:
-        """What it said, without what ``ros2`` says of a program that it cannot run."""
+        """Its words, without those of ``ros2`` about a program that it cannot run."""
         return [word for part in self._evidence for word in _words(part)]
 
     @property
     def says_it(self) -> bool:
-        """Whether the line is in what it said."""
+        """True if the line is in its words."""
         line = self.line
         return bool(line) and any(_says(said, line) for part in self._evidence for said in part.said())
 
     @property
     def nearest(self) -> str:
-        """What it said that is most like the line; empty where it said nothing."""
+        """The line of its words that is most like the expected one; empty where it said nothing."""
         if self.says_it:
             return self.line
         words = self.words
@@ -73,7 +73,7 @@ class Ran:
 
     @property
     def first_difference(self) -> str:
-        """Where that stops being the line, in a sentence."""
+        """The place where that differs from the expected line, in a sentence."""
         return first_difference(self.nearest, self.line)
 
 
@@ -82,7 +82,7 @@ _LETTER = re2.compile(r"[A-Za-z0-9]")
 
 
 def _says(said: str, line: str) -> bool:
-    """Whether a line is in what was said, and no letter or digit directly beside it."""
+    """True if a line is in what was said, and no letter or digit directly beside it."""
     before, found, after = _COLOUR.sub(" ", said).partition(line)
     return bool(found) and not _LETTER.match(before[-1:]) and not _LETTER.match(after)
 
@@ -111,7 +111,7 @@ class Program:
         self.runner = RunsProgram(package, program)
 
     def seen(self, evidence: Evidence) -> Ran:
-        """What was seen of the program."""
+        """The program, as it was seen."""
         return Ran(evidence)
 
     def expected(self, evidence: Evidence) -> Ran:

@@ -48,7 +48,7 @@ class Program:
 
     @property
     def prefix(self) -> str:
-        """How the names of its parts begin."""
+        """The beginning of the names of its parts."""
         return f"{self.name}: "
 
     def parts(self, every: Iterable[Part]) -> list[Part]:
@@ -57,7 +57,7 @@ class Program:
         return [replace(part, name=part.name.removeprefix(self.prefix)) for part in own]
 
     def view(self, evidence: Evidence) -> Evidence:
-        """What the exercise of its node is to look at: its own runs, up to Ctrl-C."""
+        """The evidence for the exercise of its node: its own runs, up to Ctrl-C."""
         return Evidence(
             [_before_ctrl_c(part) for part in self.parts(evidence)],
             replace(evidence.reference, parts=self.parts(evidence.reference.parts)),
@@ -72,7 +72,7 @@ class Program:
         return wrong[0] if wrong else Finding(True, findings[0].expected, "all that is asked of its node")
 
     def ending(self, evidence: Evidence) -> str:
-        """What became of it at Ctrl-C, in a few words; empty where it ended by that."""
+        """The reaction to Ctrl-C, in a few words; empty where it ended by that."""
         parts = self.parts(evidence)
         if self.ends_by_itself and parts:
             return _its_own_end(parts)
@@ -129,7 +129,7 @@ def _before_ctrl_c(part: Part) -> Part:
 
 
 def _its_own_end(parts: Sequence[Part]) -> str:
-    """What is wrong about how a program ended that comes to its own end; empty where it did so."""
+    """The fault in the end of a program that is to end by itself; empty where it did so."""
     if any(part.ending is None and part.first("subject", INTERRUPTED) for part in parts):
         return "went on"
     # Where the judge asked it where it hangs, it had fallen silent, whatever has ended it afterwards.
@@ -236,7 +236,7 @@ class Programs:
         return program.ending(evidence)
 
     def _ends(self, all_on_ctrl_c: str) -> str:
-        """How the programs are to end, in words; ``all_on_ctrl_c`` where none comes to its own end."""
+        """The expected ends of the programs, in words; ``all_on_ctrl_c`` where none comes to its own end."""
         alone = [program.name for program in self._programs if program.ends_by_itself]
         others = [program.name for program in self._programs if not program.ends_by_itself]
         return f"{_and(others)} ends on Ctrl-C, {_and(alone)} by itself" if alone else all_on_ctrl_c

@@ -36,7 +36,7 @@ _NUMBER, _WHOLE = re2.compile(r"-?\d+(?:[.,]\d+|e[+-]?\d+)*"), re2.compile(r"0|-
 
 @dataclass(frozen=True)
 class Publisher:
-    """What was heard of a publisher.
+    """A publisher, as it was heard.
 
     Attributes:
         topic: That it is to publish on.
@@ -55,7 +55,7 @@ class Publisher:
 
     @cached_property
     def texts(self) -> list[str]:
-        """What their field ``data`` held, as text."""
+        """The texts in their field ``data``."""
         return [str(event.data["fields"].get("data")) for event in self.messages]
 
     @cached_property
@@ -81,12 +81,12 @@ class Publisher:
 
     @property
     def begun(self) -> int:
-        """How many publishers were heard from their first message on: DDS numbers each one's messages from 1."""
+        """The number of publishers heard from their first message on: DDS numbers each one's messages from 1."""
         return sum(message.data.get("number") == 1 for message in self.messages)
 
     @property
     def went_on(self) -> bool:
-        """Whether it published for more than a moment, so that no chance decides whether anything of it is heard."""
+        """True if it published for more than a moment, so that no chance decides whether anything of it is heard."""
         if not self.messages:
             return False
         first, last = self.messages[0], self.messages[-1]
@@ -113,7 +113,7 @@ class Publisher:
         return self.part.endpoints("publisher") if met else {}
 
     def at_once(self, expected: Publisher) -> bool:
-        """Whether all that it published and said to have published is of one moment.
+        """True if all that it published and said to have published is of one moment.
 
         The first messages may come before anybody can hear them, and the last ones go under with the program: what it
         said, and the moment in which it was met, tell of those.
@@ -197,7 +197,7 @@ class Hears:
             bench.note_whether_it_spins()
 
     def _is_simulated(self, evidence: Evidence) -> bool:
-        """Whether its messages follow the simulated clock: the first ones may have come before it."""
+        """True if its messages follow the simulated clock: the first ones may have come before it."""
         topic, _ = evidence.reference.only("publisher")
         return len(simulated(evidence.main.of("message", topic))) >= self._messages[Pace.FAST] // 2
 
@@ -216,7 +216,7 @@ class Hears:
     # --- views -----------------------------------------------------------------------------------------------
 
     def seen(self, evidence: Evidence) -> Publisher:
-        """What was heard of the subject."""
+        """The subject, as it was heard."""
         topic, _ = evidence.reference.only("publisher")
         if evidence.real_time:
             enough = self._enough(evidence.before)
@@ -229,7 +229,7 @@ class Hears:
         )
 
     def expected(self, evidence: Evidence) -> Publisher:
-        """What was recorded of the reference solution."""
+        """The reference solution, as it was recorded."""
         topic, _ = evidence.reference.only("publisher")
         return Publisher(topic, evidence.reference.part("talking"))
 

@@ -146,7 +146,7 @@ def meets_service(bench: Bench, run: Run, calls: int, patience: float, *, latene
 
 
 def is_done(evidence: Evidence, calls: int) -> bool:
-    """Whether the subject has ended or, as a program may, has reported the sum and goes on spinning.
+    """True if the subject has ended or, as a program may, has reported the sum and goes on spinning.
 
     Who is done stays so, also where one more call is on its way in that moment.
     """
@@ -154,7 +154,7 @@ def is_done(evidence: Evidence, calls: int) -> bool:
 
 
 def has_spoken(evidence: Evidence, calls: int) -> bool:
-    """Whether the subject is done, or has at least said something of its last answer."""
+    """True if the subject is done, or has at least said something of its last answer."""
     enough = evidence.main.of("response")[calls - 1 :]
     return is_done(evidence, calls) or (bool(enough) and bool(new_words(evidence.main, enough[0])))
 
@@ -218,11 +218,11 @@ class Calls:
         scenario(bench, runs, nobody, calls=self._calls)
 
     def seen(self, evidence: Evidence) -> Client:
-        """What was seen of the subject."""
+        """The subject, as it was seen."""
         return Client(evidence)
 
     def expected(self, evidence: Evidence) -> Client:
-        """What was recorded of the reference solution."""
+        """The reference solution, as it was recorded."""
         return Client(evidence.reference)
 
     def waits(self, seen: Client, *, called: bool) -> Finding:

@@ -33,12 +33,12 @@ SURE = 2
 Fields = Mapping[str, Any]
 """The fields of a request or of a response."""
 Objection = Callable[[Fields, Fields | None], str]
-"""What is wrong about the answer to a request, None for no answer; empty where it is right."""
+"""Returns the fault of an answer to a request (None for no answer), in words; empty where it is right."""
 
 
 @dataclass(frozen=True)
 class Server:
-    """What was seen of a server.
+    """A server, as it was seen.
 
     Attributes:
         part: The run in which it was called.
@@ -79,12 +79,12 @@ class Server:
         return max((int(event.data["count"]) for event in self.part.of("servers")), default=0)
 
     def objections(self, calls: Sequence[Event], objection: Objection) -> list[str]:
-        """What is wrong about the answers to these calls, in words."""
+        """The faults of the answers to these calls, in words."""
         found = (objection(e.data["fields"], self.answers.get(int(e.data["call"]))) for e in calls)
         return [words for words in found if words]
 
     def all_right(self, calls: Sequence[Event], objection: Objection, expected: str) -> Finding:
-        """Whether these calls were made and each was answered as it should be.
+        """True if these calls were made and each was answered as it should be.
 
         Where two servers share the name, chance decides which of them answers a call. So one wrong answer counts
         against all calls: each of them could have had it.
@@ -147,11 +147,11 @@ class Asks:
         return True
 
     def seen(self, evidence: Evidence) -> Server:
-        """What was seen of the subject."""
+        """The subject, as it was seen."""
         return Server(evidence.main, len(evidence.reference.part(CALLS).of("asked")))
 
     def expected(self, evidence: Evidence) -> Server:
-        """What was recorded of the reference solution."""
+        """The reference solution, as it was recorded."""
         part = evidence.reference.part(CALLS)
         return Server(part, len(part.of("asked")))
 

@@ -24,8 +24,8 @@ NEEDED = {
     "rosidl_default_generators": ("buildtool_depend", "building the package needs the generators"),
     "rosidl_default_runtime": ("exec_depend", "a program that uses its types needs this library"),
 }
-"""What such a package depends on, each with the tag that the ROS documentation gives it ("Creating custom msg and srv
-files", section 5) and the reason. Any tag of a dependency is right."""
+"""The dependencies of such a package, each with the tag that the ROS documentation gives it ("Creating custom msg and
+srv files", section 5) and the reason. Any tag of a dependency is right."""
 SERVICE = "/interface_of_the_workspace"
 """The service that a program of the judge's serves with the built interface, so that its type is on the wire."""
 BEGINNING = 15.0
@@ -52,7 +52,7 @@ class ServiceType:
         self.runner = ServesInterface(file, SERVICE)
 
     def seen(self, evidence: Evidence) -> Evidence:
-        """What was seen of the package."""
+        """The package, as it was seen."""
         return evidence
 
     def expected(self, evidence: Evidence) -> Evidence:
@@ -111,7 +111,7 @@ class ServiceType:
         )
 
     def _undeclared(self, evidence: Evidence) -> list[str]:
-        """What no package with such a file says that it needs; nothing where not all of them was reported."""
+        """Dependencies that no package with such a file declares; none where not all of them was reported."""
         if not _is_complete(evidence):
             return []
         declared = [package.dependencies for package, _ in self._holders(evidence)]
@@ -285,7 +285,7 @@ def fields(text: str) -> list[Fields]:
 
 
 def _is_complete(evidence: Evidence) -> bool:
-    """Whether nothing of the packages with such a file was left out of the report."""
+    """True if nothing of the packages with such a file was left out of the report."""
     report = workspace.build_report(evidence.main)
     return report is None or report.complete
 

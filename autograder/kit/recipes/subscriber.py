@@ -106,7 +106,7 @@ class Speaks:
         return _are_said(bench, texts)
 
     def seen(self, evidence: Evidence) -> Part:
-        """What was seen of the subject."""
+        """The subject, as it was seen."""
         return evidence.main
 
     def expected(self, evidence: Evidence) -> Part:
@@ -178,7 +178,7 @@ def _are_said(bench: Bench, texts: Sequence[str]) -> bool:
 
 
 def _is_simulated(evidence: Evidence) -> bool:
-    """Whether the clock was the judge's when it sent its last text."""
+    """True if the clock was the judge's when it sent its last text."""
     sent = evidence.main.of("sent")
     return bool(sent) and sent[-1].sim is not None
 
@@ -210,7 +210,7 @@ def random_texts(random: Random) -> list[str]:
 
 
 def _says(texts: Sequence[str], evidence: Evidence) -> bool:
-    """Whether each of these texts was said after it was sent, and after it was sent once more."""
+    """True if each of these texts was said after it was sent, and after it was sent once more."""
     awaited = [event for event in _sent(evidence) if _text(event) in texts]
     return all(is_said(_text(event), evidence.main, after=event) for event in awaited)
 
