@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -11,7 +12,12 @@ import click
 from autograder.cards.readable import printable
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from autograder.appeals.appeal_file import Appeal
+    from autograder.appeals.replaying import Replay
     from autograder.judge.verdicts.keeping import Kept
+    from autograder.verdict import Verdict
 
 
 def _fail(message: str) -> NoReturn:
@@ -38,7 +44,7 @@ def replay(file: Path, mcap: Path | None, bag: Path | None) -> None:
 
     Exit code 0: the same verdict; 1: another one; 2: it cannot be judged again.
     """
-    from autograder.appeals import appeal_file, replaying, showing
+    from autograder.appeals import appeal_file, replaying
 
     try:
         for path in (mcap, bag):
@@ -52,7 +58,7 @@ def replay(file: Path, mcap: Path | None, bag: Path | None) -> None:
         again = replaying.replay(appeal.seen)
     except (appeal_file.BadAppeal, replaying.CannotReplay) as error:
         _fail(str(error))
-    for line in showing.lines(appeal, again):
+    for line in _lines(appeal, again):
         click.echo(printable(line))
     sys.exit(1 if again.differences else 0)
 
@@ -86,3 +92,24 @@ def save_bag(seen: Kept, path: Path) -> str:
         _fail(f"{path} cannot be written: {error.strerror}")
     missing = f" ({left_out} more have a type that is not known here)" if left_out else ""
     return f"{path}: {written} messages of topics{missing}"
+
+
+def _lines(appeal: Appeal, again: Replay) -> Iterator[str]:
+    """What came of a replay, the answer first."""
+    then = again.then
+    at = datetime.fromtimestamp(appeal.seen.at, tz=UTC)
+    yield f"{then.exercise} by {appeal.student}, checked {at:%Y-%m-%d %H:%M:%S} UTC with course {appeal.course[:8]}"
+    yield f"then: {_told(then)}"
+    yield f"now:  {_told(again.now)}"
+    if again.differences:
+        yield "another verdict:"
+        yield from (f"  {line}" for line in again.differences)
+    else:
+        yield "the same verdict, points and diagnosis"
+    yield from (f"note: {note}" for note in again.notes)
+    yield "note: the file proves nothing by itself, anybody can write one; `./course appeal` writes it from the class"
+
+
+def _told(verdict: Verdict) -> str:
+    diagnosis = f", {verdict.diagnosis.key}" if verdict.diagnosis else ""
+    return f"{verdict.state}, {verdict.score:g} of {verdict.max_score:g} points{diagnosis}"

@@ -22,7 +22,7 @@ from jupyter_client.session import Session
 
 from autograder.boxes.execution import Ended
 from autograder.boxes.guards import INTERVAL, NoGuard
-from autograder.boxes.time_left import Left, until, wall_time
+from autograder.boxes.limits import Left, until, wall_time
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -1,9 +1,16 @@
-"""The limits that hold while a notebook runs."""
+"""The limits that hold while a notebook runs, and how much of a time is left."""
 
 from __future__ import annotations
 
 import resource
+import time
+from collections.abc import Callable
 from dataclasses import dataclass
+
+Left = Callable[[], float]
+"""The seconds that are left; none or fewer at the end."""
+Patient = Callable[[float], Left]
+"""What says how long a number of seconds lasts; it begins with the call."""
 
 
 @dataclass(frozen=True)
@@ -95,3 +102,18 @@ def open_files_of_a_box(wanted: int) -> int:
     """How many files a process in a box may have open, given what the grader may have itself: at most half of that."""
     own = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
     return wanted if own == resource.RLIM_INFINITY else min(wanted, own // 2)
+
+
+def until(deadline: float) -> Left:
+    """Until a moment on the monotonic clock."""
+    return lambda: deadline - time.monotonic()
+
+
+def wall_time(seconds: float) -> Left:
+    """For so many seconds of wall time."""
+    return until(time.monotonic() + seconds)
+
+
+def first_of(*lefts: Left) -> Left:
+    """Until the first of several is up."""
+    return lambda: min(left() for left in lefts)

@@ -14,9 +14,9 @@ from autograder.boxes.assertions import verdict_of
 from autograder.boxes.execution import Cell, CellRun, CellType, Check, Ended, Execution
 from autograder.boxes.hanging import Hangs, seconds_again
 from autograder.boxes.kernel import Kernel, KernelFailed, Start
+from autograder.boxes.limits import Patient, first_of, wall_time
 from autograder.boxes.missing_verdict import grader_trouble, without_verdict
 from autograder.boxes.outputs import Budget, OutputCollector
-from autograder.boxes.time_left import Patient, first_of, wall_time
 from autograder.verdict import State, Verdict
 
 if TYPE_CHECKING:

@@ -6,14 +6,41 @@ A test proves that nbgrader's own command gives the same bytes.
 
 from __future__ import annotations
 
+from typing import Any
+
 import nbformat
 from nbconvert.exporters import NotebookExporter
 from nbformat import NotebookNode
 from nbgrader.converters import GenerateAssignment
 from nbgrader.preprocessors import ClearSolutions, NbGraderPreprocessor
+from nbgrader.utils import is_solution
 from traitlets.config import Config
 
-from autograder.masters.stubs import LeaveStubs
+from autograder.masters.errors import CellError
+from autograder.masters.regions import find_region
+
+
+class LeaveStubs(ClearSolutions):
+    """nbgrader's ClearSolutions, changed so that each solution leaves a stub of its own.
+
+    Stock nbgrader puts the same text into every cleared region. Here each region opens with the comment that students
+    get in its place (``regions.py``), so the cell runs as it stands and says what is to be done. Any other solution is
+    cleared as nbgrader does it.
+    """
+
+    def preprocess_cell(
+        self, cell: NotebookNode, resources: dict[str, Any], cell_index: int
+    ) -> tuple[NotebookNode, dict[str, Any]]:
+        """Clear one cell."""
+        if is_solution(cell) and cell.cell_type == "code":
+            try:
+                cell.source = find_region(cell.source).unsolved
+            except CellError:
+                # An instructor's own notebook, written for stock nbgrader.
+                pass
+            else:
+                return cell, resources
+        return super().preprocess_cell(cell, resources, cell_index)
 
 
 def release_preprocessors() -> list[type[NbGraderPreprocessor]]:

@@ -13,11 +13,10 @@ import pytest
 
 from autograder.boxes.execution import Cell, CellType, Check, Ended, Execution
 from autograder.boxes.fork_server_client import Addresses
-from autograder.boxes.limits import Limits
+from autograder.boxes.limits import Left, Limits, Patient, wall_time
 from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.boxes.runner import run_notebook
 from autograder.boxes.scratch import scratch_folder
-from autograder.boxes.time_left import Left, Patient, wall_time
 from autograder.verdict import State, Verdict
 
 CHECK = Check("lab.one", "One", points=10, worth=10, limit=2)

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
     from autograder.boxes.execution import Cell
-    from autograder.boxes.time_left import Left
+    from autograder.boxes.limits import Left
     from autograder.verdict import Verdict
 
 JUDGE = "autograder.judge.serving.process:JudgeProcess"
