@@ -192,13 +192,13 @@ def test_a_circle_is_found_wherever_the_import_stands(tmp_path: Path) -> None:
 
 
 def test_dask_is_imported_where_it_is_shut_in_and_where_it_executes() -> None:
-    """The courier reads no pickle; the other two run on workers. The grader itself never imports Dask."""
+    """The client process reads no pickle; the other two run on workers. The grader itself never imports Dask."""
     found = {
         str(path.relative_to(PACKAGE))
         for path, _, name in imports(PACKAGE)
         if name.split(".")[0] in {"dask", "distributed"}
     }
-    assert found == {f"grading/cluster/{name}.py" for name in ("courier", "start_worker", "worker")}
+    assert found == {f"grading/cluster/{name}.py" for name in ("dask_client", "start_worker", "worker")}
 
 
 def test_every_part_has_its_line_in_the_architecture() -> None:

@@ -33,22 +33,22 @@ asyncio.run(main())
 
 _WORKER = """
 import sys
-from autograder.grading.cluster import offer, start_worker
+from autograder.grading.cluster import start_worker
 
 address, name, slots, version, obstacle = sys.argv[1:6]
 # Agreed upon, also while somebody edits the course.
-offer.course_version = start_worker.course_version = lambda: version
-offer.why_impossible = lambda: obstacle
+start_worker.course_version = lambda: version
+start_worker.why_impossible = lambda: obstacle
 exec(sys.argv[6])
 start_worker.start_worker(address, jobs=int(slots), name=name, sandbox=False, tell=lambda line: print(line, flush=True))
 """
 
 # What `dask worker` executes first, so that it has the same to offer.
 _PRELOAD = """
-from autograder.grading.cluster import offer
+from autograder.grading.cluster import start_worker
 
-offer.course_version = lambda: {version!r}
-offer.why_impossible = lambda: {obstacle!r}
+start_worker.course_version = lambda: {version!r}
+start_worker.why_impossible = lambda: {obstacle!r}
 """
 
 VERSION = "test"

@@ -1,6 +1,6 @@
 """What a Dask worker is asked to call, by name: bytes in, bytes out.
 
-Without an import of its own, since the courier has to name these functions too, and is to hold little else.
+Without an import of its own, since the client process has to name these functions too, and is to hold little else.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ def offer_as_json(slots: int) -> bytes:
     """
     import msgspec
 
-    from autograder.grading.cluster.offer import offer
+    from autograder.grading.cluster.start_worker import offer
 
     return msgspec.json.encode(offer(slots))
 

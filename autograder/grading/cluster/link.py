@@ -1,4 +1,4 @@
-"""The grader's end of the line to the courier."""
+"""The grader's end of the line to the client process."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _GOODBYE_SECONDS = 1.5
 
 
 class Link:
-    """A courier process while it is needed.
+    """A client process while it is needed.
 
     Args:
         address: The scheduler's.
@@ -34,11 +34,11 @@ class Link:
     def __enter__(self) -> Self:
         self._log = tempfile.TemporaryFile()
         self._courier = subprocess.Popen(
-            [sys.executable, "-m", "autograder.grading.cluster.courier", self._address],
+            [sys.executable, "-m", "autograder.grading.cluster.dask_client", self._address],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._log,
-            start_new_session=True,  # Ctrl-C goes to the grader, which then ends the courier
+            start_new_session=True,  # Ctrl-C goes to the grader, which then ends the client process
         )
         threading.Thread(target=self._listen, daemon=True).start()
         return self
@@ -46,20 +46,20 @@ class Link:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the courier, at once where something went wrong. The scheduler takes back whatever it was given."""
+        """End the client process, at once where something went wrong. The scheduler takes back what it was given."""
         if kind is not None:
-            self._courier.kill()
+            self._client.kill()
         with contextlib.suppress(OSError):
             self._stdin.close()
         try:
-            self._courier.wait(_GOODBYE_SECONDS)
+            self._client.wait(_GOODBYE_SECONDS)
         except subprocess.TimeoutExpired:
-            self._courier.kill()
-            self._courier.wait()
+            self._client.kill()
+            self._client.wait()
         self._log.close()
 
     def say(self, command: Command) -> None:
-        """Tell the courier to do something. Where it is gone, :meth:`hear` says so."""
+        """Tell the client process to do something. Where it is gone, :meth:`hear` says so."""
         with contextlib.suppress(OSError):
             self._stdin.write(encode(command) + b"\n")
             self._stdin.flush()
@@ -77,20 +77,20 @@ class Link:
 
     @property
     def _stdin(self):  # type: ignore[no-untyped-def]
-        assert self._courier.stdin is not None
-        return self._courier.stdin
+        assert self._client.stdin is not None
+        return self._client.stdin
 
     def _listen(self) -> None:
-        """Take up what the courier says, always: a courier that has to wait for us would not listen to us."""
-        assert self._courier.stdout is not None
-        with self._courier.stdout as lines:
+        """Take up what the client process says, always: one that has to wait for us would not listen to us."""
+        assert self._client.stdout is not None
+        with self._client.stdout as lines:
             try:
                 for line in lines:
                     self._news.put(msgspec.json.decode(line, type=News))
             except (msgspec.MsgspecError, ValueError, MemoryError) as error:
-                self._news.put(Broken(f"the courier spoke nonsense: {error}"))
+                self._news.put(Broken(f"the client process spoke nonsense: {error}"))
                 return
-        self._news.put(Broken(f"the courier ended{self._last_words()}"))
+        self._news.put(Broken(f"the client process ended{self._last_words()}"))
 
     def _last_words(self) -> str:
         with contextlib.suppress(ValueError, OSError):

@@ -1,6 +1,6 @@
-"""What passes between the grader and the courier, one line of JSON a message, and what a worker offers.
+"""What passes between the grader and the client process, one line of JSON a message, and what a worker offers.
 
-Orders and answers are bytes to the courier: it carries them and never looks inside.
+Orders and answers are bytes to the client process: it carries them and never looks inside.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Order(msgspec.Struct, frozen=True):
 
 
 class Give(msgspec.Struct, frozen=True, tag=True):
-    """To the courier: have this worker execute this order.
+    """To the client process: have this worker execute this order.
 
     Attributes:
         number: Names the order in what comes back.
@@ -51,7 +51,7 @@ class Give(msgspec.Struct, frozen=True, tag=True):
 
 
 class Drop(msgspec.Struct, frozen=True, tag=True):
-    """To the courier: nobody waits for this order any more."""
+    """To the client process: nobody waits for this order any more."""
 
     number: int
 
@@ -104,7 +104,7 @@ class Failed(msgspec.Struct, frozen=True, tag=True):
 
 
 class Broken(msgspec.Struct, frozen=True, tag=True):
-    """The scheduler cannot be reached (any more). The courier ends after it."""
+    """The scheduler cannot be reached (any more). The client process ends after it."""
 
     reason: str
 

@@ -12,7 +12,7 @@ import msgspec
 
 from autograder.boxes.execution import Execution
 from autograder.boxes.missing_verdict import grader_trouble
-from autograder.grading.cluster.door import Forged, admitted, admitted_offer, printable
+from autograder.grading.cluster.admission import Forged, admitted, admitted_offer, printable
 from autograder.grading.cluster.messages import (
     Answered,
     Asked,
@@ -87,7 +87,7 @@ class Pool:
     """The workers of a cluster, for one batch.
 
     Args:
-        link: To the courier.
+        link: To the client process.
         address: The scheduler's, for messages.
         judge: What makes a judge, as ``module:class``.
         boxed: Whether tasks are executed in boxes; a worker that cannot is refused then.

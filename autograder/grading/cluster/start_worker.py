@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 import dask
 from distributed import Worker
 
+from autograder.boxes.sandbox import why_impossible
 from autograder.grading.cluster.connection import check_address
-from autograder.grading.cluster.offer import offer
+from autograder.grading.cluster.messages import Offer
 from autograder.grading.cluster.pool import SchedulerGone
 from autograder.grading.errors import GradingError
 from autograder.grading.rebuilding.course_version import course_version
@@ -34,6 +35,16 @@ _SETTINGS = {
 
 class NoSandboxHere(GradingError):
     """This machine cannot execute in boxes, so it can offer nothing."""
+
+
+def offer(slots: int) -> Offer:
+    """Return what this machine offers to a cluster: which course it has, and whether it can execute in boxes.
+
+    Args:
+        slots: Notebooks at once.
+    """
+    obstacle = why_impossible()
+    return Offer(course_version(), slots, sandbox=not obstacle, obstacle=obstacle)
 
 
 def start_worker(

@@ -130,7 +130,7 @@ def execute_order(order):
 calls.execute_order = execute_order
 """
 
-# Every client of Dask reads what workers warn of. This one is what the grader would be without its courier.
+# Every client of Dask reads what workers warn of. This one is what the grader would be without its client.
 STOCK_CLIENT = """
 import sys
 from distributed import Client

@@ -63,11 +63,11 @@ def test_an_error_keeps_its_words_as_tblib_writes_it() -> None:
     assert "own words" in str(error)
 
 
-COURIER = """
+CLIENT = """
 import pickle, _pickle, sys
-sys.argv = ["courier"]
+sys.argv = ["dask_client"]
 originals = {_pickle.loads, _pickle.load, _pickle.Unpickler, pickle._loads, pickle._load, pickle._Unpickler}
-from autograder.grading.cluster import courier
+from autograder.grading.cluster import dask_client
 own = {"pickle", "_pickle", "_compat_pickle"}
 for name, module in list(sys.modules.items()):
     if name in own or name == "__main__":
@@ -84,7 +84,7 @@ for name, module in list(sys.modules.items()):
 
 def test_nothing_in_the_courier_has_kept_the_real_one() -> None:
     pytest.importorskip("distributed", reason="./course setup --with cluster installs it")
-    done = subprocess.run([sys.executable, "-c", COURIER], capture_output=True, text=True, check=True)
+    done = subprocess.run([sys.executable, "-c", CLIENT], capture_output=True, text=True, check=True)
     assert done.stdout == ""
 
 

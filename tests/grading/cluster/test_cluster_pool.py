@@ -1,4 +1,4 @@
-"""Who gets a task, and what becomes of it when its worker is gone: with a courier that the test plays itself."""
+"""Who gets a task, and what becomes of it when its worker is gone: with a client process that the test plays itself."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ HERE = Offer("here", slots=2, sandbox=True)
 
 
 class FakeLink:
-    """Plays the courier: hands out news, and answers what it is given as the test says."""
+    """Plays the client process: hands out news, and answers what it is given as the test says."""
 
     def __init__(self, *news: News) -> None:
         self.news = deque(news)

@@ -16,8 +16,7 @@ pytest.importorskip("distributed", reason="./course setup --with cluster install
 from typing import TYPE_CHECKING, Any
 
 from autograder.cli import cli
-from autograder.grading.cluster import offer as offer_module
-from autograder.grading.cluster import pool
+from autograder.grading.cluster import pool, start_worker
 from autograder.grading.cluster.connection import connected
 from autograder.grading.cluster.pool import SchedulerGone
 
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def test_without_a_sandbox_it_does_not_start(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(offer_module, "why_impossible", lambda: "bubblewrap is not installed")
+    monkeypatch.setattr(start_worker, "why_impossible", lambda: "bubblewrap is not installed")
     done = CliRunner().invoke(cli, ["worker", "tcp://127.0.0.1:1"])
     assert done.exit_code == 2
     assert "No sandbox is possible here: bubblewrap is not installed." in done.output
@@ -52,10 +51,9 @@ def test_what_is_no_address_is_refused(address: str) -> None:
 
 
 def test_without_a_scheduler_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    from autograder.grading.cluster import start_worker
 
     monkeypatch.setattr(start_worker, "_CONNECT_SECONDS", 0.5)
-    monkeypatch.setattr(offer_module, "why_impossible", lambda: "")
+    monkeypatch.setattr(start_worker, "why_impossible", lambda: "")
     done = CliRunner().invoke(cli, ["worker", "tcp://127.0.0.1:1"])
     assert done.exit_code == 2, done.output
     assert "There is no Dask scheduler at tcp://127.0.0.1:1" in done.output

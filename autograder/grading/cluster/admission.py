@@ -1,7 +1,7 @@
-"""The door for what workers say: nothing of it is believed before it has been looked at here.
+"""Admits what workers say: nothing of it is believed before it has been looked at here.
 
-A worker executes other people's programs, so it may be the next thing that one of them has taken over. What passes
-this door has the form of an execution of the very task that was asked for, points within what its checks can give,
+A worker executes other people's programs, so it may be the next thing that one of them has taken over. What is
+admitted has the form of an execution of the very task that was asked for, points within what its checks can give,
 and outputs that hold nothing a browser would run.
 """
 

@@ -11,7 +11,7 @@ from conftest import FakeEngine, TinyClass
 
 from autograder.boxes.execution import CellRun, Ended, Execution
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.cluster.door import LARGEST_OFFER, Forged, admitted, admitted_offer
+from autograder.grading.cluster.admission import LARGEST_OFFER, Forged, admitted, admitted_offer
 from autograder.grading.cluster.messages import LARGEST_ANSWER, Offer
 from autograder.grading.rebuilding.task_making import tasks_of
 from autograder.grading.task import Task, encode

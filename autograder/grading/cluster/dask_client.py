@@ -75,8 +75,8 @@ async def _serve(address: str) -> None:
     except (OSError, ValueError, TypeError, TimeoutError) as error:
         _tell(Broken(_first_line(error)))
         return
-    courier = _Courier(client)
-    serving = [asyncio.create_task(part) for part in (courier.take_commands(), courier.watch_workers())]
+    carrier = _Carrier(client)
+    serving = [asyncio.create_task(part) for part in (carrier.take_commands(), carrier.watch_workers())]
     await asyncio.wait(serving, return_when=asyncio.FIRST_COMPLETED)
     for part in serving:
         part.cancel()
@@ -85,7 +85,7 @@ async def _serve(address: str) -> None:
         await client.close(timeout=1)
 
 
-class _Courier:
+class _Carrier:
     def __init__(self, client: Any) -> None:
         self._client = client
         self._batch = uuid.uuid4().hex[:12]
