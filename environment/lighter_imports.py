@@ -1,4 +1,4 @@
-"""Make importing rclpy lighter: leave out of it what no node needs.
+"""Make imports lighter: leave out of them what no node and no notebook needs.
 
 Each Python program with a node imports, through the generated messages, two things that it never uses:
 
@@ -7,7 +7,11 @@ Each Python program with a node imports, through the generated messages, two thi
 * ``service_msgs/msg/ServiceEventInfo``, which every node has through its type description service, imports numpy
   (65 ms) for a field that is set only where somebody makes such a message.
 
-Both are imported here when they are asked for. Only the wheels in ``.venv`` are changed, never a ROS that was
+Each program that reads a notebook, JupyterLab and nbgrader among them, imports jsonschema, and through it
+``rfc3987_syntax``, which compiles 32 grammars of internationalised addresses (1 to 3 s of processor time) for a check
+that no notebook asks for.
+
+All are imported here when they are asked for. Only the wheels in ``.venv`` are changed, never a ROS that was
 sourced. A file that does not look as expected, as one of a later release may, is left alone.
 
 Only the standard library is used: this runs during the set-up.
@@ -67,6 +71,23 @@ class _Numpy:
 
 
 numpy = _Numpy()""",
+    ),
+    Lighter(
+        "rfc3987_syntax/__init__.py",
+        re.compile(r"^from \.syntax_helpers import \*\s*\Z"),
+        _MARK
+        + """the grammars are compiled where one is used.
+def is_valid_syntax(term, value):
+    from .syntax_helpers import is_valid_syntax
+    return is_valid_syntax(term, value)
+
+
+def __getattr__(name):
+    if name.startswith('_'):
+        raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
+    from . import syntax_helpers
+    return getattr(syntax_helpers, name)
+""",
     ),
 )
 

@@ -80,7 +80,7 @@ class Setup:
             Step("environment", f"making .venv with {python}", kind, self._make_environment),
             Step("uv", "fetching uv, which installs the packages", (place.lock("uv"),), self._get_uv),
             Step("packages", self._what_is_installed(), tuple(locks), lambda: self._install(locks)),
-            Step("imports", "making the imports of ROS lighter", lighter, self._make_imports_lighter),
+            Step("imports", "making imports lighter", lighter, self._make_imports_lighter),
             Step("fast_dds", "repairing how a node ends", fast_dds, self._repair_fast_dds),
             Step(
                 "interfaces", f"building {self._interfaces()} with colcon", interfaces, self._build_interfaces

@@ -11,10 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 # Has Python find the labs, whose modules tests import.
-import autograder.exercises
-
-# First of all: it keeps nbformat from loading what takes a second, and not every test imports it before that.
-import autograder.grading  # noqa: F401
+import autograder.exercises  # noqa: F401
 from tests import tiers
 
 if TYPE_CHECKING:

@@ -33,11 +33,12 @@ import numpy  # noqa: E402, I100
 class ServiceEventInfo:
     client_gid = lambda self: numpy.zeros(16, dtype=numpy.uint8)
 """
+GRAMMARS = "from .syntax_helpers import *\n"
 
 
 @pytest.fixture
 def wheels(tmp_path: Path) -> Path:
-    for module, text in zip(MODULES, (GENERATOR, MESSAGE), strict=True):
+    for module, text in zip(MODULES, (GENERATOR, MESSAGE, GRAMMARS), strict=True):
         file = tmp_path / module.file
         file.parent.mkdir(parents=True)
         file.write_text(text, encoding="utf-8")
@@ -45,6 +46,9 @@ def wheels(tmp_path: Path) -> Path:
     (tmp_path / "rosidl_generator_py/import_type_support_impl.py").write_text("import_type_support = 1\n")
     (tmp_path / "rosidl_generator_py/generate_py_impl.py").write_text(
         "import json\ngenerate_py = json.dumps\n"
+    )
+    (tmp_path / "rfc3987_syntax/syntax_helpers.py").write_text(
+        "def is_valid_syntax(term, value):\n    return value == term\nsyntax_parser = 'made'\n"
     )
     (tmp_path / "service_msgs/msg/__init__.py").write_text("")
     (tmp_path / "service_msgs/__init__.py").write_text("")
@@ -65,7 +69,8 @@ def run(program: str, first: Path | None = None) -> Any:
 
 
 def test_what_is_not_needed_is_imported_where_it_is_used(wheels: Path) -> None:
-    assert [path.name for path in make_lighter(wheels)] == ["__init__.py", "_service_event_info.py"]
+    changed = ["__init__.py", "_service_event_info.py", "__init__.py"]
+    assert [path.name for path in make_lighter(wheels)] == changed
     program = """
 import sys
 import rosidl_generator_py
@@ -94,6 +99,24 @@ def test_a_file_that_looks_otherwise_and_one_that_is_not_there_are_left_alone(tm
     file.write_text("from .import_type_support_impl import import_type_support\n", encoding="utf-8")
     assert make_lighter(tmp_path) == []
     assert file.read_text(encoding="utf-8") == "from .import_type_support_impl import import_type_support\n"
+
+
+def test_grammars_of_addresses_are_compiled_for_who_asks_for_one(wheels: Path) -> None:
+    make_lighter(wheels)
+    program = """
+import sys
+from rfc3987_syntax import is_valid_syntax
+before = "rfc3987_syntax.syntax_helpers" in sys.modules
+import rfc3987_syntax
+told = [is_valid_syntax("iri", "iri"), rfc3987_syntax.syntax_parser, hasattr(rfc3987_syntax, "other")]
+print(said.dumps([before, *told]))
+"""
+    assert run(program, wheels) == [False, True, "made", False]
+
+
+def test_who_reads_a_notebook_compiles_no_grammar() -> None:
+    program = "import sys, nbformat; print(said.dumps('rfc3987_syntax.syntax_helpers' in sys.modules))"
+    assert run(program) is False
 
 
 @pytest.mark.ros

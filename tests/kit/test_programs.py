@@ -8,7 +8,7 @@ import pytest
 
 from autograder.kit import package_programs
 from autograder.kit.evidence import INTERRUPTED, Event, Evidence, Part, Reference
-from autograder.kit.model import Criterion, Exercise, Finding
+from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 from autograder.kit.package_programs import Entry
 from autograder.kit.recipes.programs import Program, Programs
 from autograder.kit.workspace_report import PackageReport, WorkspaceReport, as_line
@@ -66,6 +66,27 @@ def test_a_program_is_judged_by_its_own_runs_and_by_what_came_before_ctrl_c() ->
 def test_only_ctrl_c_is_the_right_end(events: list[Event], what: str) -> None:
     assert TALKER.ending(evidence(events)) == what
     assert LISTENER.ending(evidence(events)) == "did not run"
+
+
+def test_whether_a_program_is_right_is_decided_once_for_all_its_mistakes() -> None:
+    asked: list[Evidence] = []
+
+    def never(evidence: Evidence) -> Finding:
+        asked.append(evidence)
+        return Finding(False, "", "")
+
+    def advice(evidence: Evidence) -> Advice:
+        return Advice(evidence.main.said()[0], "")
+
+    known = (*(Mistake(f"none_{number}", lambda _: None) for number in range(50)), Mistake("last", advice))
+    node = replace(NODE, criteria=(Criterion("never", "", 10, never),), mistakes=known)
+    exercise = Programs(PACKAGE, Program("talker", node, "", 3)).exercise("lab_9_1.programs", "", "")
+    for word in ("one", "other"):
+        asked.clear()
+        seen = evidence([said(word)])
+        told = [found.text for mistake in exercise.mistakes if (found := mistake.recognise(seen))]
+        assert told == [f"talker: {word}"]
+        assert len(asked) == 1
 
 
 CLIENT = Program("asker", NODE, "", 3, file="asking", ends_by_itself=True)

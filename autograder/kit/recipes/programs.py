@@ -268,8 +268,9 @@ class Programs:
         for program in self._programs:
             late = () if program.ends_by_itself else (Mistake("ended_too_early", common.ended_too_early),)
             copied = Mistake("crashed", partial(_class_not_in_its_file, program), certain=True)
+            wrong = _Wrong(program)
             for mistake in (copied, *program.node.mistakes, *late):
-                yield replace(mistake, recognise=partial(_in_one_program, program, mistake))
+                yield replace(mistake, recognise=partial(wrong.recognise, mistake))
         for program in self._programs:
             yield Mistake("ignores_ctrl_c", partial(_ignores_ctrl_c, program))
         yield Mistake("entry_point_lost", self._entry_point_lost, certain=True)
@@ -311,12 +312,28 @@ class Programs:
         return ""
 
 
-def _in_one_program(program: Program, mistake: Mistake, evidence: Evidence) -> Advice | None:
-    """A common mistake, where this program is not right."""
-    if program.judge(evidence).passed and not program.ending(evidence):
-        return None
-    advice = mistake.recognise(program.view(evidence))
-    return replace(advice, text=f"{program.name}: {advice.text}") if advice else None
+class _Wrong:
+    """A program that is not right, in which one mistake after the other is looked for.
+
+    Whether it is right is decided once for each evidence: there are about a hundred mistakes, and each decision may
+    take a tenth of a second of the few that the judge has for all of them.
+    """
+
+    def __init__(self, program: Program) -> None:
+        self._program = program
+        self._known: tuple[Evidence | None, Evidence | None] = None, None
+
+    def _view(self, evidence: Evidence) -> Evidence | None:
+        if self._known[0] is not evidence:
+            right = self._program.judge(evidence).passed and not self._program.ending(evidence)
+            self._known = evidence, None if right else self._program.view(evidence)
+        return self._known[1]
+
+    def recognise(self, mistake: Mistake, evidence: Evidence) -> Advice | None:
+        """A common mistake, where this program is not right."""
+        view = self._view(evidence)
+        advice = mistake.recognise(view) if view else None
+        return replace(advice, text=f"{self._program.name}: {advice.text}") if advice else None
 
 
 _MADE_OF_NOTHING = re2.compile(
