@@ -33,10 +33,19 @@ NIGHTLY = (
     "tests/grading/cluster/test_cluster_worker.py",
     "tests/grading/test_postgresql.py",
     # What is measured, and again and again.
+    "tests/measure/test_run_all.py::test_what_can_be_run_again_and_what_cannot",
+    "tests/mutation/test_mutation.py::test_every_operator_makes_something",
+    "tests/mutation/test_mutation.py::test_no_two_mutants_mean_the_same_and_none_means_the_original",
     "tests/benchmarks/test_short_run.py",
     "tests/measure/test_compare.py::test_two_commits_are_judged_each_by_its_own_judge",
     "tests/mutation/test_mutation.py::test_a_sample_of_mutants_is_caught",
     "tests/benchmarks/test_ros2_command.py::test_no_command_misses_anything_beside_open_notebooks",
+    # Commands of nbgrader itself, each of which takes seconds to start; what they end in is tested within the process.
+    "tests/grading/classes/test_class_lock.py::test_the_command_of_nbgrader_does_nothing_while_a_batch_runs",
+    "tests/grading/classes/test_class_lock.py::test_two_batches_at_once_on_two_classes",
+    "tests/grading/classes/test_new_class.py::test_its_gradebook_has_the_version_that_nbgraders_own_would_have",
+    "tests/grading/reporting/test_spreadsheet.py::test_plain_nbgrader_export_is_defused_too",
+    "tests/masters/test_equals_nbgrader.py::test_the_command_gives_the_same_bytes",
     # A class once more by stock nbgrader, and by each student's Validate: the class itself is graded in both tiers.
     "tests/grading/classes/test_sample_class.py::test_plain_nbgrader_gives_the_same_points",
     "tests/grading/classes/test_sample_class.py::test_validate_tells_a_student_the_truth",
@@ -46,7 +55,9 @@ NIGHTLY = (
     "tests/test_recording.py::test_a_changed_reference_solution_changes_what_is_expected",
     "tests/test_recording.py::test_inputs_that_were_changed_and_not_recorded_again_are_noticed",
     "tests/grading/rebuilding/test_course_version.py::test_a_changed_byte_in_any_of_them_moves_it",
-    # A chapter and an exercise of somebody else's.
+    # A chapter and an exercise of somebody else's; the first steps of one are in both tiers.
+    "tests/authoring/test_new_exercise.py::test_a_judge_that_dies_of_the_exercise_is_a_surprise",
+    "tests/authoring/test_new_exercise.py::test_what_is_expected_does_not_change_unasked",
     "tests/test_second_chapter.py",
     "tests/test_adding_an_exercise.py",
     # A browser, but for the first minutes and for texts that nobody may trust.
@@ -62,7 +73,9 @@ NIGHTLY = (
     "tests/workspaces/building/test_colcon.py::test_a_changed_byte_is_another_build",
     "tests/workspaces/building/test_colcon.py::test_what_an_earlier_build_left_behind_has_no_part_in_it",
     "tests/workspaces/building/test_colcon.py::test_a_merged_install_is_left_alone",
+    "tests/workspaces/building/test_colcon.py::test_a_package_is_built_with_what_it_depends_on",
     "tests/workspaces/building/test_colcon.py::test_packages_of_others_stay",
+    "tests/workspaces/building/test_colcon.py::test_what_is_half_done_beside_the_package_hurts_only_who_needs_it",
     "tests/workspaces/building/test_colcon.py::test_what_a_package_depends_on_may_fail",
 )
 """Beginnings of the ids of tests that only ``--all`` runs."""
@@ -86,7 +99,19 @@ class Draw:
 DRAWS = (
     Draw("tests/judge/test_bank.py::test_answer_is_judged_right[", 4, "/"),
     Draw("tests/attacks/test_attacks.py::test_it_is_defeated[", 1, "-"),
-    Draw("tests/test_recording.py::test_recording_again_gives_the_same_file[", 2),
+    Draw("tests/test_recording.py::test_recording_again_gives_the_same_file[", 1),
+    Draw("tests/grading/classes/test_sample_class.py::test_every_sample_earns_what_it_must[", 6),
+    Draw("tests/workspaces/grading/test_graded_notebooks.py::test_the_master_gets_full_marks[", 1),
+    Draw("tests/workspaces/grading/test_graded_notebooks.py::test_answers_are_judged_as_in_a_terminal[", 1),
+    Draw("tests/masters/test_programs.py::test_the_program_earns_full_marks[", 2),
+    Draw("tests/environment/ros2_command/test_graph.py::", 8),
+    Draw("tests/environment/ros2_command/test_launch_nodes.py::test_nodes_with_remapping", 1),
+    Draw("tests/grading/test_fail_closed.py::test_a_disk_that_is_full_at_any_moment[", 4),
+    Draw("tests/grading/test_doors.py::test_a_command_of_plain_nbgrader_ends_with_the_exit_code_of_ours[", 1),
+    Draw("tests/grading/entering/test_conversion.py::test_nbgraders_own_steps_find_nothing_to_change[", 1),
+    Draw(
+        "tests/grading/returning/test_figures_on_pages.py::test_a_page_shows_every_figure_of_the_chapter[", 1
+    ),
     Draw(
         "tests/authoring/test_new_exercise.py::test_an_example_is_in_step_and_judged_as_its_author_expects[",
         1,

@@ -22,6 +22,7 @@ from autograder.masters.parsing import CellRole, parse_master
 from autograder.masters.regions import find_region
 from autograder.masters.release import release_text
 from autograder.masters.source import named_cells, source_notebook
+from tests.tiers import drawn
 
 ROOT = Path(__file__).resolve().parents[2]
 MASTERS = masters(ROOT)
@@ -36,6 +37,7 @@ def test_every_chapter_is_in_step_with_its_master() -> None:
 
 
 def test_another_process_builds_the_same_bytes() -> None:
+    few = [master for master in MASTERS if str(master) in drawn(map(str, MASTERS), 3)]
     # Another hash seed, another folder: nothing of either may be in a chapter.
     code = (
         "import sys; from pathlib import Path; from autograder.masters.release import release_text\n"
@@ -43,13 +45,13 @@ def test_another_process_builds_the_same_bytes() -> None:
         "for master in sys.argv[1:]: sys.stdout.write(release_text(source_notebook(Path(master))))"
     )
     result = subprocess.run(
-        [sys.executable, "-c", code, *map(str, MASTERS)],
+        [sys.executable, "-c", code, *map(str, few)],
         cwd=ROOT.parent,
         env={**os.environ, "PYTHONHASHSEED": "7", "PYTHONIOENCODING": "utf-8"},
         capture_output=True,
         check=True,
     )
-    assert result.stdout.decode() == "".join(chapter_path(ROOT, master).read_text() for master in MASTERS)
+    assert result.stdout.decode() == "".join(chapter_path(ROOT, master).read_text() for master in few)
 
 
 @each_master

@@ -71,17 +71,23 @@ def test_what_the_conversion_honours_is_not_refused(tiny: TinyClass, line: str) 
         ("c.IgnorePattern.pattern = 'x'", "IgnorePattern.pattern"),
     ],
 )
+def test_what_it_does_not_know_is_refused(tiny: TinyClass, line: str, option: str) -> None:
+    tiny.configure(line)
+    with pytest.raises(ClassIncomplete, match=rf"sets c\.{option}, .*delete that line"):
+        check_configuration(ClassDirectory(tiny.path))
+
+
 @pytest.mark.parametrize("way", [TinyClass.grade, nbgrader_autograde, nbgrader_generate_feedback])
-def test_what_it_does_not_know_is_refused_and_nothing_is_touched(
-    tiny: TinyClass, fake_engine: FakeEngine, line: str, option: str, way: Callable[[TinyClass], object]
+def test_where_something_is_refused_nothing_is_touched(
+    tiny: TinyClass, fake_engine: FakeEngine, way: Callable[[TinyClass], object]
 ) -> None:
     tiny.submit("ada", 4)
     tiny.grade(feedback=True)
     tiny.submit("ada", 9)
-    tiny.configure(line)
+    tiny.configure("c.Execute.timeout = 300")
     page = tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html"
     made = page.stat().st_mtime_ns
-    with pytest.raises((ClassIncomplete, NbGraderException), match=rf"sets c\.{option}, .*delete that line"):
+    with pytest.raises((ClassIncomplete, NbGraderException), match=r"sets c\.Execute\.timeout, .*delete"):
         way(tiny)
     assert tiny.scores("ada")[TALKER] == 4
     assert fake_engine.ran == ["ada"]

@@ -103,8 +103,12 @@ def test_of_long_speech_the_end_is_kept_and_all_else_too() -> None:
 def test_huge_messages_are_cut() -> None:
     book = Recorder()
     book.begin("part", {})
+    book.record("looked", "list", fields=[1] * (recorder.MAX_TEXT + 5))
+    text = "x" * 4_000_000
     for _ in range(recorder.MAX_TEXTS // recorder.MAX_TEXT + 5):
-        book.record("message", "/chatter", fields={"data": "x" * 4_000_000, "list": [1] * 10**5})
+        book.record("message", "/chatter", fields={"data": text})
+    (looked,) = book.part().of("looked")
+    assert len(looked.data["fields"]) <= recorder.MAX_TEXT + 1
     texts = [e.data["fields"]["data"] for e in book.part().of("message")]
     assert len(texts[0]) == recorder.MAX_TEXT + 1
     assert len(texts[-1]) == recorder.BEGINNING + 1

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
 # A judge that is reached has said enough.
 JUDGE = """
@@ -25,68 +26,67 @@ RIGHT = "class Talker:\n    pass"
 CHECK = "check('lab', Talker)"
 
 
-@pytest.fixture
-def said(run_cells: Callable[..., list[Any]]) -> Callable[..., str]:
-    """Run cells below JUDGE; what the last of them says, on a card or as an error."""
+def text_of(output: Any) -> str:
+    if output.output_type == "error":
+        assert output.ename in {"NameError", "StaleCodeError"}
+    text = "\n".join(output.traceback) if output.output_type == "error" else output.data["text/plain"]
+    return " ".join(text.replace("│", "").split())
 
-    def run(*sources: str) -> str:
-        first = run_cells(JUDGE, *sources, allow_errors=True)[-1][0]
-        if first.output_type == "error":
-            assert first.ename in {"NameError", "StaleCodeError"}
-        text = "\n".join(first.traceback) if first.output_type == "error" else first.data["text/plain"]
-        return " ".join(text.replace("│", "").split())
+
+@pytest.fixture
+def said(run_cells: Callable[..., list[Any]]) -> Callable[..., list[str]]:
+    """Run groups of cells below JUDGE, each about a Talker of its own; what the last cell of each shows."""
+
+    def run(*groups: Sequence[str]) -> list[str]:
+        cells = [
+            cell.replace("Talker", f"Talker{number}") for number, group in enumerate(groups) for cell in group
+        ]
+        shown = run_cells(JUDGE, *cells, allow_errors=True)[1:]
+        return [text_of(shown[end - 1][0]) for end in accumulate(map(len, groups))]
 
     return run
 
 
-@pytest.mark.parametrize(
-    ("broken", "error"),
-    [
-        ("class Talker:\n    def talk(self)\n        pass", "SyntaxError in line 2, expected ':'"),
-        ("class Talker:\n    x = 1 / 0", "ZeroDivisionError in line 2, division by zero"),
-        ("import nothing_like_it\nclass Talker:\n    pass", "ModuleNotFoundError in line 1"),
-    ],
-)
-def test_a_class_whose_newest_code_did_not_run_is_not_judged(
-    said: Callable[..., str], broken: str, error: str
-) -> None:
-    words = said(RIGHT, broken, CHECK)
-    assert f"Your cell that defines Talker did not run to its definition: {error}" in words
-    assert "Mend that cell and run it" in words
-    assert "the judge was asked" not in words
-    assert "Traceback" not in words
+def test_a_class_whose_newest_code_did_not_run_is_not_judged(said: Callable[..., list[str]]) -> None:
+    broken = {
+        "class Talker:\n    def talk(self)\n        pass": "SyntaxError in line 2, expected ':'",
+        "class Talker:\n    x = 1 / 0": "ZeroDivisionError in line 2, division by zero",
+        "import nothing_like_it\nclass Talker:\n    pass": "ModuleNotFoundError in line 1",
+    }
+    told = said(*((RIGHT, cell, CHECK) for cell in broken))
+    for number, (words, error) in enumerate(zip(told, broken.values(), strict=True)):
+        assert f"Your cell that defines Talker{number} did not run to its definition: {error}" in words
+        assert "Mend that cell and run it" in words
+        assert "the judge was asked" not in words
+        assert "Traceback" not in words
 
 
-@pytest.mark.parametrize(
-    "cells",
-    [
-        pytest.param((RIGHT, "class Talker:\n    1 +", RIGHT), id="mended"),
-        pytest.param((RIGHT + "\n1 / 0",), id="error below the class"),
-        pytest.param((RIGHT, "class Listener:\n    1 +"), id="another class"),
-        pytest.param((RIGHT, "Talker.tick()"), id="another cell"),
-        pytest.param((RIGHT, "%%nothing\nclass Talker:\n    1 +"), id="text of a file"),
-        pytest.param(
-            (RIGHT, "class Talker:\n    1 +", "import os; os.environ['AUTOGRADER_JUDGE_SOCKET'] = 'there'"),
-            id="a grader's kernel",
+def test_any_other_class_is_judged(said: Callable[..., list[str]]) -> None:
+    cells = {
+        "mended": (RIGHT, "class Talker:\n    1 +", RIGHT),
+        "error below the class": (RIGHT + "\n1 / 0",),
+        "another class": (RIGHT, "class Listener:\n    1 +"),
+        "another cell": (RIGHT, "Talker.tick()"),
+        "text of a file": (RIGHT, "%%nothing\nclass Talker:\n    1 +"),
+        # The last one: it holds for all checks behind it.
+        "a grader's kernel": (
+            RIGHT,
+            "class Talker:\n    1 +",
+            "import os; os.environ['AUTOGRADER_JUDGE_SOCKET'] = 'there'",
         ),
-    ],
-)
-def test_any_other_class_is_judged(said: Callable[..., str], cells: tuple[str, ...]) -> None:
-    assert "the judge was asked" in said(*cells, CHECK)
+    }
+    told = said(*((*group, CHECK) for group in cells.values()))
+    assert [name for name, words in zip(cells, told, strict=True) if "the judge was asked" not in words] == []
 
 
-def test_a_check_of_no_class_says_which_cell_to_run(said: Callable[..., str]) -> None:
-    assert "Run the cell that defines Talker first" in said(CHECK)
+def test_a_class_that_is_not_there_is_named_with_its_cell(said: Callable[..., list[str]]) -> None:
+    nothing, never_ran = said((CHECK,), ("class Talker:\n    1 +", CHECK))
+    assert "Run the cell that defines Talker0 first" in nothing
+    assert "there is no Talker1 yet. Your cell that defines Talker1" in never_ran
 
 
-def test_a_check_of_a_class_that_never_ran_says_why(said: Callable[..., str]) -> None:
-    assert "there is no Talker yet. Your cell that defines Talker" in said("class Talker:\n    1 +", CHECK)
-
-
-@pytest.mark.parametrize(
-    "source", ["Talker()", "def make():\n    return Talker()\nmake()", "# check(Talker)\nTalker()"]
-)
-def test_other_name_errors_keep_their_traceback(said: Callable[..., str], source: str) -> None:
-    shown = said(source)
-    assert "there is no Talker yet" not in shown
-    assert "name 'Talker' is not defined" in shown
+def test_other_name_errors_keep_their_traceback(said: Callable[..., list[str]]) -> None:
+    sources = ["Talker()", "def make():\n    return Talker()\nmake()", "# check(Talker)\nTalker()"]
+    for number, shown in enumerate(said(*((source,) for source in sources))):
+        assert f"there is no Talker{number} yet" not in shown
+        assert f"name 'Talker{number}' is not defined" in shown

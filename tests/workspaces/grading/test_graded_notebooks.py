@@ -17,6 +17,8 @@ from autograder.grading.running import engine
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from graded import gradable, graders_judge, judged_answer
 
+from tests.tiers import asked_for
+
 if TYPE_CHECKING:
     from autograder.boxes.execution import Execution
 
@@ -24,6 +26,7 @@ pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 needs_boxes = pytest.mark.skipif(bool(why_impossible()), reason=f"no boxes here: {why_impossible()}")
 NOTEBOOKS = ("lab_1_1", "lab_1_2", "lab_1_3", "exercise_1_1")
+HANDED_OUT = "lab_1_1"
 ANSWERS = (
     "lab_1_1.hello/wrong/entry_point_module.workspace",
     "lab_1_2.programs/right/the_labs_own.workspace",
@@ -33,13 +36,13 @@ ANSWERS = (
 
 
 @pytest.fixture(scope="module")
-def executions(tmp_path_factory: pytest.TempPathFactory) -> dict[tuple[NotebookKind, str], Execution]:
-    """What came of each notebook: of the masters, and of one as it is handed out."""
-    planned = [
-        one
-        for one in plan(course.root(), NOTEBOOKS)
-        if one.kind is NotebookKind.MASTER or one.task.notebook == "lab_1_1"
-    ]
+def executions(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> dict[tuple[NotebookKind, str], Execution]:
+    """What came of the notebooks that this session asks for: of masters, and of one as it is handed out."""
+    asked = {(NotebookKind.MASTER, notebook) for notebook in asked_for(request, "notebook")}
+    asked.add((NotebookKind.CHAPTER, HANDED_OUT))
+    planned = [one for one in plan(course.root(), NOTEBOOKS) if (one.kind, one.task.notebook) in asked]
     tasks = [replace(one.task, boxed=True) for one in planned]
     done = engine.execute_all(tasks, tmp_path_factory.mktemp("s"), 2)
     return {(NotebookKind(result.task.student), result.task.notebook): result.execution for result in done}
@@ -59,7 +62,7 @@ def test_the_master_gets_full_marks(
 def test_the_chapter_as_it_is_handed_out_gets_none(
     executions: dict[tuple[NotebookKind, str], Execution],
 ) -> None:
-    execution = executions[NotebookKind.CHAPTER, "lab_1_1"]
+    execution = executions[NotebookKind.CHAPTER, HANDED_OUT]
     assert execution.trouble == ""
     assert [verdict.score for verdict in execution.verdicts.values()] == [0]
 
