@@ -25,11 +25,10 @@ from autograder.grading.classes.timestamps import handed_in_at, is_not_believed
 from autograder.grading.collecting.outcomes import WaitingList
 from autograder.grading.collecting.tidying import Tidied, tidy
 from autograder.grading.entering import gradebook
-from autograder.grading.entering.attempts import Attempt, note, now
 from autograder.grading.entering.evidence import EvidenceFolder
 from autograder.grading.entering.journal import Journal
 from autograder.grading.entering.records import Records
-from autograder.grading.errors import MasterUnusable, clear_disk_errors, is_disk_full
+from autograder.grading.errors import MasterUnusable, is_disk_full
 from autograder.grading.following.origins import news
 from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.rebuilding.fingerprints import Fingerprints
@@ -109,7 +108,7 @@ def grade(
         check_address(scheduler)
         tell = functools.partial(console.print, markup=False, highlight=False, soft_wrap=True)
         place = places.on_cluster(directory, scheduler, judge, tell)
-    with directory.lock(), clear_disk_errors(directory.path), contextlib.ExitStack() as stack:
+    with directory.lock(), contextlib.ExitStack() as stack:
         places.remove_leftovers(directory)
         asked = AskedFor(assignments, students)
         batch = _Batch(directory, console, asked, feedback=feedback, dry_run=dry_run)
@@ -417,10 +416,6 @@ class _Batch:
             work.rows = rows
             work.written = True
             self._written += 1
-            attempt = Attempt(
-                now(), work.submission.assignment, work.fingerprint, course_version(), tuple(rows)
-            )
-            note(self._directory, work.submission.student, attempt)
             self._returned.bring_graded(work)
         work.results.clear()
 

@@ -17,7 +17,8 @@ from traitlets.config.loader import PyFileConfigLoader
 
 from autograder.grading.classes.class_lock import held
 from autograder.grading.classes.seeds import create_secret, read_secret
-from autograder.grading.errors import ClassIncomplete, NotAClass
+from autograder.grading.entering.journal import remove_unfinished
+from autograder.grading.errors import ClassIncomplete, NotAClass, clear_disk_errors
 from autograder.grading.rebuilding.submission import reason_against_file
 
 if TYPE_CHECKING:
@@ -200,14 +201,18 @@ class ClassDirectory:
 
     @contextlib.contextmanager
     def lock(self) -> Iterator[None]:
-        """Keep a second batch out. The lock goes with the process, however that ends.
+        """Keep a second batch out, and clean up behind one that was killed. The lock goes with the process.
 
         Raises:
             ClassBusy: Another process holds it.
+            GradingError: The disk or the gradebook failed whoever holds it, in an instructor's words.
         """
-        self.state.mkdir(mode=0o700, exist_ok=True)
-        with held(self.state / "lock", self.path):
-            yield
+        with clear_disk_errors(self.path):
+            self.state.mkdir(mode=0o700, exist_ok=True)
+            with held(self.state / "lock", self.path) as was_killed:
+                if was_killed:
+                    remove_unfinished(self.path)
+                yield
 
     def scratch(self) -> Path:
         """A folder for what runs, outside of the class and with a short name (sockets live in it).

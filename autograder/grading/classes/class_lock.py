@@ -47,11 +47,11 @@ _changing = threading.Lock()
 
 
 @contextlib.contextmanager
-def held(path: Path, of: Path) -> Iterator[None]:
-    """Hold the lock of a class.
+def held(path: Path, of: Path) -> Iterator[bool]:
+    """Hold the lock of a class; whether the one who held it before was killed.
 
-    It is a POSIX record lock: it goes with the process, however that ends, and no child inherits it. A file that
-    a killed run left behind means nothing.
+    It is a POSIX record lock: it goes with the process, however that ends, and no child inherits it. Its file has a
+    name in it as long as somebody is at work: one that is there when nobody is was killed.
 
     Args:
         path: The lock's file, made where it is not there.
@@ -68,27 +68,30 @@ def held(path: Path, of: Path) -> Iterator[None]:
             raise ClassBusy(of, str(_own[path]))
         file = path.open("a+b")
         try:
-            _take(file, now, of)
+            was_killed = _take(file, now, of)
         except BaseException:
             file.close()
             raise
         _own[path] = now
     try:
-        yield
+        yield was_killed
     finally:
         with _changing:
             del _own[path]
+            file.truncate(0)
             file.close()
 
 
-def _take(file: IO[bytes], holder: Holder, of: Path) -> None:
+def _take(file: IO[bytes], holder: Holder, of: Path) -> bool:
     try:
         fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         raise ClassBusy(of, _who(file)) from None
+    was_killed = file.seek(0, os.SEEK_END) > 0
     file.truncate(0)
     file.write(msgspec.json.encode(holder))
     file.flush()
+    return was_killed
 
 
 def _who(file: IO[bytes]) -> str:

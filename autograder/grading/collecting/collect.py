@@ -17,7 +17,7 @@ from autograder.grading.collecting.placing import Candidate, Placing
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.collecting.which import NoTarget, Which, is_notebook, stem_of
 from autograder.grading.collecting.whose import Whose
-from autograder.grading.errors import GradingError, clear_disk_errors
+from autograder.grading.errors import GradingError
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.grading.table.roster import Roster, Student, enter_roster, read_roster
 
@@ -69,7 +69,7 @@ def collect(
     for source in (*sources, *times):
         if not source.exists():
             raise GradingError(f"There is no {source}.")
-    with directory.lock(), clear_disk_errors(directory.path):
+    with directory.lock():
         enter_roster(directory)
         collecting = _Collecting(directory, assignment, zone, form, handed_in)
         return collecting.run(sources, times)
@@ -82,7 +82,7 @@ def settle(path: Path, labels: Sequence[str]) -> list[str]:
         GradingError: There is no such class.
     """
     directory = ClassDirectory(path)
-    with directory.lock(), clear_disk_errors(directory.path):
+    with directory.lock():
         return WaitingList(directory).settle(labels)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
@@ -55,6 +56,8 @@ def note(directory: ClassDirectory, student: str, attempt: Attempt) -> None:
     path.parent.mkdir(exist_ok=True)
     with path.open("ab") as log:
         log.write(b"\n" + msgspec.json.encode(attempt) + b"\n")  # a line of its own also behind half a one
+        log.flush()
+        os.fsync(log.fileno())
 
 
 def now() -> datetime:

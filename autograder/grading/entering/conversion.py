@@ -16,6 +16,7 @@ from nbgrader.utils import compute_checksum, determine_grade, is_grade, is_solut
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.classes.timestamps import companions
 from autograder.grading.entering.gradebook import NotebookEntry
+from autograder.grading.entering.journal import write_whole
 from autograder.grading.entering.results import with_results
 from autograder.grading.rebuilding.task_making import rebuilt_notebook, task_of
 
@@ -77,7 +78,6 @@ def write_companions(submission: Submission, folder: Path) -> None:
         OSError: They could not be written.
     """
     for name, data in companions(submission.folder).items():
-        (folder / name).unlink(missing_ok=True)
         _write(folder / name, data)
 
 
@@ -120,6 +120,5 @@ def _comment(cell: Any) -> str | None:
 
 
 def _write(path: Path, data: bytes) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(data)
+    write_whole(path, data)
     path.chmod(_READ_ONLY)

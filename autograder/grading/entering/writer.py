@@ -12,6 +12,7 @@ from nbgrader.preprocessors import AssignLatePenalties
 
 from autograder.grading.classes.timestamps import handed_in_at
 from autograder.grading.entering import conversion, gradebook
+from autograder.grading.entering.attempts import Attempt, note, now
 from autograder.grading.entering.points import scores_of
 from autograder.grading.entering.records import Records, Written
 from autograder.grading.errors import is_disk_full
@@ -84,6 +85,10 @@ class Writer:
         except Exception as error:
             self.take_back([submission])
             raise NotWritten(f"{submission.student}/{submission.assignment}: {error}") from error
+        # Before the record: a run that is killed in between is gone through once more, and none goes unnoted.
+        course = results[0][0].course if results else ""
+        attempt = Attempt(now(), submission.assignment, fingerprint, course, rows)
+        note(self._directory, submission.student, attempt)
         if any(execution.trouble for _, execution in results):
             return  # the next run tries again
         record = Written(
@@ -91,7 +96,7 @@ class Writer:
             keys={task.notebook: task.key() for task, _ in results},
             scores={task.notebook: scores_of(task, execution) for task, execution in results},
             rows=rows,
-            course=results[0][0].course if results else "",
+            course=course,
         )
         self._records.put(submission, record)
 

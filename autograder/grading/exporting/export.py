@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.entering.journal import write_whole
-from autograder.grading.errors import GradingError, clear_disk_errors
+from autograder.grading.errors import GradingError
 from autograder.grading.exporting import feedback_zips, forms, sheets
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.grading.table.class_table import ClassTable, read_table
@@ -54,10 +54,11 @@ def export(
         columns: What an assignment's column is called in ``into``, where that is not the assignment's name.
 
     Raises:
-        GradingError: There is nothing to export, or the list cannot be filled in.
+        GradingError: There is nothing to export, a run is at work, or the list cannot be filled in.
     """
     directory = ClassDirectory(path)
-    with clear_disk_errors(directory.path):
+    # While a run is at work, grades that were taken back look as if nobody had earned them.
+    with directory.lock():
         table = read_table(directory)
         table = replace(table, absent=0.0) if absent_zero else table
         wanted = _assignments(table, assignments)
