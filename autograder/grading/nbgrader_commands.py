@@ -22,7 +22,7 @@ from autograder.grading.classes.class_directory import ClassDirectory, Submissio
 from autograder.grading.classes.configuration import check_configuration
 from autograder.grading.entering.records import Records
 from autograder.grading.entering.writer import Writer
-from autograder.grading.errors import GradingError, clear_disk_errors
+from autograder.grading.errors import GradingError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -92,9 +92,11 @@ class _OurAutograde(_Ours, Autograde):
                 feedback=False,
                 console=Console(quiet=True),
             )
-            for notice in report.notices:
+            # A file without a place may be anybody's: it is no failure of the one whose button was pressed.
+            refused = [(f"{one.path}: {one.reason}", one.path.is_absolute()) for one in report.refused]
+            for notice in (*report.notices, *(text for text, in_class in refused if not in_class)):
                 self.log.warning("%s", notice)
-            problems += [f"{refused.path}: {refused.reason}" for refused in report.refused]
+            problems += [text for text, in_class in refused if in_class or everybody]
             problems += report.problems
         return problems
 
@@ -107,7 +109,7 @@ class _OurFeedback(_Ours, GenerateFeedback):
         records = Records(directory)
         writer = Writer(directory, records)
         problems = []
-        with directory.lock(), clear_disk_errors(directory.path):
+        with directory.lock():
             for submission in self._submissions(directory, chosen):
                 name = f"{submission.student}/{submission.assignment}"
                 if reason := reason_against_name(submission.student):
