@@ -1,7 +1,7 @@
 """Kills a grader at random moments of a batch and looks at what is left: ``python tests/grading/kill_the_grader.py``.
 
-Each round hands in new work for a whole class, starts a batch in a process of its own, kills that process with
-``SIGKILL`` at a moment drawn from the time that a batch takes, and asks:
+Each round hands in new work for a whole class, starts a batch in a process of its own, ends that process with
+``SIGKILL`` or ``SIGTERM`` at a moment drawn from the time that a batch takes, and asks:
 
 * the gradebook opens and is sound;
 * either no grade was touched yet, or each is zero or the right one, never one of an earlier round;
@@ -18,6 +18,7 @@ import argparse
 import contextlib
 import os
 import random
+import signal
 import sqlite3
 import subprocess
 import sys
@@ -31,6 +32,7 @@ import psutil
 sys.path.insert(0, str(Path(__file__).parent))
 from tiny_class import LISTENER, TALKER, TinyClass, make_tiny_class
 
+from autograder.grading.entering.attempts import read
 from autograder.parent_death import adopt_orphans
 
 BATCH = """
@@ -126,14 +128,14 @@ class Trial:
             found.setdefault(student, {})[cell] = score
         return found
 
-    def kill_after(self, seconds: float) -> str:
-        """Start a batch, kill it, look at what is left, and have the next one finish; a line about it."""
+    def kill_after(self, seconds: float, with_: signal.Signals) -> str:
+        """Start a batch, end it, look at what is left, and have the next one finish; a line about it."""
         before = self.grades()
         process = self.start()
         try:
             process.wait(seconds)
         except subprocess.TimeoutExpired:
-            process.kill()
+            process.send_signal(with_)
         process.communicate()
         last = await_orphans()
         demand(not mounts(self.temporary), f"left mounted: {mounts(self.temporary)}")
@@ -151,9 +153,7 @@ class Trial:
         demand(executed <= len(STUDENTS) - (0 if untouched else done), f"{executed} run, {done} were done")
         self.check_finished()
         state = "untouched" if untouched else f"{done} of {len(STUDENTS)} graded"
-        return (
-            f"killed after {seconds:5.2f} s: {state}, {last:.2f} s until all had ended, {executed} run again"
-        )
+        return f"killed after {seconds:5.2f} s by {with_.name}: {state}, {last:.2f} s until all had ended, {executed} run again"
 
     def check_finished(self) -> None:
         """After a batch that came to its end."""
@@ -161,6 +161,11 @@ class Trial:
         for student in STUDENTS:
             page = self.tiny.path / "feedback" / student / "lab_1_2" / "lab_1_2.html"
             demand(page.is_file(), f"{student} has no page")
+            scores = {
+                f"{row.exercise.replace('.', '-')}": row.score
+                for row in read(self.tiny.path, student)[-1].rows
+            }
+            demand(scores == self.right[student], f"the last attempt of {student} is noted with {scores}")
         await_orphans()
         left = list(self.temporary.iterdir())
         demand(not left, f"left among the temporary files: {[str(path) for path in left[:10]]}")
@@ -221,7 +226,8 @@ def kill_the_grader(folder: Path, kills: int, seed: int, jobs: int) -> None:
     moments = random.Random(seed)
     for round_number in range(1, kills + 1):
         trial.hand_in(round_number)
-        print(trial.kill_after(moments.uniform(0, whole)), flush=True)
+        with_ = (signal.SIGKILL, signal.SIGTERM)[round_number % 2]
+        print(trial.kill_after(moments.uniform(0, whole), with_), flush=True)
 
 
 def main() -> None:

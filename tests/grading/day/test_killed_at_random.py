@@ -1,0 +1,228 @@
+"""``collect`` and ``export`` ended by TERM and KILL in their middle: nothing is lost, and the same command goes on.
+
+Of a power cut the same holds as far as each step is on the disk before the next one, which the last tests look at.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from typing import TYPE_CHECKING
+
+import pytest
+from downloads import write_zip
+from test_collect import work
+
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.outcomes import WaitingList
+from autograder.grading.collecting.records import CollectedRecords
+from autograder.grading.entering import journal
+from autograder.grading.entering.journal import write_whole
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from conftest import FakeEngine, TinyClass
+
+STUDENTS = [f"s{place:02}" for place in range(24)]
+FEW, MANY = 3, 20
+"""Moments: in the short tier, and in the nightly one."""
+PATIENCE = 120.0
+
+
+def start(klass: Path, *words: str) -> subprocess.Popen[str]:
+    command = [sys.executable, "-W", "ignore", "-m", "autograder", words[0], str(klass), *words[1:]]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+def run(klass: Path, *words: str) -> int:
+    process = start(klass, *words)
+    process.communicate()
+    return process.returncode
+
+
+def end_in_its_middle(
+    klass: Path, words: tuple[str, ...], has_come_to: Callable[[], bool], chance: random.Random, with_: int
+) -> bool:
+    """Start a command and send it a signal a moment after it has come to something; whether that ended it."""
+    process = start(klass, *words)
+    deadline = time.monotonic() + PATIENCE
+    while process.poll() is None and not has_come_to():
+        assert time.monotonic() < deadline
+        time.sleep(0.0005)
+    time.sleep(chance.uniform(0, 0.01))
+    process.send_signal(with_)
+    process.communicate()
+    return process.returncode == -with_
+
+
+def files_below(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def collected(klass: Path) -> tuple[object, ...]:
+    """All that collecting leaves behind, without the times of collecting itself."""
+    directory = ClassDirectory(klass)
+    records = CollectedRecords(directory.state)
+    histories = {}
+    for student in STUDENTS:
+        history = records.get("lab_1_2", student)
+        assert history is not None
+        histories[student] = (
+            [(one.content, one.when) for one in history.now.values()],
+            [(one.content, one.when) for one in history.before],
+        )
+    kept = {path.name: path.read_bytes() for path in (directory.state / "collected").rglob("*.ipynb")}
+    waiting = sorted(one.label for one in WaitingList(directory).read())
+    return files_below(klass / "submitted"), histories, kept, waiting
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("moments", [FEW, MANY])
+def test_collect_is_ended_and_goes_on(tiny: TinyClass, tmp_path: Path, moments: int) -> None:
+    seed = random.SystemRandom().randrange(1 << 30)
+    chance = random.Random(seed)
+    (tiny.path / "students.csv").write_text("id\n" + "\n".join(STUDENTS), encoding="utf-8")
+    texts = {(one, day): work(tiny, place, day) for place, one in enumerate(STUDENTS) for day in (3, 4)}
+    archives = {
+        day: write_zip(
+            tmp_path / f"{day}.zip",
+            {f"Lab_{one}_attempt_2025-10-0{day}-14-00-00_lab_1_2.ipynb": texts[one, day] for one in STUDENTS}
+            | {f"guest_{day}.ipynb": texts["s00", day]},
+        )
+        for day in (3, 4)
+    }
+    collect(tiny.path, [archives[3]])
+    words = ("collect", str(archives[4]))
+    whole = shutil.copytree(tiny.path, tmp_path / "whole")
+    assert run(whole, *words) == 2
+    wanted = collected(whole)
+    ended: Counter[bool] = Counter()
+    for moment in range(moments):
+        klass = shutil.copytree(tiny.path, tmp_path / f"{moment}")
+        place = klass / "submitted" / chance.choice(STUDENTS[:16]) / "lab_1_2" / "lab_1_2.ipynb"
+        before = place.stat().st_ino
+        ended[
+            end_in_its_middle(
+                klass,
+                words,
+                lambda: place.stat().st_ino != before,  # noqa: B023  (called in this round only)
+                chance,
+                (signal.SIGTERM, signal.SIGKILL)[moment % 2],
+            )
+        ] += 1
+        kept = files_below(klass / ".autograder" / "collected").values()
+        for one in STUDENTS:
+            there = (klass / "submitted" / one / "lab_1_2" / "lab_1_2.ipynb").read_text()
+            assert there in (texts[one, 3], texts[one, 4]), f"seed {seed}: half of {one}'s is there"
+            assert there == texts[one, 3] or texts[one, 3].encode() in kept, f"seed {seed}: {one}'s is lost"
+        assert run(klass, *words) == 2
+        assert collected(klass) == wanted, f"seed {seed}"
+        assert not [*klass.rglob("*.new")], f"seed {seed}: something half written is left"
+        shutil.rmtree(klass)
+    assert ended[True], "no signal came in time"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("moments", [FEW, MANY])
+def test_export_is_ended_and_goes_on(
+    tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path, moments: int
+) -> None:
+    seed = random.SystemRandom().randrange(1 << 30)
+    chance = random.Random(seed)
+    (tiny.path / "students.csv").write_text("id\n" + "\n".join(STUDENTS), encoding="utf-8")
+    files = {
+        f"{one}_{place}_assignsubmission_file_lab_1_2.ipynb": work(tiny, place % 11)
+        for place, one in enumerate(STUDENTS)
+    }
+    collect(tiny.path, [write_zip(tmp_path / "c.zip", files)])
+    tiny.grade(feedback=True)
+    words = ("export", "--to", "moodle")
+    whole = shutil.copytree(tiny.path, tmp_path / "whole")
+    assert run(whole, *words) == 0
+    wanted = files_below(whole / "export")
+    assert len(wanted) == 3
+    gradebook = (tiny.path / "gradebook.db").read_bytes()
+    ended: Counter[bool] = Counter()
+    for moment in range(moments):
+        klass = shutil.copytree(tiny.path, tmp_path / f"{moment}")
+        lock, out, number = klass / ".autograder" / "lock", klass / "export", chance.choice((0, 0, 1, 2))
+        ended[
+            end_in_its_middle(
+                klass,
+                words,
+                lambda: len([*out.glob("[!.]*")]) >= number if number else lock.stat().st_size > 0,  # noqa: B023
+                chance,
+                (signal.SIGTERM, signal.SIGKILL)[moment % 2],
+            )
+        ] += 1
+        half = {name: data for name, data in files_below(out).items() if not name.startswith(".")}
+        assert half.items() <= wanted.items(), f"seed {seed}"
+        assert (klass / "gradebook.db").read_bytes() == gradebook
+        assert run(klass, *words) == 0
+        assert files_below(out) == wanted, f"seed {seed}"
+        shutil.rmtree(klass)
+    assert ended[True], "no signal came in time"
+
+
+# -- a power cut
+# ------------------------------------------------------------------------------------------------------
+
+WATCHED = """
+import os, sys
+folder = sys.argv.pop(1)
+def watch(event, arguments):
+    if event == "open" and isinstance(arguments[0], (str, bytes, os.PathLike)):
+        name = os.fsdecode(arguments[0])
+        if name.startswith(folder) and arguments[2] & (os.O_WRONLY | os.O_RDWR):
+            print("written", name)
+sys.addaudithook(watch)
+from autograder.cli import cli
+cli()
+"""
+
+
+def test_a_file_is_on_the_disk_before_it_has_its_name_and_its_name_before_anything_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done: list[str] = []
+    real_sync, real_replace = os.fsync, journal.Path.replace
+
+    def sync(descriptor: int) -> None:
+        done.append(f"sync {os.path.basename(os.readlink(f'/proc/self/fd/{descriptor}'))}")  # noqa: PTH115, PTH119
+        real_sync(descriptor)
+
+    def replace(path: Path, to: Path) -> Path:
+        done.append(f"name {to.name}")
+        return real_replace(path, to)
+
+    monkeypatch.setattr(os, "fsync", sync)
+    monkeypatch.setattr(journal.Path, "replace", replace)
+    write_whole(tmp_path / "new" / "deep" / "file", b"all of it")
+    half = f".file.{os.getpid()}.new"
+    assert done == [f"sync {half}", "name file", "sync deep", "sync new", f"sync {tmp_path.name}"]
+
+
+def test_whatever_collect_and_export_write_is_written_so(tiny: TinyClass, tmp_path: Path) -> None:
+    (tiny.path / "students.csv").write_text("id\nada\n", encoding="utf-8")
+    files = {"Lab_ada_attempt_2025-10-03-14-00-00_lab_1_2.ipynb": work(tiny), "guest.ipynb": work(tiny)}
+    archive = write_zip(tmp_path / "c.zip", files)
+    for words in (("collect", str(tiny.path), str(archive)), ("export", str(tiny.path), "--to", "csv")):
+        said = subprocess.run(
+            [sys.executable, "-W", "ignore", "-c", WATCHED, str(tiny.path), *words],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        written = {line.partition(" ")[2] for line in said.stdout.splitlines() if line.startswith("written")}
+        others = {path for path in written if not path.endswith((".new", "/lock"))}
+        assert written - others, said.stdout + said.stderr
+        assert not others
