@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Any
 
-from rclpy.action import ActionServer, CancelResponse
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.task import Future
 from small_robot_interfaces.action import WalkTo
 
 from autograder.notebook.robot.motion import towards
+from autograder.notebook.robot.room import ROOM
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -57,6 +58,7 @@ class Walking:
             WalkTo,
             "/walk_to",
             execute_callback=self._execute,
+            goal_callback=lambda goal: _answer(goal.x, goal.y),
             cancel_callback=lambda _: CancelResponse.ACCEPT,
         )
 
@@ -103,3 +105,8 @@ class Walking:
         getattr(goal, ending.value)()
         x, y = self._pose.point if self._pose is not None else (math.nan, math.nan)
         return WalkTo.Result(arrived=ending is _Ending.ARRIVED, x=x, y=y)
+
+
+def _answer(x: float, y: float) -> GoalResponse:
+    inside = 0 <= x <= ROOM.width and 0 <= y <= ROOM.height
+    return GoalResponse.ACCEPT if inside else GoalResponse.REJECT

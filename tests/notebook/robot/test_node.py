@@ -164,8 +164,16 @@ def test_a_walk_can_be_canceled(driver: Driver) -> None:
     assert goal.ends() == (GoalStatus.STATUS_CANCELED, False)
 
 
+@pytest.mark.parametrize("point", [(-1.0, 2.0), (6.1, 2.0), (1.0, -0.1), (1.0, float("nan"))])
+def test_a_goal_outside_of_the_rooms_is_rejected(driver: Driver, point: tuple[float, float]) -> None:
+    assert driver.walks.wait_for_server(LIMIT)
+    sent = driver.walks.send_goal_async(WalkTo.Goal(x=point[0], y=point[1]))
+    driver.until(sent.done)
+    assert not sent.result().accepted
+
+
 def test_a_walk_ends_at_a_wall(driver: Driver) -> None:
-    assert Goal(driver, -1.0, 2.0).ends() == (GoalStatus.STATUS_ABORTED, False)
+    assert Goal(driver, 0.0, 2.0).ends() == (GoalStatus.STATUS_ABORTED, False)
 
 
 @pytest.mark.usefixtures("endless")
