@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 TERMINATED = 143
-"""What a shell says of a program that SIGTERM ended: 128 and the signal's number."""
+"""A shell's exit code for a program that SIGTERM ended: 128 and the signal's number."""
 
 
 def main() -> None:

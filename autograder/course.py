@@ -1,4 +1,4 @@
-"""Where the course's own files are: its chapters, and the labs of a chapter in their order."""
+"""The places of the course's own files: its chapters, and the labs of a chapter in their order."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ VARIABLE = "AUTOGRADER_COURSE"
 SOLUTIONS = "solutions"
 """The folder of the chapters as their authors write them."""
 HANDED_OUT = "exercises"
-"""What is in its place in what students are handed: the judge's part of the chapters, and no master."""
+"""The folder in its place in what students are handed: the judge's part of the chapters, and no master."""
 CHAPTERS = "chapters"
 """The folder of the notebooks that students open, one folder a chapter."""
 CHAPTER = "chapter.toml"
-"""What says of a chapter what cannot be seen in the folders of its labs."""
+"""The file of facts about a chapter that the folders of its labs do not show."""
 INTERFACES = "interfaces"
 """The folder of a chapter with its own packages of interfaces, which the set-up of the course builds."""
 COPY = "(your copy,"
@@ -28,9 +28,9 @@ COPY = "(your copy,"
 LAB = "lab.md"
 """The master in a lab's folder, from which its notebook is derived."""
 WHY = ".why.md"
-"""How the file beside an exercise ends that says why its reference solution is written so."""
+"""The ending of the file beside an exercise that says why its reference solution is written so."""
 SOLUTION = ".solution.json"
-"""How the one ends that is derived from that and from the master: what a student with full marks may read."""
+"""The ending of the file that is derived from that and from the master, for students with full marks."""
 
 
 class NoCourse(LookupError):
@@ -89,7 +89,7 @@ def root() -> Path:
 
 
 def variables() -> dict[str, str]:
-    """What a process with an environment of its own needs to find the same course. No box of a student's gets it."""
+    """The variables with which another process finds the same course. No box of a student's gets it."""
     return {VARIABLE: str(root())}
 
 
@@ -109,13 +109,13 @@ def chapters(folder: Path) -> tuple[Chapter, ...]:
 
 
 def _written(folder: Path) -> Path:
-    """Where the chapters are written: by their authors, or in what students are handed."""
+    """The folder of the chapters: the authors' own, or that of what students are handed."""
     solutions, handed_out = folder / SOLUTIONS, folder / HANDED_OUT
     return handed_out if handed_out.is_dir() and not solutions.is_dir() else solutions
 
 
 def released(lab: Path) -> Path:
-    """Where a lab's notebook is kept as it was released, in what students are handed."""
+    """The path of a lab's notebook as it was released, in what students are handed."""
     return lab / f"{lab.name}.ipynb"
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from autograder.kit.model import Exercise
 
 REFERENCE = ".reference.json"
-"""How the file beside an exercise ends that holds its reference output."""
+"""The ending of the file beside an exercise that holds its reference output."""
 
 
 class UnknownExercise(LookupError):
@@ -89,7 +89,7 @@ def path(exercise_id: str) -> Path:
 
 
 def reference_path(exercise_id: str) -> Path:
-    """Where the reference output of an exercise is kept.
+    """The path of an exercise's reference output.
 
     Raises:
         UnknownExercise: There is no such exercise.
@@ -103,7 +103,7 @@ def grade_id(exercise_id: str) -> str:
 
 
 def _words(error: Exception) -> str:
-    """What went wrong in an import, and in which line, in one line."""
+    """The error of an import with its place, in one line."""
     kind = type(error).__name__
     if isinstance(error, SyntaxError):
         return f"{kind}: {error.msg} ({error.filename}, line {error.lineno})"

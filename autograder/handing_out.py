@@ -1,4 +1,4 @@
-"""What students are handed: the notebooks and all that checks them, without a solution, an answer or the grader.
+"""The course as students get it: notebooks and their judge, without solutions, answers and grader.
 
 The repository holds every solution, so it cannot be given to a class. What comes out of here is a course of its own,
 with the same ``./course``: its exercises and reference outputs are in ``exercises/``, and no folder is called
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 WHOLE = ("course", "pyproject.toml", "LICENSE", "environment", "autograder", ".devcontainer", ".dockerignore")
-"""What is handed out as it is, but for what follows."""
+"""Files and folders that are handed out as they are, but for what follows."""
 KEPT_BACK = (
     "autograder/authoring",
     "autograder/execution",
@@ -32,7 +32,7 @@ KEPT_BACK = (
     "autograder/masters",
     "autograder/recording.py",
 )
-"""What makes notebooks, knows their solutions or grades a class."""
+"""Parts that make notebooks, know their solutions or grade a class."""
 PAGES = ("students-guide.md", "mistakes.md", "fairness.md", "ros2-command.md", "robot.md")
 """Of ``docs/``."""
 _MADE = frozenset({"__pycache__", ".ipynb_checkpoints"})
@@ -71,7 +71,7 @@ class CannotHandOut(Exception):
 
 @dataclass(frozen=True)
 class HandOut:
-    """What was made.
+    """The result of handing out.
 
     Attributes:
         place: The folder, or the zip.

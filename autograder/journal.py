@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 VARIABLE = "AUTOGRADER_JOURNAL"
-"""Where the journal of this session is; empty for none."""
+"""The variable with the path of this session's journal; empty for none."""
 NAME = ".course-journal.jsonl"
-"""What it is called in the folder of the notebooks."""
+"""The journal's name in the folder of the notebooks."""
 MOST = 4_000_000
 """Bytes that are read, counted from the end: some forty thousand checks."""
 
@@ -59,7 +59,7 @@ class Entry:
 
     @property
     def full(self) -> bool:
-        """Whether it is a check with all points."""
+        """True if it is a check with all points."""
         return self.kind == "check" and self.points >= self.possible > 0
 
 
@@ -147,7 +147,7 @@ def best(lines: Iterable[Entry]) -> dict[str, Entry]:
 
 
 def finished(chapter: course.Chapter, reached: dict[str, Entry]) -> float | None:
-    """When the last of all points of a chapter was reached; None before that.
+    """The time at which the last of all points of a chapter was reached; None before that.
 
     Args:
         chapter: The chapter.

@@ -14,14 +14,14 @@ from typing import Any
 from jupyter_server.services.contents.largefilemanager import AsyncLargeFileManager
 
 VERSION = sys.version.split()[0]
-"""What the kernel answers when it is asked (``IPythonKernel.language_info``): it runs on the server's own Python."""
+"""The version of the kernel's language (``IPythonKernel.language_info``): it runs on the server's own Python."""
 
 
 class OpenedNotebooks(AsyncLargeFileManager):
     """The usual files, and the kernel's version in the notebooks among them."""
 
     async def get(self, path: str, *args: Any, **options: Any) -> dict[str, Any]:
-        """What the server says of a file or folder, with the file's content where that is asked for."""
+        """The server's answer about a file or folder, with the file's content where that is asked for."""
         model: dict[str, Any] = await super().get(path, *args, **options)  # type: ignore[no-untyped-call]
         content = model.get("content")
         if model["type"] == "notebook" and content is not None:

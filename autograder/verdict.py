@@ -13,7 +13,7 @@ import msgspec
 
 
 class State(StrEnum):
-    """How a check ended: three different things that are never mixed up."""
+    """The end of a check: three different things that are never mixed up."""
 
     PASSED = "passed"
     """Every criterion holds."""
@@ -46,7 +46,7 @@ class Criterion:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """Which known mistake this is, and what to do next.
+    """A known mistake, and what to do next.
 
     Attributes:
         key: The mistake's stable name, such as ``"topic_name"`` (``docs/mistakes.md`` lists them).
@@ -86,7 +86,7 @@ class Moment:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the judge found for one exercise.
+    """The judge's findings for one exercise.
 
     Attributes:
         exercise: The exercise's id, such as ``"lab_1_2.talker"``.
@@ -118,7 +118,7 @@ class Verdict:
 
     @property
     def passed(self) -> bool:
-        """Whether every criterion holds."""
+        """True if every criterion holds."""
         return self.state is State.PASSED
 
 

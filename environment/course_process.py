@@ -1,4 +1,4 @@
-"""How every Python of the course's environment starts: with ROS found, and nothing to source.
+"""The start of every Python of the course's environment: ROS is found, and nothing has to be sourced.
 
 The set-up copies this file into the site-packages of ``.venv``, with a ``.pth`` file that calls `begin` and
 with the paths of this machine in ``course_paths.py``. So ``.venv/bin/python talker.py`` works in any

@@ -1,4 +1,4 @@
-"""What the environment tells JupyterLab: the kernel's variables, its terminals, no questions about news.
+"""JupyterLab's settings from the environment: the kernel's variables, its terminals, no questions about news.
 
 All of it lies inside the environment (``.venv/share/jupyter``, ``.venv/etc/jupyter``), so that it holds
 however JupyterLab is started and touches no setting of the user's own.

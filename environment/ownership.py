@@ -1,4 +1,4 @@
-"""Whose a folder is: in a course that several people share, one of them has to set it up."""
+"""The owner of a folder: in a course that several people share, one of them has to set it up."""
 
 from __future__ import annotations
 
@@ -20,5 +20,5 @@ def owner(folder: Path) -> str:
 
 
 def may_write(folder: Path) -> bool:
-    """Whether this user may write to a folder."""
+    """True if this user may write to a folder."""
     return os.access(folder, os.W_OK)

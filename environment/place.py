@@ -1,4 +1,4 @@
-"""Where the parts of the course's environment are, and the variables that lead its processes there."""
+"""The places of the course's environment, and the variables that lead its processes there."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ INTERFACES = "my_robot_interfaces"
 
 @dataclass(frozen=True)
 class Place:
-    """Where everything is.
+    """The places of the environment.
 
     Attributes:
         root: the folder of the course.

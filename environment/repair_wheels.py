@@ -31,7 +31,7 @@ class RepairError(Exception):
 
 @dataclass(frozen=True)
 class HeaderFolders:
-    """Where this interpreter's headers are."""
+    """The folders of this interpreter's headers."""
 
     python: Path
     numpy: Path

@@ -1,4 +1,4 @@
-"""Which ROS 2 the course runs on: one that is sourced, or the pinned wheels.
+"""The ROS 2 that the course runs on: one that is sourced, or the pinned wheels.
 
 A sourced Jazzy (a system's ``/opt/ros/jazzy`` or a RoboStack environment) is used when this Python can import
 its rclpy. In every other case the wheels of ``requirements/ros.lock`` are installed. The set-up decides once
@@ -54,13 +54,13 @@ class Ros:
 
     @property
     def is_sourced(self) -> bool:
-        """Whether ROS comes from outside the environment."""
+        """True if ROS comes from outside the environment."""
         return self.flavour != "wheels"
 
 
 @dataclass(frozen=True)
 class Machine:
-    """What decides whether the wheels run here."""
+    """The facts that decide whether the wheels run here."""
 
     system: str
     processor: str

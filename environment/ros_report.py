@@ -1,4 +1,4 @@
-"""What a fresh Python process says about its ROS, as one JSON object: ``python -m environment.ros_report``.
+"""A fresh Python process's report on its ROS, as one JSON object: ``python -m environment.ros_report``.
 
 A process of its own, because a broken ROS does not always raise an exception: a wrong library can end the
 process.

@@ -1,4 +1,4 @@
-"""What the course needs of the operating system, and how to get it.
+"""The course's needs of the operating system, and how to get them.
 
 As root on Debian or Ubuntu a missing package is installed with apt-get. Everyone else is told the one command
 to type.
@@ -109,7 +109,7 @@ TABLE = (
 
 @dataclass(frozen=True)
 class Apt:
-    """How packages can be installed here: `program` is apt-get or None, `as_root` whether we may run it."""
+    """The way to install packages here: `program` is apt-get or None, `as_root` whether we may run it."""
 
     program: str | None
     as_root: bool

@@ -30,7 +30,7 @@ class BadAppeal(ValueError):
 
 
 class Cell(msgspec.Struct, frozen=True):
-    """What the student wrote into one cell.
+    """The student's text of one cell.
 
     Attributes:
         cell: The cell's name; empty for a cell that the student has added.
@@ -42,7 +42,7 @@ class Cell(msgspec.Struct, frozen=True):
 
 
 class Appeal(msgspec.Struct, frozen=True):
-    """What an appeal file holds.
+    """The content of an appeal file.
 
     Attributes:
         student: The student's id.

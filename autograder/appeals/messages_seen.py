@@ -1,4 +1,4 @@
-"""What a judge saw in a check, as MCAP: each event a message in JSON, for Foxglove and other programs.
+"""A check as the judge saw it, as MCAP: each event a message in JSON, for Foxglove and other programs.
 
 Messages are on their own topic and the log is on ``/rosout``; requests, answers, goals and the like are on the name of
 the service or action with the word of the transcript, such as ``/add_two_ints/asked``; all else is below ``/judge``.
@@ -26,13 +26,13 @@ if TYPE_CHECKING:
     from autograder.judge.verdicts.keeping import Kept, KeptEvent, KeptLook, KeptPart
 
 _ENDS = {"message": "publisher", "sent": "subscription"}
-"""What the subject has on a topic on which it is heard, and on one on which it is spoken to."""
+"""The subject's end of a topic on which it is heard, and of one on which it is spoken to."""
 _OF_CALLS = (
     "asked", "answered", "request", "response", "goal", "goal_sent", "goal_answer", "goal_answered", "feedback",
     "feedback_heard", "cancel", "cancel_sent", "cancel_answer", "cancel_answered", "result_request", "result",
     "result_heard",
 )  # fmt: skip
-"""What goes to and fro between the client and the server of a service or an action."""
+"""The traffic between the client and the server of a service or an action."""
 _JUDGE = "_judge"
 """The field of what no message says of itself."""
 _SECOND = 1_000_000_000

@@ -23,7 +23,7 @@ class CannotReplay(ValueError):
 
 @dataclass(frozen=True)
 class Replay:
-    """What a second judging has brought.
+    """The result of a second judging.
 
     Attributes:
         then: The verdict that was given.
@@ -87,7 +87,7 @@ def _differences(then: Verdict, now: Verdict) -> Iterator[str]:
 
 
 def _other_words(then: Verdict, now: Verdict) -> Iterator[str]:
-    """What a student reads and no grade depends on."""
+    """The words that a student reads and no grade depends on."""
     before = {criterion.name: criterion for criterion in then.criteria}
     for new in now.criteria:
         old = before.get(new.name)

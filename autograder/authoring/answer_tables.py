@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 KINDS = ("right", "wrong")
 WORKSPACE = ".workspace"
-"""How the name of an answer ends that is a whole workspace."""
+"""The ending of the name of an answer that is a whole workspace."""
 
 
 class BadTable(ValueError):
@@ -54,7 +54,7 @@ class BadTable(ValueError):
 
 
 class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What a table says of one answer.
+    """A table's entry on one answer.
 
     Attributes:
         why: Why it is right, or what is seen of the mistake.
@@ -80,7 +80,7 @@ class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What holds for all answers of a folder: its file ``settings.toml``, where there is one.
+    """The settings for all answers of a folder: its file ``settings.toml``, where there is one.
 
     Attributes:
         command: What runs an answer, with places for ``{file}`` and ``{workspace}``.
@@ -139,7 +139,7 @@ class Listed:
 
 
 def usual_first_line(kind: str, why: str) -> str:
-    """What a program's first line says where its entry does not tell."""
+    """The first line of a program whose entry names none."""
     return f"{kind.capitalize()}: {why}"
 
 
@@ -184,7 +184,7 @@ def _look_at(answer: Listed, *, twice: bool) -> None:
 
 
 def settings(folder: Path) -> Settings:
-    """What holds for all answers of a folder.
+    """The settings for all answers of a folder.
 
     Raises:
         BadTable: Its file cannot be used.

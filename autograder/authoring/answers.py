@@ -86,7 +86,7 @@ class Answer:
 
     @property
     def may_be_warm(self) -> bool:
-        """Whether it is a plain Python program, and not one of those that are always started from nothing."""
+        """True if it is a plain Python program, and not one of those that are always started from nothing."""
         plain = self.base is None and self.command == (sys.executable, "{file}")
         return plain and zlib.crc32(self.name.encode()) % COLD != 0
 
@@ -95,7 +95,7 @@ class Answer:
         return to_json(checked(self, seed, warm=warm)[0])
 
     def objection(self, verdict: Verdict) -> str:
-        """What is not as expected, or an empty string."""
+        """The difference from the expected verdict, or an empty string."""
         key = verdict.diagnosis.key if verdict.diagnosis else ""
         missed = "; ".join(f"{c.name}: {c.seen}" for c in verdict.criteria if not c.passed)
         if not self.diagnoses:

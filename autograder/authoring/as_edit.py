@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 Place: TypeAlias = tuple[int, int, int, int]
-"""Where lines differ: the first line and the one after the last in the one text, then in the other."""
+"""A range of lines that differ: the first and the one after the last in the one text, then in the other."""
 NEAR = 10
 """Lines in which an answer may differ from a right one and be stored as an edit of it."""
 
@@ -60,7 +60,7 @@ def nearest(text: str, bases: Iterable[Path]) -> Near | None:
 
 
 def distance(old: list[str], new: list[str]) -> int:
-    """How many lines are changed, added or removed."""
+    """The number of lines that are changed, added or removed."""
     return sum(max(i2 - i1, j2 - j1) for i1, i2, j1, j2 in _differences(old, new))
 
 
@@ -70,7 +70,7 @@ def _differences(old: list[str], new: list[str]) -> list[Place]:
 
 
 def change_between(base: str, text: str) -> str:
-    """What makes one text of another, but for the first line, which is not looked at."""
+    """The change that makes one text of another; first lines are not compared."""
     old, new = base.split("\n")[1:], text.split("\n")[1:]
     places = _joined(old, _differences(old, new))
     # Lines around a place are added until it can be told from all others.
@@ -155,7 +155,7 @@ def _toml_list(texts: Iterable[str]) -> str:
 
 
 def worth(text: str, near: Near) -> bool:
-    """Whether an answer is better stored as an edit than whole: it says less, and shows what is different."""
+    """True if an answer is better stored as an edit than whole: it says less, and shows what is different."""
     return near.lines <= min(NEAR, text.count("\n") // 2)
 
 

@@ -27,7 +27,7 @@ class Judged(Protocol):
 
     @property
     def name(self) -> str:
-        """How a person finds it."""
+        """The name by which a person finds it."""
         ...
 
     def verdict(self, seed: str, *, warm: bool) -> bytes:

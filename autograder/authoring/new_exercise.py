@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 EXAMPLES = Path(course.__file__).resolve().parents[1] / "docs" / "examples"
 """A course of examples: each of its labs is the example of the recipe that it is named after."""
 LEFT_OUT = shutil.ignore_patterns("__pycache__", f"*{exercises.REFERENCE}")
-"""What is made anew for the copy."""
+"""Files that are made anew for the copy."""
 
 _ID = re.compile(r"[a-z][a-z0-9_]*\.[a-z][a-z0-9_]*", re.ASCII)
 _NUMBER = re.compile(r"_(\d+(?:_\d+)*)$")
@@ -130,7 +130,7 @@ def _rename(made: Path, old: str, new: str) -> None:
 
 
 def _lab_title(exercise_id: str) -> str:
-    """How a lab is called in its heading: ``Lab 9.1`` for ``lab_9_1``."""
+    """The name of a lab in its heading: ``Lab 9.1`` for ``lab_9_1``."""
     lab = exercise_id.partition(".")[0]
     number = _NUMBER.search(lab)
     words = (lab[: number.start()] if number else lab).replace("_", " ").strip().capitalize()

@@ -142,7 +142,7 @@ def judged(wanted: Sequence[Answer], *, jobs: int = JOBS, tell: Callable[[str], 
 
 
 def _is_in_step(exercise_id: str, tell: Callable[[str], object]) -> bool:
-    """Whether the reference output is what the solution does; one that is not there is recorded."""
+    """True if the reference output is what the solution does; one that is not there is recorded."""
     there = exercises.reference_path(exercise_id).exists()
     changed = recording.record([exercise_id], only_check=there, tell=tell)
     if not (there and changed):

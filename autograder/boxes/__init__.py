@@ -1,1 +1,1 @@
-"""How a submission's notebook is executed: a kernel of its own, limits on everything, nothing left behind."""
+"""The execution of a submission's notebook: a kernel of its own, limits on everything, nothing left behind."""

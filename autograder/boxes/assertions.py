@@ -1,4 +1,4 @@
-"""What a cell of plain tests is worth: the rules of nbgrader, where no judge looks.
+"""The points of a cell of plain tests: the rules of nbgrader, where no judge looks.
 
 Such a cell runs in the student's own kernel, so whoever wants to can have it say anything; a check of the judge's in
 the same notebook is not touched by that. One rule is not nbgrader's: a line on standard error costs nothing, because

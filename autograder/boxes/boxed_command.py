@@ -17,7 +17,7 @@ ANSWER_SECONDS = 30.0
 
 @dataclass(frozen=True)
 class Finished:
-    """How a command in a box ended.
+    """The end of a command in a box.
 
     Attributes:
         returncode: As :class:`subprocess.Popen` has it: the exit code; negative for a signal. None where it was
@@ -65,7 +65,7 @@ class Running:
 
     @property
     def said(self) -> bytes:
-        """What it has said so far, as far as it was taken up and is kept."""
+        """Its output so far, as far as it was read and is kept."""
         return bytes(self._kept)
 
     def wait(self, limit: float) -> Finished:

@@ -30,7 +30,7 @@ _numbers = itertools.count()
 
 @dataclass(frozen=True)
 class Controller:
-    """Where groups of a controller can be made.
+    """A place where groups of a controller can be made.
 
     Attributes:
         base: The folder in which a group is a new folder.
@@ -70,12 +70,12 @@ class Group:
 
     @property
     def ran_out_of_memory(self) -> bool:
-        """Whether the kernel has ended a member because all of them together had too much."""
+        """True if the kernel has ended a member because all of them together had too much."""
         return self._counted("memory", "memory.oom_control", "memory.events", "oom_kill")
 
     @property
     def ran_out_of_processes(self) -> bool:
-        """Whether a member was refused a further process or thread."""
+        """True if a member was refused a further process or thread."""
         return self._counted("pids", "pids.events", "pids.events", "max")
 
     @property
@@ -153,7 +153,7 @@ def _write(file: Path, value: str) -> None:
 
 
 def _candidates(kind: str, own: str, mounts: str) -> list[Controller]:
-    """Where a group could be made, the nearest to our own first.
+    """The places where a group could be made, the nearest to our own first.
 
     Args:
         kind: The controller.

@@ -90,7 +90,7 @@ class Channel:
 
     @property
     def hung_up(self) -> bool:
-        """Whether the other end is gone, though there may be words of it that nobody has read yet."""
+        """True if the other end is gone, though there may be words of it that nobody has read yet."""
         if self._socket.fileno() < 0:
             return False
         poll = select.poll()

@@ -19,7 +19,7 @@ from autograder.boxes.seccomp_filter import filter_for_boxes
 from autograder.parent_death import adopt_orphans, die_with_parent
 
 Run = Callable[[Mapping[str, Any], Sequence[int]], None]
-"""What a child becomes: called with the request's ``call`` and its descriptors."""
+"""The work of a child: called with the request's ``call`` and its descriptors."""
 
 _ALL_NAMESPACES = (
     syscalls.CLONE_NEWUSER | syscalls.CLONE_NEWNS | syscalls.CLONE_NEWPID | syscalls.CLONE_NEWNET
@@ -29,7 +29,7 @@ _ALL_NAMESPACES = (
 
 @dataclass(frozen=True)
 class Entrance:
-    """How a child begins.
+    """The start of a child.
 
     Attributes:
         cwd: Its folder, as it is called in the box.

@@ -29,7 +29,7 @@ numpy they wait in a loop for work that never comes."""
 
 
 def base_environment(given: Mapping[str, str] | None = None) -> dict[str, str]:
-    """What a fork server and every box start with: what Python and ROS need of an environment, nothing else.
+    """The environment of a fork server and of every box: what Python and ROS need, nothing else.
 
     Args:
         given: The environment; this process's where None.

@@ -1,4 +1,4 @@
-"""What goes into the execution of a notebook and what comes out, as plain data that travels as JSON."""
+"""The input and the result of the execution of a notebook, as plain data that travels as JSON."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Cell:
 
 
 class Ended(StrEnum):
-    """How a cell's run ended."""
+    """The end of a cell's run."""
 
     DONE = "done"
     RAISED = "raised"
@@ -75,7 +75,7 @@ class Ended(StrEnum):
 
 @dataclass(frozen=True)
 class CellRun:
-    """What came of one cell.
+    """The result of one cell.
 
     Attributes:
         ended: How it ended.
@@ -93,7 +93,7 @@ class CellRun:
 
 @dataclass(frozen=True)
 class Execution:
-    """What came of a notebook.
+    """The result of a notebook.
 
     Attributes:
         cells: One for each cell that went in, in order.

@@ -29,7 +29,8 @@ from autograder.boxes.limits import raise_own
 
 BESIDE, INSIDE = "beside", "inside"
 FOLDER_PREFIX = "autograder-held-"
-"""How the folders of fork servers begin. Older versions used another word and no lock: theirs are left alone."""
+"""The beginning of the names of fork servers' folders. Older versions used another word and no lock: theirs are left
+alone."""
 
 
 def main(arguments: list[str]) -> None:

@@ -75,7 +75,7 @@ class ForkServer:
 
     @property
     def alive(self) -> bool:
-        """Whether it still runs."""
+        """True if it still runs."""
         return self._process.poll() is None
 
     @property
@@ -99,7 +99,7 @@ class ForkServer:
 
 @dataclass(frozen=True)
 class Addresses:
-    """Where the fork servers listen; travels to a worker on its command line.
+    """The addresses of the fork servers; travels to a worker on its command line.
 
     Attributes:
         supervisors: For :class:`autograder.boxes.sandbox.Enclosure`. Empty where there is no sandbox.
@@ -151,7 +151,7 @@ class ForkServers:
 
     @property
     def alive(self) -> bool:
-        """Whether all of them still run."""
+        """True if all of them still run."""
         return all(process.alive for process in self._all())
 
     def stop(self) -> None:

@@ -49,7 +49,7 @@ class ForkedProcess:
 
     @property
     def alive(self) -> bool:
-        """Whether it still runs."""
+        """True if it still runs."""
         self._look(0.0)
         return self._status is None and not self._lost
 
@@ -61,7 +61,7 @@ class ForkedProcess:
 
     @property
     def lost(self) -> bool:
-        """Whether the one who watched over it is gone: then its end says nothing about what ran in it."""
+        """True if the one who watched over it is gone: then its end says nothing about what ran in it."""
         self._look(0.0)
         return self._lost
 

@@ -1,4 +1,4 @@
-"""What holds the limits of a box: cgroups where the host lets us make them, else a look at the processes now and then.
+"""The guards of a box's limits: cgroups where the host lets us make them, else a look at the processes now and then.
 
 With cgroups the operating system itself refuses a process or ends one that has too much. Without them a watch counts
 what it sees in the box's ``/proc`` several times a second and ends the box; what is faster than that is kept in bounds
@@ -69,12 +69,12 @@ class BoxGuard:
 
     @property
     def cgroups(self) -> list[str]:
-        """What a process writes 0 into before it enters a box."""
+        """The files into which a process writes 0 before it enters a box."""
         return self._group.procs
 
     @property
     def hidden_memory(self) -> bool:
-        """Whether memory may be allowed that no process is seen to have."""
+        """True if memory may be allowed that no process is seen to have."""
         return self._memory
 
     @property
@@ -156,7 +156,7 @@ class BoxGuard:
 
 @dataclass(frozen=True)
 class Use:
-    """What the processes of a box use together.
+    """The resources that the processes of a box use together.
 
     Attributes:
         threads: How many there are, a process having at least one.
@@ -266,7 +266,7 @@ class NoGuard:
 
 
 def guards() -> Mapping[str, str]:
-    """Which guard holds each limit on this host, for ``autograder doctor``: words by limit."""
+    """The guard that holds each limit on this host, for ``autograder doctor``: words by limit."""
     watched = "looked at four times a second (no cgroup can be made here)"
     return {
         "memory": _cgroup("memory") or watched,

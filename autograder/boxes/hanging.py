@@ -1,4 +1,4 @@
-"""What of a student's hangs: it is waited for once at full length, and only a little after that.
+"""Hangs in a student's code: waited for once at full length, and only a little after that.
 
 A class with an endless loop hangs in each cell that uses it, and each of them would wait its whole limit again. Which
 name it is can be told where a cell of the master's, which comes to its end with any right answer, uses exactly one name
@@ -27,7 +27,7 @@ _SHARE_OF_A_CHECK = 0.25
 
 @dataclass
 class Hangs:
-    """What has hung so far in a notebook.
+    """Names that have hung so far in a notebook.
 
     Args:
         written: The classes and functions that the student has defined.
@@ -54,7 +54,7 @@ class Hangs:
             self._hung.setdefault(used[0], title)
 
     def before(self, cell: Cell) -> tuple[str, str] | None:
-        """What a cell uses that has hung before, and the title of the cell in which it did."""
+        """The name in a cell that has hung before, and the title of the cell in which it did."""
         if not self._hung:
             return None  # as in nearly every notebook: no cell has to be parsed
         return next(((name, self._hung[name]) for name in self._used(cell) if name in self._hung), None)
@@ -66,7 +66,7 @@ class Hangs:
 
 
 def seconds_again(cell: Cell, usual: float, limits: Limits) -> float:
-    """How long a cell may take that uses what has hung before, in seconds of wall time.
+    """The limit of a cell that uses what has hung before, in seconds of wall time.
 
     Args:
         cell: The cell.

@@ -56,12 +56,12 @@ class KernelProcess(Protocol):
 
     @property
     def alive(self) -> bool:
-        """Whether it still runs."""
+        """True if it still runs."""
         ...
 
     @property
     def lost(self) -> bool:
-        """Whether nobody can tell any more what became of it."""
+        """True if nobody can tell any more what became of it."""
         ...
 
     def interrupt(self) -> None:
@@ -79,7 +79,7 @@ class KernelProcess(Protocol):
 
 @dataclass(frozen=True)
 class Channels:
-    """What a kernel is started with.
+    """The channels that a kernel is started with.
 
     Attributes:
         address: The path in the names of its sockets.
@@ -144,12 +144,12 @@ class Kernel:
 
     @property
     def alive(self) -> bool:
-        """Whether the process still runs."""
+        """True if the process still runs."""
         return self._process.alive
 
     @property
     def lost(self) -> bool:
-        """Whether the grader itself lost it: then its end says nothing about the notebook."""
+        """True if the grader itself lost it: then its end says nothing about the notebook."""
         return self._process.lost
 
     def await_ready(self) -> None:
@@ -199,7 +199,7 @@ class Kernel:
         return stopped_for
 
     def interrupt(self) -> None:
-        """What the stop button of JupyterLab does."""
+        """Interrupt the kernel, as JupyterLab's stop button does."""
         self._process.interrupt()
 
     def kill(self) -> None:
@@ -215,7 +215,7 @@ class Kernel:
         self._context.destroy(linger=0)
 
     def _await_reply(self, request: str, left: Left) -> Ended | None:
-        """How the cell ended, or None where it is still running when its time is up."""
+        """The end of the cell, or None where it is still running when its time is up."""
         reply: Mapping[str, Any] | None = None
         idle = False
         for channel, message in self._messages(left):
@@ -277,7 +277,7 @@ class Kernel:
         return self._sent > self._limits.flood_bytes
 
     def _died(self) -> Ended:
-        """Why the kernel is gone."""
+        """The reason why the kernel is gone."""
         return self._guard.reason() or Ended.KERNEL_DIED
 
     def _messages(self, left: Left) -> Iterator[tuple[zmq.Socket[bytes], dict[str, Any]]]:
@@ -385,7 +385,7 @@ def _answer(message: Mapping[str, Any], request: str) -> Mapping[str, Any]:
 
 
 def _asks_to_exit(reply: Mapping[str, Any]) -> bool:
-    """Whether ``exit()`` or ``quit()`` was called: the kernel answers first and ends a moment later."""
+    """True if ``exit()`` or ``quit()`` was called: the kernel answers first and ends a moment later."""
     payload = reply.get("payload")
     return isinstance(payload, list) and any(
         isinstance(p, Mapping) and p.get("source") == "ask_exit" for p in payload

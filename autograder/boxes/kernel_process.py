@@ -1,4 +1,4 @@
-"""What a fork of the fork server becomes: an IPython kernel on sockets that it was given.
+"""A fork of the fork server: an IPython kernel on sockets that it was given.
 
 The listening sockets come from the grader, so that no folder of the host is open to the box, and nothing in the box
 can put another socket in their place. Only two of Jupyter's five channels are served: requests and outputs. What
@@ -148,7 +148,7 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
 
 
 def _arguments() -> list[str]:
-    """What a program in a cell finds in ``sys.argv`` in JupyterLab, where some meet the kernel's own arguments."""
+    """The ``sys.argv`` that a program in a cell has in JupyterLab, where some meet the kernel's own arguments."""
     launcher = importlib.util.find_spec("ipykernel_launcher")
     name = launcher.origin if launcher is not None and launcher.origin else "ipykernel_launcher.py"
     return [name, "-f", "kernel.json"]
@@ -170,7 +170,7 @@ class _GivenSockets(IPKernelApp):
     key: bytes
 
     def init_connection_file(self) -> None:
-        """What a connection file would say."""
+        """Take the addresses that a connection file would hold."""
         self.transport, self.ip = "ipc", self.address
         self.shell_port, self.iopub_port, self.stdin_port, self.control_port, self.hb_port = 1, 2, 3, 4, 5
         self.session.key = self.key

@@ -70,7 +70,7 @@ class Limits:
 
     @property
     def memory_now(self) -> int:
-        """What a box may have now, in bytes."""
+        """The memory that a box may have now, in bytes."""
         return min(self.memory_bytes, self.beside_bytes) if self.beside else self.memory_bytes
 
 
@@ -99,7 +99,7 @@ def raise_own() -> None:
 
 
 def open_files_of_a_box(wanted: int) -> int:
-    """How many files a process in a box may have open, given what the grader may have itself: at most half of that."""
+    """The number of files that a process in a box may have open: at most half of what the grader may have."""
     own = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
     return wanted if own == resource.RLIM_INFINITY else min(wanted, own // 2)
 

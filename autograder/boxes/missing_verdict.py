@@ -82,7 +82,7 @@ def without_verdict(
     limit: float,
     hung: tuple[str, str] | None = None,
 ) -> Verdict:
-    """Why a check cell has no verdict.
+    """The reason why a check cell has no verdict.
 
     Args:
         check: The check that was to be made.

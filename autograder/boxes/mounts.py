@@ -1,4 +1,4 @@
-"""What can be seen in a box, as bubblewrap's arguments.
+"""The files that a box sees, as bubblewrap's arguments.
 
 Only what Python, ROS and a build of a workspace need, all of it read-only: the system's programs and libraries, the
 Python installation, the environment with the course's packages, and the package itself. Nothing of ``solutions/``,
@@ -30,10 +30,10 @@ USER = "student"
 USER_ID = 1000
 HOME = Path("/home") / USER
 WORK = HOME / "notebook"
-"""Where a notebook, its files and what it writes are."""
+"""The folder of a notebook, its files and what it writes."""
 
 _PROC_HIDDEN = {"kcore", "kmsg", "keys", "key-users"}
-"""What says more about the machine and its users than a program needs to know."""
+"""Files that say more about the machine and its users than a program needs to know."""
 
 ETC = "etc"
 """The folder of the scratch that no box can write to."""
@@ -127,7 +127,7 @@ def _etc(scratch: Path) -> list[str]:
 
 @functools.cache
 def etc_files() -> Mapping[str, bytes]:
-    """What is in the ``/etc`` of a box: a user, a host, the linker's and the clock's files, no name service."""
+    """The ``/etc`` of a box: a user, a host, the linker's and the clock's files, no name service."""
     files = {name: text.encode() for name, text in _ETC_FILES.items()}
     for name in _ETC_OF_THE_HOST:
         with contextlib.suppress(OSError):

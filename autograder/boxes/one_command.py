@@ -69,7 +69,7 @@ class OneCommandBox:
         furnish(self._scratch, SCRATCH_BYTES, SCRATCH_INODES)
 
     def start_of(self, command: Sequence[str], environment: Mapping[str, str]) -> tuple[list[str], list[int]]:
-        """What to start in place of a command, and the descriptors to start it with, which the caller closes.
+        """The command to start in place of another, and the descriptors to start it with, which the caller closes.
 
         Args:
             command: The command.

@@ -1,4 +1,4 @@
-"""Where a notebook runs: in boxes, or without them where somebody has asked for that.
+"""The place where a notebook runs: in boxes, or without them where somebody has asked for that.
 
 A place starts the two processes of a notebook, its kernel and its judge, and leaves nothing behind.
 """
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from autograder.boxes.limits import Limits
 
 SHARED_FOLDER = Path("/run/judge")
-"""Where the student's box sees the folder that it shares with its grader."""
+"""The path in the student's box of the folder that it shares with its grader."""
 _STUDENT, _JUDGE = "student", "judge"
 _PROGRAMS_SCRATCH_BYTES, _PROGRAMS_SCRATCH_FILES = 1_000_000, 1_000
 """Nobody writes there but the supervisor: what a program writes is in memory of its own box."""
@@ -35,7 +35,7 @@ _PROGRAMS_SCRATCH_BYTES, _PROGRAMS_SCRATCH_FILES = 1_000_000, 1_000
 
 @dataclass(frozen=True)
 class JudgeSetting:
-    """What a judge's process needs; named by the grader, because boxes know no judge.
+    """The needs of a judge's process; named by the grader, because boxes know no judge.
 
     Attributes:
         environment: More variables of its environment.
@@ -106,7 +106,7 @@ class BoxedPlace:
 
     @property
     def judge_socket(self) -> Path:
-        """Where the judge is to listen; the student's box sees the folder of this socket and nothing else of it."""
+        """The judge's socket; of the judge, the student's box sees the folder of this socket alone."""
         return self._shared / _JUDGE
 
     @property
@@ -187,7 +187,7 @@ class UnboxedPlace:
 
     @property
     def judge_socket(self) -> Path:
-        """Where the judge is to listen."""
+        """The socket on which the judge is to listen."""
         return self._folder / _JUDGE
 
     def start_kernel(self, channels: Channels) -> PlacedProcess:
@@ -236,12 +236,12 @@ class PlacedProcess:
 
     @property
     def alive(self) -> bool:
-        """Whether it still runs."""
+        """True if it still runs."""
         return self._process.alive
 
     @property
     def lost(self) -> bool:
-        """Whether nobody can tell any more what became of it, as its box went away under it."""
+        """True if nobody can tell any more what became of it, as its box went away under it."""
         return self._process.lost or (self._enclosure is not None and self._enclosure.lost)
 
     def interrupt(self) -> None:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 _TERMINAL = ("%%bash", "%%sh", "%%script")
-"""What the cell of a terminal begins with."""
+"""The beginning of a terminal's cell."""
 
 
 class Judge(Protocol):

@@ -210,7 +210,7 @@ class Enclosure:
 
     @property
     def lost(self) -> bool:
-        """Whether the supervisor is gone, and all boxes with it: then no end of a process says anything."""
+        """True if the supervisor is gone, and all boxes with it: then no end of a process says anything."""
         return self._channel.hung_up
 
     def end(self, name: str) -> int:
@@ -290,7 +290,7 @@ class Enclosure:
 
 @functools.cache
 def why_impossible() -> str:
-    """Why no sandbox is possible here and what to do about it, in one sentence; empty where one is.
+    """The reason why no sandbox is possible here and what to do, in one sentence; empty where one is.
 
     Found out by making one.
     """
@@ -317,7 +317,7 @@ def why_impossible() -> str:
 
 
 def _reason(error: str) -> str:
-    """What a refusal mostly means."""
+    """The usual meaning of a refusal."""
     apparmor = Path("/proc/sys/kernel/apparmor_restrict_unprivileged_userns")
     if os.geteuid() != 0 and apparmor.exists() and apparmor.read_text().strip() == "1":
         return (

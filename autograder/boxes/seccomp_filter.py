@@ -1,4 +1,4 @@
-"""Which system calls no program in a box may make, as a seccomp filter.
+"""The system calls that no program in a box may make, as a seccomp filter.
 
 The namespaces decide what a box can reach. The filter takes away what no answer to an exercise needs and where kernels
 had their holes: tracing other processes, mounting, namespaces in namespaces, keys, BPF, io_uring. Watching files

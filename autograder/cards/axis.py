@@ -1,4 +1,4 @@
-"""Where a moment stands from left to right: at its time, or in its turn where time stood still."""
+"""The place of a moment from left to right: at its time, or in its turn where time stood still."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MARGIN = 10.0
 SHORTEST = 0.002
 """Seconds that an axis covers at least."""
 TURNS = "one after the other"
-"""What an axis says that has no seconds."""
+"""The label of an axis without seconds."""
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,7 @@ def mimebundle(
 
 
 def waiting_bundle(title: str, doing: str) -> dict[str, str]:
-    """What stands in a card's place while there is none.
+    """The placeholder for a card that is not there yet.
 
     Args:
         title: The exercise.

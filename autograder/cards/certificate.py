@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 WORDS = "Made on your own machine, and checked by the judge there. It is not a grade."
-"""What it is worth, on each certificate."""
+"""The line on each certificate that says what it is worth."""
 _WIDTH = 42
 """Characters of the title in a line."""
 

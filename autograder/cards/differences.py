@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from autograder.verdict import Criterion
 
 ALIKE = 0.5
-"""How alike two texts must be, from 0 to 1; of two that have little in common a difference says nothing."""
+"""The likeness that two texts must have, from 0 to 1; of two that have little in common a difference says nothing."""
 LONGEST = 120
 """Characters of a text that is compared: comparing takes time in proportion to the square."""
 _QUOTED = re2.compile("“([^“”]*)”")
@@ -25,7 +25,7 @@ _PLACE = "N"
 
 
 class DiffTag(StrEnum):
-    """What a piece of the text is."""
+    """The kind of a piece of the text."""
 
     SAME = "same"
     MISSING = "missing"
@@ -49,7 +49,7 @@ class Piece:
 
 
 def difference(criterion: Criterion) -> tuple[Piece, ...]:
-    """How the first text in quotation marks that was seen differs from the first one that was expected.
+    """The difference between the first quoted text that was seen and the first that was expected.
 
     Empty where the criterion holds, where either has no such text, where they are equal or have little in common.
     """

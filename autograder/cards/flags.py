@@ -1,4 +1,4 @@
-"""Where the labels of a lane go: no label covers another, and no leader runs through one."""
+"""The places of a lane's labels: no label covers another, and no leader runs through one."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Flag:
     right: float
 
     def clear_of(self, other: Flag) -> bool:
-        """Whether the two texts do not touch and neither leader runs through the other's text."""
+        """True if the two texts do not touch and neither leader runs through the other's text."""
         if self.level == other.level:
             return self.right + 4 <= other.left or other.right + 4 <= self.left
         upper, lower = (self, other) if self.level > other.level else (other, self)

@@ -67,7 +67,7 @@ def card_html(
 
 
 def waiting_html(title: str, doing: str) -> str:
-    """What stands in a card's place while there is none: which exercise is checked, and what goes on."""
+    """The placeholder for a card that is not there yet: the exercise, and what goes on."""
     css, _ = templates()
     return _waiting().render(title=one_line(title, 160), doing=one_line(doing, 160), css=css)
 

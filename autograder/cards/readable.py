@@ -115,7 +115,7 @@ def _escaped(character: str) -> str:
 
 
 def _is_invisible(character: str) -> bool:
-    """Whether it is a control, a format character, half a surrogate pair, a line separator or none at all."""
+    """True if it is a control, a format character, half a surrogate pair, a line separator or none at all."""
     code = ord(character)
     if code & 0xFFFE == 0xFFFE or 0xFDD0 <= code <= 0xFDEF:
         return True

@@ -1,4 +1,4 @@
-"""Where everything of the traffic picture goes: pure geometry, drawn by ``traffic.html.j2``.
+"""The layout of the traffic picture: pure geometry, drawn by ``traffic.html.j2``.
 
 One picture is one part of the check: a row (lane) for each name on the graph, time from left to right. A mark
 stands at its time, also where another one stands; those that would hide each other are drawn one below the other.

@@ -16,7 +16,7 @@ _CELLS = ("/ipykernel_", "<ipython-input")
 
 @dataclass(frozen=True)
 class Place:
-    """Where a program went wrong.
+    """The place where a program went wrong.
 
     Attributes:
         where: ``"Line 11 of your cell"``, or of a file.

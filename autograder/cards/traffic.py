@@ -1,4 +1,4 @@
-"""Which moments of a check a card shows, and in which groups.
+"""The moments of a check that a card shows, in groups.
 
 A judge may have seen hundreds of messages; a card shows a few dozen. Every part of the check keeps a fair
 share, and what was left out is counted, never hidden.
@@ -48,7 +48,7 @@ class Part:
 
     @property
     def left_out(self) -> int:
-        """How many moments are not among ``moments``."""
+        """The number of moments that are not among ``moments``."""
         return sum(self.gaps.values())
 
     @property
@@ -59,21 +59,21 @@ class Part:
 
     @functools.cached_property
     def stands_still(self) -> bool:
-        """Whether time says nothing about the order: all at once or, by a clock that was moved, nearly so."""
+        """True if time says nothing about the order: all at once or, by a clock that was moved, nearly so."""
         if len({moment.t for moment in self.moments}) == 1:
             return True
         together = Counter((moment.lane, moment.t) for moment in self.moments)
         return self.simulated and max(together.values(), default=0) > _TOGETHER
 
     def when(self, index: int) -> str:
-        """When a moment was: ``"0.500 s"``; its turn, such as ``"no. 3"``, where time stood still."""
+        """The time of a moment: ``"0.500 s"``; its turn, such as ``"no. 3"``, where time stood still."""
         if self.stands_still and len(self.moments) > 1:
             return f"no. {index + 1}"
         return f"{self.moments[index].t:.3f} s"
 
     @property
     def is_worth_a_picture(self) -> bool:
-        """Whether anything was on the graph or in the log: that a program ended is told elsewhere."""
+        """True if anything was on the graph or in the log: that a program ended is told elsewhere."""
         return any(moment.lane != OWN_LANE for moment in self.moments)
 
 
@@ -96,7 +96,7 @@ class Traffic:
 
     @property
     def simulated(self) -> bool:
-        """Whether any of the times is simulated."""
+        """True if any of the times is simulated."""
         return any(part.simulated for part in self.parts)
 
 

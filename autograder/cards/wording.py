@@ -51,7 +51,7 @@ class Advice:
 
 
 def advice(verdict: Verdict) -> Advice:
-    """What a student should read first, also where the judge named no known mistake."""
+    """The advice that a student should read first, also where the judge named no known mistake."""
     if verdict.state is State.PASSED:
         return Advice("", "Well done: your code did everything that was asked for.")
     diagnosis = verdict.diagnosis
@@ -103,7 +103,7 @@ def points_before(verdict: Verdict, before: float | None) -> str:
 
 
 def tally(verdict: Verdict) -> str:
-    """How many criteria hold, such as ``"3 of 4 criteria hold"``; empty when there are none."""
+    """The number of criteria that hold, such as ``"3 of 4 criteria hold"``; empty when there are none."""
     if not verdict.criteria:
         return ""
     held = sum(criterion.passed for criterion in verdict.criteria)
@@ -116,7 +116,7 @@ def tally(verdict: Verdict) -> str:
 
 
 def fine_print(verdict: Verdict) -> list[str]:
-    """What to quote in a question or an appeal: the exercise's id, the seed, the time that the check took."""
+    """The facts to quote in a question or an appeal: the exercise's id, the seed, the time that the check took."""
     parts = [verdict.exercise]
     if verdict.seed:
         parts.append(f"seed {verdict.seed}")
@@ -131,7 +131,7 @@ def duration(seconds: float) -> str:
 
 
 def detail_heading(detail: str) -> str:
-    """What the detail is, with its most telling line: the exception at the end of a traceback."""
+    """The heading of the detail, with its most telling line: the exception at the end of a traceback."""
     last = next((line for line in reversed(detail.splitlines()) if line.strip()), "").strip()
     if TRACEBACK in detail:
         return f"The traceback, ending in: {last}"
@@ -139,7 +139,7 @@ def detail_heading(detail: str) -> str:
 
 
 def traffic_notes(shown: Traffic) -> str:
-    """What to know about the traffic that is shown: its kind of time, and what is left out."""
+    """Notes on the traffic that is shown: its kind of time, and what is left out."""
     notes = []
     if shown.simulated:
         notes.append("Simulated time: the checker moved your node's clock, so these seconds pass faster.")
@@ -173,7 +173,7 @@ def moment_in_words(moment: Moment, when: str) -> str:
 
 
 def part_in_words(part: Part) -> str:
-    """What a picture of the traffic shows, a sentence for each lane."""
+    """A picture of the traffic in words, a sentence for each lane."""
     return " ".join(_lane_in_words(part, lane) for lane in part.lanes)
 
 

@@ -1,4 +1,4 @@
-"""How a command ends: its exit code, and a clear line where it could not be done."""
+"""The end of a command: its exit code, and a clear line where it could not be done."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 NO = 1
 CANNOT = 2
 INTERRUPTED = 130
-"""What a shell says of a program that Ctrl-C ended: 128 and the signal's number."""
+"""A shell's exit code for a program that Ctrl-C ended: 128 and the signal's number."""
 
 
 def fail(message: str) -> NoReturn:

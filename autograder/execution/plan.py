@@ -1,4 +1,4 @@
-"""Which notebooks are executed, and what each has to show: a master full marks, a chapter no error."""
+"""The notebooks that are executed, and what each has to show: a master full marks, a chapter no error."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LIMITS = Limits(cell_seconds=180.0, notebook_seconds=900.0)
 
 
 class NotebookKind(StrEnum):
-    """What a notebook has to show."""
+    """The kind of a notebook, and what it has to show."""
 
     MASTER = "master"
     """Full marks."""
@@ -48,7 +48,7 @@ class Planned:
 
     @property
     def label(self) -> str:
-        """How it is called in messages, such as ``"master lab_1_2"``."""
+        """Its name in messages, such as ``"master lab_1_2"``."""
         return f"{self.kind} {self.task.notebook}"
 
 

@@ -1,4 +1,4 @@
-"""What is wrong with an executed notebook of the course."""
+"""Problems of an executed notebook of the course."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ NOTEBOOK = ".ipynb"
 
 @dataclass(frozen=True)
 class BuildReport:
-    """What a build did, or in check mode would do. Each is a tuple of files: chapter notebooks, then solutions to read.
+    """The result of a build, done or, in check mode, foreseen: chapter notebooks, then solutions to read.
 
     Attributes:
         written: Written just now.
@@ -42,7 +42,7 @@ class BuildReport:
 
     @property
     def in_step(self) -> bool:
-        """Whether the chapters are now exactly what the masters say."""
+        """True if the chapters are now exactly what the masters say."""
         return not (self.stale or self.edited or self.orphans)
 
 

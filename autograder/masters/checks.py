@@ -1,4 +1,4 @@
-"""What a check cell asks for, read from its one line of code, and what its exercise is worth."""
+"""A check cell's exercise, read from its one line of code, and the points of that."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a notebook has defined, copied into the program that is made of it.
+"""Definitions of a notebook, copied into the program that is made of them.
 
 A program of a package repeats what the student wrote in the cells above. A master says so instead of repeating it, so
 that the two cannot differ::

@@ -1,4 +1,4 @@
-"""What is said to an author whose master cannot be used."""
+"""Errors for an author whose master cannot be used."""
 
 from __future__ import annotations
 

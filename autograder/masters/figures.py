@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 REFERENCE = re.compile(r"!\[\]\((?P<path>[^)\s]+\.svg)\)")
-"""How a master shows a figure: without an alternative text, which is taken from the SVG."""
+"""A master's line that shows a figure: without an alternative text, which is taken from the SVG."""
 KEYWORD = b"Drawn from SVG"
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
-"""How a PNG begins."""
+"""The first bytes of a PNG."""
 _HEADER_LENGTH = len(SIGNATURE) + 8 + 13 + 4
 _SVG = "{http://www.w3.org/2000/svg}"
 
@@ -76,7 +76,7 @@ def attach_figures(folder: Path, markdown: str) -> tuple[str, dict[str, dict[str
 
 
 def digest(svg: bytes) -> bytes:
-    """What a PNG says about the SVG from which it was drawn."""
+    """The digest in a PNG of the SVG from which it was drawn."""
     return hashlib.sha256(svg).hexdigest().encode("ascii")
 
 

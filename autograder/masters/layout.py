@@ -1,4 +1,4 @@
-"""Where masters live and where the notebooks derived from them go."""
+"""The places of masters and of the notebooks derived from them."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def before_and_after(master: Path) -> tuple[Path | None, Path | None]:
 
 
 def chapter_path(root: Path, master: Path) -> Path:
-    """Where the chapter notebook of ``master`` belongs."""
+    """The path of the chapter notebook of ``master``."""
     return root / CHAPTERS / master.parents[1].name / f"{lab_name(master)}.ipynb"
 
 

@@ -19,7 +19,7 @@ MAGIC = re.compile(r"%%(?P<name>\w+)[ \t]*(?P<rest>.*)")
 
 @dataclass(frozen=True)
 class WrittenFile:
-    """What a ``%%writefile`` cell writes.
+    """The file that a ``%%writefile`` cell writes.
 
     Attributes:
         path: Where, relative to the notebook.
@@ -31,12 +31,12 @@ class WrittenFile:
 
     @property
     def is_python(self) -> bool:
-        """Whether the text has to be Python."""
+        """True if the text has to be Python."""
         return self.path.suffix == ".py"
 
 
 def has_magic(source: str) -> bool:
-    """Whether the cell is given to a magic instead of to Python."""
+    """True if the cell is given to a magic instead of to Python."""
     return MAGIC.match(source) is not None
 
 

@@ -29,7 +29,7 @@ kernelspec:
 
 
 class CellRole(StrEnum):
-    """What a cell is for. The values but the first are tags; of code, an author types two."""
+    """The role of a cell. The values but the first are tags; of code, an author types two."""
 
     TEXT = "text"
     """Markdown; students may write into it."""

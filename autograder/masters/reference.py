@@ -35,7 +35,7 @@ class Reference:
 
 
 def reference_source(master: Path, exercise: str, *, points: Points = exercise_points) -> Reference:
-    """What a notebook has defined when it comes to the check of ``exercise``.
+    """The source of everything that a notebook has defined before the check of ``exercise``.
 
     Solution cells are kept whole. Of given cells only imports, functions, classes and constants are kept: the
     rest demonstrates. Files are written, and where the subject is a path the shell runs what is given to it:
@@ -54,7 +54,7 @@ def reference_source(master: Path, exercise: str, *, points: Points = exercise_p
 
 
 def _kept(cell: Cell, *, shell: bool) -> Iterator[str]:
-    """What the program needs of one cell.
+    """The part of one cell that the program needs.
 
     Args:
         cell: Any cell above the check.
@@ -91,7 +91,7 @@ def _definitions(cell: Cell) -> Iterator[str]:
 
 
 def _is_constant(node: ast.stmt) -> bool:
-    """Whether it names a value and calls nothing: what a definition further down may need."""
+    """True if it names a value and calls nothing: what a definition further down may need."""
     if not isinstance(node, (ast.Assign, ast.AnnAssign)):
         return False
     targets = node.targets if isinstance(node, ast.Assign) else [node.target]

@@ -42,7 +42,7 @@ class Region:
 
 
 def mentions_a_region(source: str) -> bool:
-    """Whether a marker, well written or not, is somewhere in ``source``."""
+    """True if a marker, well written or not, is somewhere in ``source``."""
     return "BEGIN SOLUTION" in source or "END SOLUTION" in source
 
 
@@ -76,7 +76,7 @@ def find_region(source: str) -> Region:
 
 
 def find_model_answer(source: str) -> str:
-    """What stands in the region of a question that a person grades: its model answer, and how points are given.
+    """The region of a question that a person grades: its model answer, and how points are given.
 
     Raises:
         CellError: There is not exactly one well-formed region with something in it, and a question above it.
@@ -94,7 +94,7 @@ def find_model_answer(source: str) -> str:
 
 
 def _marker(lines: list[str], marker: str) -> int:
-    """Where ``marker`` stands; it must be there once, on a line of its own, spelt as it is here."""
+    """The line of ``marker``, which must be there once, on a line of its own, spelt as it is here."""
     words = marker.removeprefix("### ")
     places = [offset for offset, line in enumerate(lines) if words in line]
     if not places:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class ReleaseSteps(DeferredConfig):
-    """What ``c.GenerateAssignment.preprocessors`` of a class is set to.
+    """The value of ``c.GenerateAssignment.preprocessors`` in a class.
 
     The steps themselves come from :func:`autograder.masters.release.release_preprocessors` once nbgrader makes a
     release: to import them takes a second, which a command such as ``grade`` would spend for nothing.

@@ -1,4 +1,4 @@
-"""Whether somebody has worked in a chapter notebook, so that a build must not overwrite it."""
+"""Work of somebody's in a chapter notebook, which a build must not overwrite."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def holds_work(path: Path) -> bool:
-    """Whether the notebook has work of a person in it, beyond what a build once wrote.
+    """True if the notebook has work of a person in it, beyond what a build once wrote.
 
     A release carries the checksum of each code cell, and of each question, in its metadata: a cell that no longer
     matches was edited, code without one was added. The output of cells is no work. A file that is no notebook counts

@@ -1,1 +1,1 @@
-"""What the processes of the autograder say to each other: lines of JSON, each of a type that is named here."""
+"""The messages between the processes of the autograder: lines of JSON, each of a type that is named here."""

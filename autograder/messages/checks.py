@@ -33,7 +33,7 @@ class Ready(Message, frozen=True):
 
 
 class Met(Message, frozen=True):
-    """Whether the notebook's participant has seen what :class:`Meet` asks for."""
+    """The notebook's answer to :class:`Meet`: true if its participant has seen what that asks for."""
 
     seen: bool
 
@@ -122,7 +122,7 @@ class Exited(_RunMessage, frozen=True):
 
 
 class Stacks(_RunMessage, frozen=True, tag="stack"):
-    """Where the subject's threads are."""
+    """The stacks of the subject's threads."""
 
     text: str
 

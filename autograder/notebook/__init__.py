@@ -1,4 +1,4 @@
-"""What a notebook of the course imports: background executors and the check.
+"""The names that a notebook of the course imports: background executors and the check.
 
 Nothing here is a secret and nothing here decides a grade: the judge runs in a process of its own.
 """

@@ -142,7 +142,7 @@ def add_definition(workspace: str | Path, package: str, definition: str, needs: 
 
 
 def _no_entry_point(entry: object) -> str:
-    """What the student has to do about something that has not the form of an entry point."""
+    """The advice on something that has not the form of an entry point."""
     if isinstance(entry, str) and entry.count("=") > 1 and entry.count(":") > 1:
         return (
             f"Two entry points have run together: {entry!r}. A comma is missing between them: Python joins two texts "
@@ -190,7 +190,7 @@ def _written(entry: str) -> _Element:
 
 
 def _elements(text: str, tree: ast.Module, programs: ast.List) -> tuple[list[_Element], list[str]]:
-    """What stands in the list of a setup.py, and the comments below its last element."""
+    """The elements of a list in a setup.py, and the comments below its last element."""
     names = {
         target.id: node.value.value
         for node in tree.body

@@ -69,7 +69,7 @@ def _has_program(package: Path, name: str) -> bool:
 
 
 def _is_empty(module: Path) -> bool:
-    """Whether a module is what Lab 1.2's cell writes before anything has been copied into it."""
+    """True if a module is what Lab 1.2's cell writes before anything has been copied into it."""
     return module.is_file() and not _CLASS.search(module.read_text(encoding="utf-8"))
 
 

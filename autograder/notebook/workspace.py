@@ -31,7 +31,7 @@ MAX_LOG = 4_000
 
 @dataclass(frozen=True, repr=False)
 class WorkspaceBuild:
-    """What `build_workspace` shows at the end of a cell.
+    """The result of `build_workspace`, as a cell shows it.
 
     Attributes:
         build: How the build went.
@@ -43,7 +43,7 @@ class WorkspaceBuild:
 
     @property
     def ok(self) -> bool:
-        """Whether every package was built."""
+        """True if every package was built."""
         return self.build.ok
 
     def summary(self) -> str:

@@ -1,1 +1,1 @@
-"""How far a student is: the course page, its words for a terminal, and a notebook begun anew."""
+"""A student's progress: the course page, its words for a terminal, and a notebook begun anew."""

@@ -32,7 +32,7 @@ def page_html(standing: Standing, base: str, token: str) -> str:
 
 
 def trouble_html(message: str, base: str) -> str:
-    """What stands there where the course cannot be read.
+    """The page that is shown where the course cannot be read.
 
     Args:
         message: Why not.

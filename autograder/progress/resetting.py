@@ -21,7 +21,7 @@ class CannotReset(Exception):
 
 @dataclass(frozen=True)
 class Reset:
-    """What was done.
+    """The result of a reset.
 
     Attributes:
         notebook: Where the released notebook is now.

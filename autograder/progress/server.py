@@ -44,7 +44,7 @@ class _CourseHandler(JupyterHandler):
         return Path(named) if named else journal.place(self.notebooks)
 
     def standing(self) -> Standing:
-        """How far the student is."""
+        """The progress of the student."""
         return standing(course.root(), self.notebooks, journal.entries(self.journal))
 
     def name_in_body(self) -> str:

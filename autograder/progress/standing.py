@@ -103,7 +103,7 @@ class ChapterStanding:
 
     @property
     def done(self) -> int:
-        """How many notebooks are done."""
+        """The number of notebooks that are done."""
         return sum(one.state == "done" for one in self.notebooks)
 
     @property
@@ -114,7 +114,7 @@ class ChapterStanding:
 
 @dataclass(frozen=True)
 class Standing:
-    """How far somebody is.
+    """The progress of a student.
 
     Attributes:
         chapters: In their order.
@@ -128,7 +128,7 @@ class Standing:
 
 
 def standing(root: Path, folder: Path, entries: Sequence[Entry]) -> Standing:
-    """How far somebody is.
+    """The progress of a student.
 
     Args:
         root: The course.
@@ -168,13 +168,13 @@ def _chapter(
 
 
 def _is_changed(notebook: Path, lab: Path) -> bool:
-    """Whether a notebook was saved since it was released; not known in a course that was not handed out."""
+    """True if a notebook was saved since it was released; not known in a course that was not handed out."""
     released = course.released(lab)
     return notebook.is_file() and released.is_file() and notebook.read_bytes() != released.read_bytes()
 
 
 def notebook_path(chapter: course.Chapter, lab: Path, folder: Path) -> Path:
-    """Where a notebook is, or would be, in a folder of notebooks, which may be that of one chapter."""
+    """The path of a notebook, there or not yet, in a folder of notebooks, which may be that of one chapter."""
     alone = folder / f"{lab.name}.ipynb"
     return alone if alone.is_file() else folder / chapter.folder.name / f"{lab.name}.ipynb"
 

@@ -1,4 +1,4 @@
-"""How far a student is, as plain text for a terminal and as JSON."""
+"""A student's progress as plain text for a terminal and as JSON."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ TERMINATED = 15
 
 @dataclass(frozen=True)
 class Verb:
-    """What a module offers for one verb: the arguments it takes and what it does."""
+    """One verb of a command: its arguments and its function."""
 
     arguments: Callable[[argparse.ArgumentParser], None]
     main: Callable[[argparse.Namespace], Outcome]

@@ -50,7 +50,7 @@ rmw forgets whose endpoints are whose when one of two nodes of the same name is 
 
 @dataclass(frozen=True)
 class Graph:
-    """What is known at one moment.
+    """The graph as it is known at one moment.
 
     Attributes:
         met: The participants of ROS of which writers and readers are known, by their GUID prefixes.

@@ -27,7 +27,7 @@ _EVERYBODYS = frozenset({"/parameter_events", "/rosout"})
 
 @dataclass
 class Findings:
-    """What one check found."""
+    """The findings of one check."""
 
     errors: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)

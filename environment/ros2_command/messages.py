@@ -19,7 +19,7 @@ _NESTED = re.compile(r"^sequence<(?P<item>[^,]+)(?:, (?P<bound>\d+))?>$|^(?P<fix
 
 @dataclass(frozen=True)
 class Shortening:
-    """How to shorten what is shown.
+    """The way in which shown values are shortened.
 
     Attributes:
         length: elements or characters after which a value is cut; None for no limit.

@@ -24,7 +24,7 @@ class NodeName:
 
     @property
     def hidden(self) -> bool:
-        """Whether lists leave it out (the command's own node is such a one)."""
+        """True if lists leave it out (the command's own node is such a one)."""
         return not self.name or self.name.startswith("_")
 
 

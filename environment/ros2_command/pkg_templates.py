@@ -12,7 +12,7 @@ CMAKE_TEST_DEPENDENCIES = ("ament_lint_auto", "ament_lint_common")
 
 @dataclass(frozen=True)
 class Package:
-    """What the command line says about a new package."""
+    """A new package, as the command line describes it."""
 
     name: str
     build_type: str

@@ -1,4 +1,4 @@
-"""Who takes part in a domain on this machine, as the operating system knows it.
+"""The participants of a domain on this machine, as the operating system knows it.
 
 Each DDS participant holds a UDP port of its domain, so who there is to meet is known before anybody is met.
 """

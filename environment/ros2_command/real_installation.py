@@ -1,4 +1,4 @@
-"""Where a real ros2cli is installed it is the one that runs."""
+"""The real ros2cli, which runs where it is installed."""
 
 from __future__ import annotations
 

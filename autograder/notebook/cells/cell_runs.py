@@ -1,4 +1,4 @@
-"""Which cell of the notebook is running, and whether it has run before.
+"""The cell of the notebook that is running, and whether it has run before.
 
 JupyterLab names the cell in each request to run it (``cellId`` in the request's metadata, handed on by
 IPython to ``pre_run_cell``). Front ends that do not, such as nbclient and the console, leave the cell's text
@@ -30,7 +30,7 @@ class CellRun:
     number: int
 
     def is_later_run_of(self, other: CellRun | None) -> bool:
-        """Whether this is the same cell, run again."""
+        """True if this is the same cell, run again."""
         return other is not None and self.cell == other.cell and self.number > other.number
 
 

@@ -41,7 +41,7 @@ class FailedCells:
         shell.set_custom_exc((NameError,), self._show_name_error)
 
     def why_missing(self, name: str) -> str:
-        """Why the newest code for a class or function did not come to be, with the error; empty where it did."""
+        """The reason why the newest code of a class or function did not run, with the error; empty where it did."""
         failure = self._failures.get(name)
         if failure is None:
             return ""

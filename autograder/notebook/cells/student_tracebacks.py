@@ -30,7 +30,7 @@ _LIBRARIES = _library_folders()
 
 
 def is_students(filename: str) -> bool:
-    """Whether a file, or a notebook's cell, is the student's own code."""
+    """True if a file, or a notebook's cell, is the student's own code."""
     return not filename.startswith("<frozen") and not filename.startswith(_LIBRARIES)
 
 

@@ -1,4 +1,4 @@
-"""What a subject says while it is checked: its log lines and what it prints, told to the judge and kept off the cell.
+"""A subject's log lines and output while it is checked, told to the judge and kept off the cell.
 
 Only threads that began with the check are captured, so that a demonstration node that still runs in the background is
 not taken for the subject.
@@ -62,7 +62,7 @@ class CapturedOutput:
             os.close(saved)
 
     def stacks(self) -> str:
-        """Where each captured thread is, innermost call first, in the form of Python's faulthandler."""
+        """The stack of each captured thread, innermost call first, in the form of Python's faulthandler."""
         frames = sys._current_frames()
         lines = []
         for thread in threading.enumerate():
@@ -76,7 +76,7 @@ class CapturedOutput:
         return "\n".join(lines)
 
     def is_captured(self) -> bool:
-        """Whether the thread that asks is one of the subject's: it began with the check."""
+        """True if the thread that asks is one of the subject's: it began with the check."""
         return threading.get_ident() not in self._others
 
     def _silence_compiled_code(self) -> None:

@@ -1,4 +1,4 @@
-"""Where a check's card is shown: one place under the cell, from its first moment to its last.
+"""The place of a check's card: one place under the cell, from its first moment to its last.
 
 While a check goes on, the card of the check before stays in that place and says so, and where there is none a line
 tells what goes on: the page does not jump. A card whose class or function was defined anew is dimmed and says why.
@@ -131,12 +131,12 @@ class CardDisplay:
 
 
 def is_live() -> bool:
-    """Whether somebody may be looking: a notebook's kernel, and neither a grader's nor Validate's."""
+    """True if somebody may be looking: a notebook's kernel, and neither a grader's nor Validate's."""
     return notebook_shell() is not None and not os.environ.get(SOCKET_VARIABLE) and not is_validating()
 
 
 def is_validating() -> bool:
-    """Whether nbgrader's Validate runs this notebook."""
+    """True if nbgrader's Validate runs this notebook."""
     return os.environ.get(VALIDATING) == "1"
 
 

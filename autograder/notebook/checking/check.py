@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class Place(Protocol):
-    """Where a check's card is shown."""
+    """The place of a check's card."""
 
     def doing(self, what: str) -> None:
         """Say what goes on, in a few words."""
@@ -167,7 +167,7 @@ def _last_words(exercise: str, words: messages.FromJudge) -> Verdict:
 
 
 def _retold(tell: Tell, card: Place) -> Tell:
-    """What a program says goes to the judge; its last line tells who waits what goes on, such as a build."""
+    """Return a function that tells the judge what a program says and shows its last line on the card."""
 
     def told(message: Message) -> None:
         if isinstance(message, messages.Output) and message.text.strip() and not message.text.startswith("@"):
@@ -178,6 +178,6 @@ def _retold(tell: Tell, card: Place) -> Tell:
 
 
 def what_to_pass(exercise: str, subject: Any, call: str = "check") -> str:
-    """What to write instead of a subject that is none."""
+    """The advice for a subject that is none."""
     kind = type(subject).__name__
     return f"{call}({exercise!r}, …) takes your class or function itself, without parentheses after it, not a {kind}"

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from autograder.messages.lines import Message
 
 SOCKET_VARIABLE = "AUTOGRADER_JUDGE_SOCKET"
-"""Where a grader tells the kernel which judge to use."""
+"""The variable in which a grader names the kernel's judge."""
 MAX_TEXT = 4_000
 """Characters of one text of the subject's that the judge looks at; more at once would end the conversation."""
 START_LIMIT = 60.0
@@ -107,7 +107,7 @@ class OwnJudge:
 
     @property
     def alive(self) -> bool:
-        """Whether the process runs and is this kernel's, not one inherited by a fork."""
+        """True if the process runs and is this kernel's, not one inherited by a fork."""
         return self._pid == os.getpid() and self._process.poll() is None
 
     def stop(self) -> None:

@@ -1,4 +1,4 @@
-"""What becomes of a check in a student's own notebook: a line in their journal, and a card at the chapter's end."""
+"""The trace of a check in a student's own notebook: a line in their journal, and a card at the chapter's end."""
 
 from __future__ import annotations
 

@@ -81,7 +81,7 @@ class PathRun:
 
 
 def is_path(subject: object) -> bool:
-    """Whether a subject is a path: a text or a ``pathlib.Path``."""
+    """True if a subject is a path: a text or a ``pathlib.Path``."""
     return isinstance(subject, (str, Path))
 
 

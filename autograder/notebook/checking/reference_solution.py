@@ -9,7 +9,7 @@ from autograder.cards.solution import Solution
 
 
 def solution_of(exercise: str) -> Solution | None:
-    """What may be read with full marks; None where it is not there. A grader's box sees no course, and so none.
+    """The reference solution, for full marks; None where it is not there. A grader's box sees no course, and so none.
 
     Args:
         exercise: The exercise's id.

@@ -42,7 +42,7 @@ _PLACES = (
     (Client, "call"),
     (rclpy, "spin_until_future_complete"),
 )
-"""What is replaced, and put back."""
+"""Functions that are replaced, and put back."""
 
 
 class ShorterWaits:
@@ -67,7 +67,7 @@ class ShorterWaits:
         self.begin_run()
 
     def begin_run(self, *, factor: float = 1.0, spare: float = 0.0) -> None:
-        """What holds from now on."""
+        """Begin a run with this factor and these seconds to leave out."""
         self.factor, self.spare = factor, spare
         self._calls = 0
         self._futures: weakref.WeakSet[Any] = weakref.WeakSet()
@@ -129,7 +129,7 @@ class ShorterWaits:
     def _deadline(
         self, timeout_sec: float | None, ready: Callable[[], bool], usual_sleep: Callable[[float], None]
     ) -> float:
-        """When a wait that begins now is over; what can be left out of it is left out, and told."""
+        """The end of a wait that begins now; what can be left out of it is left out, and told."""
         left = math.inf if timeout_sec is None else timeout_sec
         if self.spare > 0.0 and left > 0.0 and self._is_subject() and not ready():
             spared = min(left, self.spare)

@@ -1,4 +1,4 @@
-"""What nbgrader's Validate says of a check.
+"""The words of nbgrader's Validate about a check.
 
 Validate runs the notebook and shows, for each check without full marks, the error of its cell. A cell that has none
 is called "Partial credit; passed some but not all", also one with no points at all. So, while it validates, such a

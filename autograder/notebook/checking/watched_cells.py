@@ -49,7 +49,7 @@ class Watch:
     _here: contextvars.Context = field(default_factory=contextvars.copy_context)
 
     def is_defined_anew(self, subject: Any) -> bool:
-        """Whether this is another class or function than the one seen last."""
+        """True if this is another class or function than the one seen last."""
         return subject is not self.subject and (inspect.isclass(subject) or inspect.isfunction(subject))
 
     def begin(self, subject: Any) -> None:

@@ -51,12 +51,12 @@ class Background:
 
     @property
     def running(self) -> bool:
-        """Whether the nodes spin."""
+        """True if the nodes spin."""
         return self._threads.running
 
     @property
     def errors(self) -> tuple[CallbackError, ...]:
-        """What went wrong in callbacks so far, each error once with its count."""
+        """The errors of callbacks so far, each error once with its count."""
         return self._errors.all
 
     def start(self) -> None:

@@ -1,4 +1,4 @@
-"""What a student sees of an exception in a callback: the traceback once, then a count."""
+"""A callback's exception as the student sees it: the traceback once, then a count."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ def _report(seen: CallbackError, failure: Failure) -> str:
 
 
 def _hints(failure: Failure) -> list[str]:
-    """What to do about an error that rclpy itself raised after, or instead of, the student's callback."""
+    """The advice on an error that rclpy itself raised after, or instead of, the student's callback."""
     if isinstance(failure.entity, Timer) and failure.entity.callback is None:
         return [
             "The timer has None for a callback: the method was called when the timer was made, and what it "
@@ -143,7 +143,7 @@ def _likely_callback(node: Node | None) -> str:
 
 
 def describe(entity: Any) -> str:
-    """Whose callback it was, in words."""
+    """The owner of the callback, in words."""
     if isinstance(entity, Timer):
         return f"its timer (every {entity.timer_period_ns / 1e9:g} s)"
     if isinstance(entity, Subscription):

@@ -97,7 +97,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 class Spinning:
-    """What ``spinning(...)`` gives: to be used in a ``with`` statement."""
+    """The result of ``spinning(...)``, for a ``with`` statement."""
 
     def __init__(self, nodes: tuple[Node, ...], threads: int) -> None:
         self._label = ", ".join(map(node_label, nodes))

@@ -1,4 +1,4 @@
-"""Which nodes there are in this kernel, and which run of which cell made them.
+"""The nodes in this kernel, and the run of a cell that made each.
 
 rclpy keeps no list of its nodes, and a node that was made and forgotten lives until Python happens to collect
 it: a service of an earlier run of the cell goes on swallowing requests. So each node is noted as it comes
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NodeIdentity:
-    """What tells nodes apart: their full name, on one context's domain.
+    """The identity of a node: its full name, on one context's domain.
 
     Attributes:
         name: The node's name with its namespace, such as ``"/robot/talker_node"``.
@@ -106,7 +106,7 @@ class MadeNodes:
 
 
 def _identity_to_be(node_name: str, options: dict[str, Any]) -> NodeIdentity:
-    """What a node made with these options of ``Node.__init__`` will be called."""
+    """The name that a node made with these options of ``Node.__init__`` will have."""
     namespace = str(options.get("namespace") or "").strip("/")
     return NodeIdentity(
         name="/".join(["", *filter(None, [namespace]), str(node_name)]),
@@ -115,7 +115,7 @@ def _identity_to_be(node_name: str, options: dict[str, Any]) -> NodeIdentity:
 
 
 def _has_begun(node: Node) -> bool:
-    """Whether the node is neither destroyed nor gave up half-way through its ``__init__``."""
+    """True if the node is neither destroyed nor gave up half-way through its ``__init__``."""
     try:
         return not is_destroyed(node)
     except AttributeError:

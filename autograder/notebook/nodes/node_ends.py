@@ -46,7 +46,7 @@ def node_label(node: Any) -> str:
 
 
 def is_destroyed(node: Node) -> bool:
-    """Whether the node was destroyed."""
+    """True if the node was destroyed."""
     try:
         with node.handle:
             return False

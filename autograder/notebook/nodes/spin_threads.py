@@ -55,7 +55,7 @@ class CallbackBrokenOff(BaseException):
 
 
 class Ending(Enum):
-    """Why nodes no longer spin."""
+    """The reason why nodes no longer spin."""
 
     STOPPED = "stopped"
     ROS_SHUT_DOWN = "ROS was shut down"
@@ -142,16 +142,16 @@ class SpinThreads:
 
     @property
     def running(self) -> bool:
-        """Whether the nodes are spun and nobody has asked to stop."""
+        """True if the nodes are spun and nobody has asked to stop."""
         return self._threads[0].is_alive() and not self._stop.is_set()
 
     @property
     def ending(self) -> Ending:
-        """Why it ended; only of use when it is not running."""
+        """The reason why it ended; only of use when it is not running."""
         return self._ending
 
     def is_own_thread(self) -> bool:
-        """Whether the caller is one of the callbacks."""
+        """True if the caller is one of the callbacks."""
         return threading.current_thread() in self._threads
 
     def start(self) -> None:
@@ -316,7 +316,7 @@ class SpinThreads:
         self._on_failure(Failure(error, entity, node, goes_on=not self._stop.is_set()))
 
     def _is_of_the_end(self, error: BaseException, running: _Running) -> bool:
-        """Whether a callback failed only because its node was stopped in the midst of a healthy call."""
+        """True if a callback failed only because its node was stopped in the midst of a healthy call."""
         waited = time.monotonic() - running.since
         return self._stop.is_set() and isinstance(error, NodeEndedError) and waited < _LONG_WAIT
 
@@ -327,7 +327,7 @@ def _raise_in_thread(ident: int, error: type[BaseException]) -> None:
 
 
 def _traceback_of(frame: FrameType | None) -> TracebackType | None:
-    """Where a running thread is, in the form in which exceptions carry it."""
+    """The traceback of a running thread, in the form in which exceptions carry it."""
     traceback = None
     while frame is not None:
         traceback = TracebackType(traceback, frame, frame.f_lasti, frame.f_lineno)

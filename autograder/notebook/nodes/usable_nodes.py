@@ -1,4 +1,4 @@
-"""Whether what a student wants to spin can be spun; if not, an error that names the mistake."""
+"""A check of what a student wants to spin: an error names the mistake where that cannot be spun."""
 
 from __future__ import annotations
 

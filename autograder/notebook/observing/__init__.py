@@ -1,1 +1,1 @@
-"""What a student sees of the running graph: live pictures, plots and recordings."""
+"""The running graph for students: live pictures, plots and recordings."""

@@ -1,4 +1,4 @@
-"""Where the boxes and arrows of a graph go: in columns, from what gives to what takes.
+"""The layout of a graph's boxes and arrows: in columns, from what gives to what takes.
 
 igraph decides which arrows close a circle, which box is in which column, in which order, and by which way a long arrow
 passes the columns between (Sugiyama's layered drawing). Here it becomes pixels: each arrow has a point of its own on
@@ -18,7 +18,7 @@ Point = tuple[float, float]
 """Pixels along the way that most arrows take, and beside it."""
 
 SWEEPS = 100
-"""How often igraph goes through the columns to have fewer arrows cross."""
+"""The number of times that igraph goes through the columns to have fewer arrows cross."""
 GAP_BESIDE = 24
 """Pixels between two boxes of a column."""
 _PORTS = 0.72

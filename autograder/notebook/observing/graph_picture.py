@@ -27,7 +27,7 @@ _GAP_ALONG = 52
 _GAP_ALONG_DOWN = 34
 _MARGIN = 12
 _PAGE = 860
-"""What a notebook's column takes; a wider picture is drawn from top to bottom."""
+"""The width of a notebook's column; a wider picture is drawn from top to bottom."""
 
 _STYLE = """
 .ground { fill: #fff; }
@@ -89,7 +89,7 @@ class GraphPicture:
 
     @property
     def is_moving(self) -> bool:
-        """Whether anything flows in it."""
+        """True if anything flows in it."""
         return any(self.rates.values())
 
     def sentences(self) -> list[str]:

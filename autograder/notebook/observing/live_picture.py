@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 GONE = (InvalidHandle, RCLError, NotInitializedException, ExternalShutdownException)
-"""What a node's methods raise where the node was destroyed or ROS was shut down meanwhile."""
+"""The errors of a node's methods where the node was destroyed or ROS was shut down meanwhile."""
 
 
 class Pictures(Protocol):
-    """What is to be seen."""
+    """The pictures to be shown."""
 
     name: str
     """Of the node that looks; names that begin with an underscore are hidden in ROS."""
@@ -32,13 +32,13 @@ class Pictures(Protocol):
     """Seconds between two looks."""
 
     def first(self) -> Any:
-        """What is shown at once."""
+        """The first picture."""
 
     def next(self, node: Node) -> Any:
-        """What is to be shown now; None where nothing has changed."""
+        """The next picture; None where nothing has changed."""
 
     def last(self) -> Any:
-        """What stays when nobody looks any more; None where that is what is shown."""
+        """The picture that stays at the end; None where that is what is shown."""
 
 
 class LivePicture:
@@ -68,7 +68,7 @@ class LivePicture:
 
     @property
     def running(self) -> bool:
-        """Whether the picture is still kept up to date."""
+        """True if the picture is still kept up to date."""
         return self._thread is not None and self._thread.is_alive()
 
     def start(self) -> None:

@@ -109,7 +109,7 @@ class Recording:
         self._file.close()
 
     def __repr__(self) -> str:
-        """What was recorded, in a line."""
+        """The recording in one line."""
         listed = ", ".join(f"{count} on {topic}" for topic, count in sorted(self.counts.items()))
         return f"{self._path}: {listed or 'no messages'}"
 

@@ -40,7 +40,7 @@ _EVERY_SERVICE = {
 
 
 class ChannelKind(StrEnum):
-    """What connects nodes."""
+    """The kind of a connection of nodes."""
 
     TOPIC = "topic"
     SERVICE = "service"
@@ -73,7 +73,7 @@ class End:
 
 @dataclass(frozen=True)
 class RosGraph:
-    """What one look at the graph has shown, each in order of the names."""
+    """The graph at one look, each part in order of the names."""
 
     nodes: tuple[str, ...]
     ends: tuple[End, ...]
@@ -138,7 +138,7 @@ def hidden_node(name: str) -> Node:
 
 
 def look(node: Node) -> RosGraph:
-    """What one node knows of the graph at this moment, hidden nodes left out."""
+    """The graph as one node knows it at this moment, hidden nodes left out."""
     pairs = [
         (name, space) for name, space in node.get_node_names_and_namespaces() if not name.startswith("_")
     ]

@@ -1,4 +1,4 @@
-"""How many messages topics carry, counted without waking up for each of them."""
+"""The traffic of topics, counted without waking up for each of them."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def message_class(type_name: str) -> Any:
 
 
 def _taken(subscription: Subscription) -> int:
-    """How many messages had arrived."""
+    """The number of messages that had arrived."""
     count = 0
     with subscription.handle:
         while count < MOST and subscription.handle.take_message(subscription.msg_type, True) is not None:

@@ -1,4 +1,4 @@
-"""How the robot moves: it turns, it rolls forward, and it stops at a wall."""
+"""The motion of the robot: it turns, it rolls forward, and it stops at a wall."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _STEP = 0.05
 
 @dataclass(frozen=True)
 class Pose:
-    """Where the robot is: metres, and radians to the left of the x axis."""
+    """The place of the robot: metres, and radians to the left of the x axis."""
 
     x: float
     y: float
@@ -39,13 +39,13 @@ START = Pose(1.0, 2.0, 0.0)
 
 @dataclass(frozen=True)
 class Velocity:
-    """What it is told to do: metres per second forward, radians per second to the left."""
+    """The command to the robot: metres per second forward, radians per second to the left."""
 
     forward: float = 0.0
     turn: float = 0.0
 
     def within_limits(self) -> Velocity:
-        """What the motors can do of it; what is no number is no movement."""
+        """The command within the motors' limits; no movement for what is no number."""
         return Velocity(_limited(self.forward, FASTEST), _limited(self.turn, FASTEST_TURN))
 
 
@@ -89,7 +89,7 @@ def move(pose: Pose, velocity: Velocity, seconds: float, room: Room) -> Moved:
 
 
 def towards(pose: Pose, goal: tuple[float, float]) -> Velocity:
-    """What to do next on the way to a point: turn first, then roll."""
+    """The next command on the way to a point: turn first, then roll."""
     off = _wrapped(math.atan2(goal[1] - pose.y, goal[0] - pose.x) - pose.heading)
     if abs(off) > 0.3:
         return Velocity(0.0, math.copysign(1.2, off))

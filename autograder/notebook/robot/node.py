@@ -33,7 +33,7 @@ FARTHEST = 10.0
 
 @dataclass(frozen=True)
 class RobotState:
-    """What there is to see of the robot at one moment.
+    """The robot's visible state at one moment.
 
     Attributes:
         pose: Where it is.
@@ -71,7 +71,7 @@ class RobotNode(Node):
 
     @property
     def state(self) -> RobotState:
-        """What there is to see now; to be asked from any thread."""
+        """The visible state now; safe from any thread."""
         return self._state
 
     def _obey(self, command: Twist) -> None:
@@ -111,7 +111,7 @@ class RobotNode(Node):
 
 
 def odometry(state: RobotState, now: Time) -> Odometry:
-    """Where the robot is, as a message."""
+    """The robot's odometry, as a message."""
     message = Odometry()
     message.header.stamp, message.header.frame_id = now.to_msg(), "odom"
     message.child_frame_id = "base_link"
@@ -124,7 +124,7 @@ def odometry(state: RobotState, now: Time) -> Odometry:
 
 
 def laser_scan(state: RobotState, now: Time) -> LaserScan:
-    """What the robot sees, as a message."""
+    """The robot's laser scan, as a message."""
     message = LaserScan()
     message.header.stamp, message.header.frame_id = now.to_msg(), "base_link"
     message.angle_min, message.angle_increment = 0.0, math.tau / RAYS

@@ -39,7 +39,7 @@ class Wall:
 
 @dataclass(frozen=True)
 class Room:
-    """What the robot can bump into.
+    """The walls around the robot.
 
     Attributes:
         width: Metres.

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 NAME = "robot"
 """Of the background: a second run of the cell takes the place of the first."""
 MINUTES = 30.0
-"""How long a picture is kept up to date."""
+"""The time for which a picture is kept up to date."""
 PERIOD = 0.2
 """Seconds between two pictures, where something has changed."""
 _TRAIL = 150
@@ -43,12 +43,12 @@ class LiveRobot:
 
     @property
     def running(self) -> bool:
-        """Whether the robot obeys and tells where it is."""
+        """True if the robot obeys and tells where it is."""
         return self._background.running
 
     @property
     def state(self) -> RobotState:
-        """Where it is, how it moves and what it sees."""
+        """Its place, its motion and what its laser sees."""
         return self._node.state
 
     def show(self) -> None:

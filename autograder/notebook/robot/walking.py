@@ -63,7 +63,7 @@ class Walking:
         )
 
     def next(self, pose: Pose, bumped: bool) -> Velocity | None:
-        """What to do in the next step; None where there is no way to walk.
+        """The command for the next step; None where there is no way to walk.
 
         Args:
             pose: Where the robot is.

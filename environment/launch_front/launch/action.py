@@ -1,4 +1,4 @@
-"""What a launch description is made of."""
+"""The parts of a launch description."""
 
 from __future__ import annotations
 

@@ -42,21 +42,21 @@ def _about(kind: type, target: Any) -> Callable[[Any], bool]:
 
 
 class OnProcessStart(EventHandler):
-    """When a process has been started."""
+    """The handler for the start of a process."""
 
     def __init__(self, *, on_start: Any, target_action: Any = None, **kwargs: Any) -> None:
         super().__init__(matcher=_about(ProcessStarted, target_action), entities=on_start, **kwargs)
 
 
 class OnProcessExit(EventHandler):
-    """When a process has ended."""
+    """The handler for the end of a process."""
 
     def __init__(self, *, on_exit: Any, target_action: Any = None, **kwargs: Any) -> None:
         super().__init__(matcher=_about(ProcessExited, target_action), entities=on_exit, **kwargs)
 
 
 class OnProcessIO(EventHandler):
-    """When a process has written something. The functions get the event alone."""
+    """The handler for output of a process. The functions get the event alone."""
 
     def __init__(
         self,
@@ -75,7 +75,7 @@ class OnProcessIO(EventHandler):
 
 
 class OnShutdown(EventHandler):
-    """When the launch ends."""
+    """The handler for the end of the launch."""
 
     def __init__(self, *, on_shutdown: Any, **kwargs: Any) -> None:
         super().__init__(matcher=lambda event: isinstance(event, Shutdown), entities=on_shutdown, **kwargs)

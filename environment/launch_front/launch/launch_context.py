@@ -1,4 +1,4 @@
-"""What is known while a launch runs: arguments, environment, handlers, and who does the work."""
+"""The state of a running launch: arguments, environment, handlers, and who does the work."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class _Scope:
-    """What a scoped group gives back at its end."""
+    """The settings that a scoped group gives back at its end."""
 
     configurations: dict[str, str]
     environment: dict[str, str]

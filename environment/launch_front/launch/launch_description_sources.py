@@ -131,7 +131,7 @@ def get_launch_description_from_any_launch_file(path: str) -> LaunchDescription:
 
 
 class LaunchDescriptionSource:
-    """Where a launch description comes from."""
+    """The source of a launch description."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""What a launch shows on the screen and writes into its log folder, in the form of Jazzy's launch."""
+"""The output of a launch, on the screen and in its log folder, in the form of Jazzy's launch."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _ALIASES: Mapping[str, Mapping[str, set[str]]] = {
 
 @dataclass(frozen=True)
 class OutputPlan:
-    """Where the lines of a process go.
+    """The places where the lines of a process go.
 
     Attributes:
         places: for stdout and stderr, which of screen and log get a line.

@@ -144,7 +144,7 @@ class PythonExpression(Substitution):
 
 
 class Command(Substitution):
-    """What a command prints."""
+    """The output of a command."""
 
     def __init__(self, command: SomeSubstitutionsType, *, on_stderr: SomeSubstitutionsType = "fail") -> None:
         self._command = normalize(command)
@@ -290,7 +290,7 @@ class _Pair(Substitution):
 
 
 class AndSubstitution(_Pair):
-    """Whether both are true."""
+    """True if both are true."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return true or false."""
@@ -298,7 +298,7 @@ class AndSubstitution(_Pair):
 
 
 class OrSubstitution(_Pair):
-    """Whether one is true."""
+    """True if one is true."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return true or false."""
@@ -306,7 +306,7 @@ class OrSubstitution(_Pair):
 
 
 class EqualsSubstitution(_Pair):
-    """Whether two texts are equal."""
+    """True if two texts are equal."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return true or false."""
@@ -315,7 +315,7 @@ class EqualsSubstitution(_Pair):
 
 
 class NotEqualsSubstitution(_Pair):
-    """Whether two texts differ."""
+    """True if two texts differ."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return true or false."""

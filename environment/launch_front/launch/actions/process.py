@@ -25,7 +25,7 @@ Variables = Mapping[SomeSubstitutionsType, SomeSubstitutionsType]
 
 
 class _Described:
-    """What `output_format` can say of a process, as `this.process_description.final_name`."""
+    """The facts of a process that `output_format` can use, as `this.process_description.final_name`."""
 
     final_name = ""
     final_cmd: list[str] = []  # noqa: RUF012 (replaced, never changed)

@@ -1,4 +1,4 @@
-"""What happens during a launch, for event handlers."""
+"""The events of a launch, for event handlers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What holds for all nodes that follow in the same group."""
+"""Settings for all nodes that follow in the same group."""
 
 from __future__ import annotations
 
