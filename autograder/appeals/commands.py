@@ -95,7 +95,7 @@ def save_bag(seen: Kept, path: Path) -> str:
 
 
 def _lines(appeal: Appeal, again: Replay) -> Iterator[str]:
-    """What came of a replay, the answer first."""
+    """The result of a replay in lines, the answer first."""
     then = again.then
     at = datetime.fromtimestamp(appeal.seen.at, tz=UTC)
     yield f"{then.exercise} by {appeal.student}, checked {at:%Y-%m-%d %H:%M:%S} UTC with course {appeal.course[:8]}"

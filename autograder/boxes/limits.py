@@ -10,7 +10,7 @@ from dataclasses import dataclass
 Left = Callable[[], float]
 """The seconds that are left; none or fewer at the end."""
 Patient = Callable[[float], Left]
-"""What says how long a number of seconds lasts; it begins with the call."""
+"""A function from a number of seconds to the time that is left of them, from the call on."""
 
 
 @dataclass(frozen=True)
