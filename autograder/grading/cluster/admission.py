@@ -35,7 +35,7 @@ class Forged(ValueError):
 
 
 def admitted_offer(data: bytes) -> Offer:
-    """What a worker offers.
+    """The offer of a worker, checked.
 
     Raises:
         Forged: It is none.

@@ -1,4 +1,4 @@
-"""What a Dask worker is asked to call, by name: bytes in, bytes out.
+"""Functions that a Dask worker calls by name: bytes in, bytes out.
 
 Without an import of its own, since the client process has to name these functions too, and is to hold little else.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 
 def offer_as_json(slots: int) -> bytes:
-    """What the worker offers, as JSON of an :class:`autograder.grading.cluster.messages.Offer`.
+    """The worker's offer, as JSON of an :class:`autograder.grading.cluster.messages.Offer`.
 
     Args:
         slots: Notebooks at once: the threads that Dask gives it.

@@ -22,7 +22,7 @@ _PLAIN |= {"set", "str", "tuple"}
 
 
 class Inert(Exception):
-    """What became of an object whose class was not made here. Its class has the name of the one that was meant."""
+    """A stand-in for an object whose class was not made here. Its class has the name of the one that was meant."""
 
     def __call__(self, *_: Any, **__: Any) -> Any:
         """Nothing happens."""

@@ -1,4 +1,4 @@
-"""What passes between the grader and the client process, one line of JSON a message, and what a worker offers.
+"""The messages between the grader and its client process, one line of JSON each, and a worker's offer.
 
 Orders and answers are bytes to the client process: it carries them and never looks inside.
 """
@@ -9,7 +9,7 @@ import msgspec
 
 
 class Offer(msgspec.Struct, frozen=True):
-    """What a worker says of itself before it gets work.
+    """A worker's description of itself before it gets work.
 
     Attributes:
         version: Stands for the course, as :func:`autograder.grading.rebuilding.course_version.course_version` has it.
@@ -25,7 +25,7 @@ class Offer(msgspec.Struct, frozen=True):
 
 
 class Order(msgspec.Struct, frozen=True):
-    """What a worker is to do.
+    """An order to a worker.
 
     Attributes:
         task: The task, as JSON.

@@ -1,4 +1,4 @@
-"""Which workers are trusted with a task, which task is where, and what becomes of it when its worker is gone."""
+"""The workers that are trusted with tasks, the place of each task, and the tasks of workers that are gone."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 ATTEMPTS = 3
 """A task is given up after so many workers have died with it: it may be what kills them."""
 _RETURN_SECONDS = 60.0
-"""How long to wait for a worker when none is left: one that died is often started again."""
+"""The time to wait for a worker when none is left: one that died is often started again."""
 _EXTRA_SECONDS = 90.0
 """On top of a task's own limits, before its worker counts as gone."""
 _MOST_IN_FLIGHT = 2_000
@@ -173,7 +173,7 @@ class Pool:
         self._look_ahead(jobs)
 
     def _next_for(self, address: str, worker: _Worker, jobs: Iterator[_Job]) -> _Job | None:
-        """What a worker gets next. Of tasks that were lost before only one at a time, and rather not those it lost.
+        """The next task of a worker. Of tasks that were lost before only one at a time, and rather not those it lost.
 
         One of them may be what ends workers, and the other one must not be lost with it again.
         """

@@ -1,4 +1,4 @@
-"""What a Dask worker does with an order.
+"""The work of a Dask worker on an order.
 
 A worker is given one task at a time and nothing beside it: no class, no secret, no name of a student.
 """

@@ -30,7 +30,7 @@ NAME = "report.html"
 
 @dataclass(frozen=True)
 class _Person:
-    """How a student is shown.
+    """A student, as the page shows them.
 
     Attributes:
         shown: The name, or a number where names are left out.
@@ -119,7 +119,7 @@ def _cell(row: Row | None) -> str:
 
 
 def _progress(directory: ClassDirectory, table: ClassTable) -> list[figures.Progress]:
-    """Who handed in again after a grading, those who gained most first."""
+    """The students who handed in again after a grading, those who gained most first."""
     found = []
     for student in table.students:
         with contextlib.suppress(GradingError):  # nobody has graded anything of theirs
@@ -128,7 +128,7 @@ def _progress(directory: ClassDirectory, table: ClassTable) -> list[figures.Prog
 
 
 def _times(directory: ClassDirectory, table: ClassTable) -> list[dict[str, object]]:
-    """When work was handed in, before or after it was due, beside the points."""
+    """The times of handing in, before or after it was due, beside the points."""
     records = CollectedRecords(directory.state)
     found: list[dict[str, object]] = []
     for (student, assignment), entry in sorted(

@@ -40,7 +40,7 @@ class Band:
 
 @dataclass(frozen=True)
 class CriterionFigures:
-    """How often one thing that was asked for was seen.
+    """The figures of one criterion: how often it was seen.
 
     Attributes:
         title: What was asked for.
@@ -122,7 +122,7 @@ class Progress:
 
 
 def progress(student: str, attempts: Iterable[Attempt]) -> list[Progress]:
-    """How a student's attempts went on.
+    """The course of a student's attempts.
 
     Args:
         student: Whose.
@@ -147,7 +147,7 @@ def progress(student: str, attempts: Iterable[Attempt]) -> list[Progress]:
 
 
 def bands(table: ClassTable) -> list[Band]:
-    """How the students are spread over the points; who handed in nothing at all is left out."""
+    """The spread of the students over the points, without those who handed in nothing at all."""
     most = table.max_score()
     found: dict[int, list[str]] = defaultdict(list)
     for student in handed_in(table):
@@ -230,7 +230,7 @@ def _correlation(ours: Sequence[float], others: Sequence[float]) -> float | None
 
 
 def _criteria(table: ClassTable, journal: Journal) -> dict[tuple[str, str], list[CriterionFigures]]:
-    """What was seen of each criterion, from the verdicts that the table's points came from."""
+    """The figures of each criterion, from the verdicts that the table's points came from."""
     counted = {(row.student, row.assignment) for row in table.rows if row.state in ("passed", "failed")}
     seen: dict[tuple[str, str], dict[str, CriterionFigures]] = defaultdict(dict)
     for student, assignment in sorted(counted):

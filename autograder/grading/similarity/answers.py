@@ -1,4 +1,4 @@
-"""What students wrote themselves in a notebook, and what they had been given, read from a class."""
+"""Students' own texts in a notebook, and the texts that they had been given, read from a class."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
 
 OWN_CELLS = "own cells"
-"""What stands for a cell's name where students have added cells of their own."""
+"""The name in place of a cell's where students have added cells of their own."""
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What one student wrote into one solution cell, or into all cells of their own.
+    """One student's text in one solution cell, or in all cells of their own.
 
     Attributes:
         student: The student's id.
@@ -73,7 +73,7 @@ def given_texts(directory: ClassDirectory) -> list[str]:
 def read_answers(
     directory: ClassDirectory, assignment: str, notebook: str, submissions: list[Submission]
 ) -> HandedIn:
-    """What was handed in for one notebook.
+    """The answers that were handed in for one notebook.
 
     Raises:
         MasterUnusable: The source is no notebook.

@@ -25,7 +25,7 @@ MOST = 100
 
 @dataclass(frozen=True)
 class Similar:
-    """What was found in a class.
+    """The result of the search in a class.
 
     Attributes:
         path: The class.
@@ -119,6 +119,6 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
 
 
 def _concerns(directory: ClassDirectory, refused: Refused, assignment: str) -> bool:
-    """Whether it may have to do with an assignment: of what has no place, that is not known."""
+    """True if it may have to do with an assignment: of what has no place, that is not known."""
     parts = refused.path.relative_to(directory.path / "submitted").parts
     return not assignment or len(parts) < 2 or parts[1] == assignment

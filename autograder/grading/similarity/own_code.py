@@ -1,4 +1,4 @@
-"""What of an answer is the student's own: neither the task's text, nor its solution, nor what many have written."""
+"""A student's own part of an answer: neither the task's text, nor its solution, nor what many wrote."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LONGEST = 10_000
 """Words of an answer that are compared, more than a thousand lines."""
 _LONGEST_TEXT = 20 * LONGEST
 _MANY, _MANY_SHARE = 5, 0.25
-"""What so many students have, and so large a share of all, belongs to the task: a small group cannot be that many."""
+"""Code that so many students have, and so large a share of all, counts as common."""
 
 Sequence_ = tuple[str, ...]
 
@@ -47,12 +47,12 @@ class Compared:
 
     @property
     def length(self) -> int:
-        """How many words are the student's own."""
+        """The number of the student's own words."""
         return sum(self.own)
 
 
 class Given:
-    """What students have been given, and what solutions say.
+    """The texts that students have been given, and those of solutions.
 
     Args:
         texts: The cells of all sources and of all that was handed out.

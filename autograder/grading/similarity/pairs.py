@@ -1,4 +1,4 @@
-"""Which pairs of answers are closer than the task explains."""
+"""The pairs of answers that are closer than the task explains."""
 
 from __future__ import annotations
 

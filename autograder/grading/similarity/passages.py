@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from autograder.grading.similarity.own_code import Compared
 
 _ROUNDS = 6
-"""How often what is left is laid side by side again: each time, one more order of moved blocks is found."""
+"""The number of times that the rest is compared again: each time, one more order of moved blocks is found."""
 _FOUND_IN_FIRST, _FOUND_IN_SECOND = -3, -4
 
 

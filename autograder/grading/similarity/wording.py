@@ -1,4 +1,4 @@
-"""What terminal and page say in the same words."""
+"""Words that terminal and page share."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ HINT = (
 
 
 def nothing_found(compared: int) -> str:
-    """What is said where no pair is close."""
+    """The sentence where no pair is close."""
     return f"No pair is closer than the task explains ({compared} notebooks compared)."
 
 

@@ -65,7 +65,7 @@ class ClassTable:
         return self.absent if is_absent else total(rows)
 
     def is_excused(self, student: str, assignment: str) -> bool:
-        """Whether the student need not do the assignment."""
+        """True if the student need not do the assignment."""
         return any(row.state == EXCUSED for row in self.of(student, assignment))
 
     def max_score(self, assignment: str = "") -> float:

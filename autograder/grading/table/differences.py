@@ -1,4 +1,4 @@
-"""Who has other points than before: between two runs, or between the gradebook and what a run would enter."""
+"""Differences of points: between two runs, or between the gradebook and what a run would enter."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ class Runs:
 
 
 def differences(before: Iterable[Row], after: Iterable[Row]) -> list[Difference]:
-    """Where two tables differ, in the order of the students."""
+    """The rows in which two tables differ, in the order of the students."""
     earlier = {(row.student, row.assignment, row.exercise): row for row in before}
     later = {(row.student, row.assignment, row.exercise): row for row in after}
     found = []
@@ -138,7 +138,7 @@ def differences(before: Iterable[Row], after: Iterable[Row]) -> list[Difference]
 
 
 def compare(state: Path, before: str = "", after: str = "") -> tuple[str, str, list[Difference]]:
-    """What changed between two runs.
+    """The changes between two runs.
 
     Args:
         state: The class's folder of the autograder's own files.

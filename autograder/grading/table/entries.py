@@ -1,4 +1,4 @@
-"""What the gradebook has for a whole class, read in a few queries."""
+"""The gradebook's rows of a whole class, read in a few queries."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from autograder.grading.entering.database import has_tables, opened, sql
 
 @dataclass(frozen=True)
 class CellEntry:
-    """What the gradebook has for one cell of a submission.
+    """The gradebook's row of one cell of a submission.
 
     Attributes:
         max_score: Points that can be had.
@@ -41,7 +41,7 @@ class CellEntry:
 
 @dataclass(frozen=True)
 class SubmissionEntry:
-    """What the gradebook has for one submission.
+    """The gradebook's rows of one submission.
 
     Attributes:
         handed_in: When, in UTC; None where nobody wrote it down.
@@ -57,7 +57,7 @@ class SubmissionEntry:
 
     @property
     def is_late(self) -> bool:
-        """Whether it was handed in after its due date."""
+        """True if it was handed in after its due date."""
         return self.handed_in is not None and self.due is not None and self.handed_in > self.due
 
     @property
@@ -72,7 +72,7 @@ class SubmissionEntry:
 
     @property
     def why_late(self) -> str:
-        """Why points are taken off; empty where none are."""
+        """The reason why points are taken off; empty where none are."""
         if not self.taken_off:
             return ""
         return f"handed in {self.handed_in:%Y-%m-%d %H:%M} UTC, due {self.due:%Y-%m-%d %H:%M} UTC"

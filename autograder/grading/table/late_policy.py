@@ -1,4 +1,4 @@
-"""What being late costs, as data: a share of the points for each day that has begun, a grace, a cut-off.
+"""The price of being late, as data: a share of the points for each day that has begun, a grace, a cut-off.
 
 A class names it in its ``nbgrader_config.py``; nbgrader asks it, whichever command or button grades.
 """

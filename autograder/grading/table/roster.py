@@ -1,4 +1,4 @@
-"""Who is in a class: ``students.csv`` and the students that the gradebook knows, and how the LMS calls them."""
+"""The students of a class: ``students.csv`` and the students that the gradebook knows, and how the LMS calls them."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class Student:
 
 @dataclass(frozen=True)
 class Identity:
-    """How a file name, or a list of an LMS, calls somebody.
+    """The name of somebody in a file name, or in a list of an LMS.
 
     Attributes:
         lms: Which system, one of :data:`LMS`; empty where a folder has a plain name.
@@ -113,11 +113,11 @@ class Roster:
 
     @property
     def excused(self) -> set[tuple[str, str]]:
-        """Who need not do which assignment."""
+        """The students who need not do an assignment, by assignment."""
         return {(one.id, assignment) for one in self.students.values() for assignment in one.excused}
 
     def find(self, identity: Identity) -> tuple[Student, ...]:
-        """Who may be meant: one where that is certain, several where it is not.
+        """The students who may be meant: one where that is certain, several where it is not.
 
         What identifies best is asked first: the number in that system, then user names and addresses, then names.
         """

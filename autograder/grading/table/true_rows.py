@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from autograder.grading.table.entries import CellEntry, Entries, SubmissionEntry
 
     Judged = Mapping[tuple[str, str], Sequence[Row]]
-    """What the judge said of each submission, by student and assignment."""
+    """The judge's words on each submission, by student and assignment."""
 
 
 def true_rows(
@@ -104,7 +104,7 @@ def _with_points(row: Row, kept: CellEntry) -> Row:
 
 
 _IS_GRADED = ("passed", "failed", WAITS, BY_HAND)
-"""What was taken back, or could not be checked, waits for a run and not for a person."""
+"""States in which somebody has judged: any other one waits for a run and not for a person."""
 
 
 def _state(cell: GradedCell, kept: CellEntry) -> str:

@@ -1,4 +1,4 @@
-"""What an instructor leaves out of the points of a class, and what counts more or less: ``class.toml``."""
+"""An instructor's weights of a class and the exercises that are left out: ``class.toml``."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class _File(msgspec.Struct, forbid_unknown_fields=True):
 
 @dataclass(frozen=True)
 class WhatCounts:
-    """What counts in the table of a class; the gradebook keeps what was earned, so that it can be changed at any time.
+    """The weights in the table of a class; the gradebook keeps what was earned, so that it can be changed at any time.
 
     Attributes:
         factors: What points are multiplied by, by assignment and exercise; 0 leaves an exercise out.
@@ -65,7 +65,7 @@ def _scaled(row: Row, factor: float) -> Row:
 
 
 def read_what_counts(directory: ClassDirectory, cells: Mapping[str, Sequence[GradedCell]]) -> WhatCounts:
-    """What ``class.toml`` says; everything counts as it is where there is no such file.
+    """The content of ``class.toml``; everything counts as it is where there is no such file.
 
     Args:
         directory: The class.
