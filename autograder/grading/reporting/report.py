@@ -1,4 +1,4 @@
-"""What came of grading a class: rows, a table for a person, a CSV file for everything else."""
+"""The result of grading a class: rows, a table for a person, a CSV file for everything else."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ class Row:
 
     @property
     def is_blank(self) -> bool:
-        """Whether nobody has judged anything: such a row has no points, which is not zero points."""
+        """True if nobody has judged anything: such a row has no points, which is not zero points."""
         return self.state in _NOTHING_JUDGED and self.by_hand is None and not self.extra
 
     @property
@@ -106,7 +106,7 @@ class Row:
 
 @dataclass(frozen=True)
 class GradeReport:
-    """What came of a batch.
+    """The result of a batch.
 
     Attributes:
         path: The class.
@@ -164,7 +164,7 @@ class GradeReport:
 
 
 def columns(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
-    """What a column for each exercise is called, by assignment and exercise.
+    """The name of the column for each exercise, by assignment and exercise.
 
     Cells of an instructor's own are often called alike in several assignments; then the assignment stands in front.
     """

@@ -107,7 +107,7 @@ def _needs(shown: Table, console: Console) -> int:
 
 @dataclass(frozen=True)
 class _Grid:
-    """What is in the cells.
+    """The content of the cells.
 
     Attributes:
         names: The heading of each column, by assignment and exercise.
@@ -193,7 +193,7 @@ def _mark(row: Row) -> str:
 
 
 def _legend(rows: Sequence[Row]) -> list[str]:
-    """What the marks behind points say, as far as there are any."""
+    """The meaning of the marks behind points, as far as there are any."""
     waiting = sum(row.waits for row in rows)
     marks = {_mark(row) for row in rows}
     found = ["*  a person gave these points, or some of them"] if "*" in marks else []

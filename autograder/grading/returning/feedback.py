@@ -78,7 +78,7 @@ class FeedbackPages:
 
 
 def _fill_in(cell: Any, state: NotebookState) -> None:
-    """What nbgrader's GetGrades puts into a cell for the template."""
+    """Put into a cell what nbgrader's GetGrades puts there for the template."""
     marks: Mapping[str, Any] = cell.metadata.get("nbgrader", {})
     known = state.cells.get(marks.get("grade_id", ""))
     if known is None:

@@ -1,4 +1,4 @@
-"""What the texts of one notebook may cost whoever makes a page of them.
+"""A budget for the texts of one notebook when a page is made of them.
 
 Parsers of Markdown and of code can be kept busy for minutes by a text that was made for it. So what a student wrote is
 rendered for trial by the worker that has executed it, which may be interrupted and holds nobody else up. The trial

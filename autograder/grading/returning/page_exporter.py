@@ -1,4 +1,4 @@
-"""How a feedback page is made: nbgrader's template, with nothing in it that a browser executes or fetches."""
+"""The making of a feedback page: nbgrader's template, with nothing in it that a browser executes or fetches."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
-"""What a browser may do with a page: show its own text, styles and pictures (W3C, "Content Security Policy")."""
+"""The rights of a browser on a page: show its own text, styles and pictures (W3C, "Content Security Policy")."""
 
 _OURS = Path(__file__).parents[1] / "page_templates"
 _FORMGRADER = Path(nbgrader.__file__).parent / "server_extensions" / "formgrader"
@@ -102,7 +102,7 @@ class PageExporter(HTMLExporter):
 
     @functools.cached_property
     def _resources(self) -> dict[str, Any]:
-        """What nbconvert hands to a template beside the notebook: the same for all, so made for an empty one."""
+        """The resources that nbconvert hands to a template: the same for all, so made for an empty notebook."""
         initialise: Any = self._init_resources
         names = {"notebook": "", "score": 0.0, "max_score": 0.0, "late_penalty": 0.0}
         resources: dict[str, Any] = initialise({"nbgrader": names})
@@ -182,7 +182,7 @@ def _rendered(source: str, trusted: bool) -> str:
 
 
 def _with_alternative_texts(page: str) -> str:
-    """What nbconvert does to a whole page at the end: it parses it anew, also where no picture lacks words."""
+    """The last step of nbconvert on a whole page, which parses it anew, also where no picture lacks words."""
     if all(_ALTERNATIVE.search(picture[0]) for picture in _PICTURE.finditer(page)):
         return page
     soup = BeautifulSoup(page, features="html.parser")

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Remembered:
-    """What was made of what; the longest unused is forgotten first.
+    """A cache of values by what they were made of; the longest unused is forgotten first.
 
     Args:
         characters: Of all texts together, at most.

@@ -1,4 +1,4 @@
-"""What a submission wrote, made harmless for the browser of whoever reads it.
+"""A submission's texts and outputs, made harmless for the browser of whoever reads them.
 
 nbconvert hands raw HTML, Mermaid diagrams and any address through to the page, in nbgrader's feedback and in
 formgrader alike. So a student's text is looked at with nbconvert's own Markdown parser before it is written
@@ -155,7 +155,7 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
 
 
 def is_the_masters(cell: Any) -> bool:
-    """Whether a cell of a rebuilt notebook is the master's, word for word."""
+    """True if a cell of a rebuilt notebook is the master's, word for word."""
     marks = cell.get("metadata", {}).get("nbgrader", {})
     return bool(marks.get("locked")) and not marks.get("solution")
 
@@ -291,7 +291,7 @@ class _Looking(IPythonRenderer):
 
 
 def _as_shown(markdown: str) -> str:
-    """What nbconvert will make of it."""
+    """The form in which nbconvert will show it."""
     return MarkdownWithMath(renderer=IPythonRenderer(escape=False)).render(markdown)
 
 

@@ -1,4 +1,4 @@
-"""What goes back to the students in a run: the time of handing in, what being late costs, and the pages that say it."""
+"""The return of a run to the students: the time of handing in, what being late costs, and the pages that say it."""
 
 from __future__ import annotations
 
