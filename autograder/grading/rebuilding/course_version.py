@@ -18,7 +18,7 @@ _MADE_BY_PYTHON = "__pycache__"
 _MADE_BY_COLCON = frozenset({"build", "install", "log"})
 """Folders of what is made from the files that count; colcon's lie beside the folder ``src`` of a workspace."""
 _OF_CHAPTERS = (f"*/{course.CHAPTER}", "*/*/*.py", f"*/*/*{REFERENCE}")
-"""What counts of the chapters: their descriptions, the exercises and their reference outputs."""
+"""The files of the chapters that count: their descriptions, the exercises and their reference outputs."""
 
 
 @functools.cache

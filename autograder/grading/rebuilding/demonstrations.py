@@ -30,7 +30,7 @@ _LOOKING = frozenset(
     {"ros2", "echo", "which", "ls", "find", "sort", "cat", "grep", "head", "tail", "timeout", "kill", "wait"}
     | {"sleep", "source", ".", "cd", "for", "do", "done", "until", "while", "break", "if", "then", "fi"}
 )
-"""What a command may begin with."""
+"""The beginnings of commands."""
 _MAKING = frozenset({("pkg", "create"), ("bag", "record"), ("param", "dump")})
 """The ``ros2`` commands that leave something behind."""
 _QUOTED = re.compile(r"\"[^\"]*\"|'[^']*'|\{\w+\.\.\w+\}")
@@ -41,7 +41,7 @@ _FLAGS = re.compile(r"^(?:-\S+|\d+(?:\.\d+)?|INT|!)$")
 
 
 def is_demonstration(cell: NotebookNode) -> bool:
-    """Whether a cell of a rebuilt notebook only shows something.
+    """True if a cell of a rebuilt notebook only shows something.
 
     Args:
         cell: Of a rebuilt notebook, in which only the master's own cells carry nbgrader's marks.
@@ -84,7 +84,7 @@ def _is_file_or_terminal(cell: NotebookNode) -> bool:
 
 
 def are_run(directory: ClassDirectory) -> bool:
-    """Whether the configuration of a class asks for demonstrations to be run."""
+    """True if the configuration of a class asks for demonstrations to be run."""
     return bool(directory.config.WireExecute.get("demonstrations", False))
 
 
@@ -101,7 +101,7 @@ def _only_looks(script: str) -> bool:
 
 
 def _looks(words: list[str]) -> bool:
-    """Whether one simple command only looks; keywords and ``timeout`` stand before the command they lead to."""
+    """True if one simple command only looks; keywords and ``timeout`` stand before the command they lead to."""
     while words and (
         words[0] in {"do", "then", "until", "while", "if", "timeout", "!"} or _FLAGS.match(words[0])
     ):

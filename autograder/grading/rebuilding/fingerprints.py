@@ -1,4 +1,4 @@
-"""Whether anything has changed since a submission was written down, told from bytes alone.
+"""True if anything has changed since a submission was written down, told from bytes alone.
 
 Rebuilding a notebook says it more exactly, but a class of a hundred students has a thousand notebooks, and most runs
 find nothing new. What differs here is looked at again, cell by cell.

@@ -77,7 +77,7 @@ def _rubrics(source: NotebookNode) -> dict[str, str]:
 
 
 def check_of(cell: NotebookNode) -> Check | None:
-    """What a master's cell checks, or None for a cell without an automatic grade.
+    """The check of a master's cell, or None for a cell without an automatic grade.
 
     Raises:
         LookupError: It asks the judge, but no exercise has its name.
@@ -103,7 +103,7 @@ def exercise_of(name: str) -> str:
 
 
 def _asks_the_judge(source: str) -> bool:
-    """Whether a graded cell calls ``check`` with an exercise, so that no test of its own can decide."""
+    """True if a graded cell calls ``check`` with an exercise, so that no test of its own can decide."""
     try:
         tree = ast.parse(source)
     except SyntaxError:
@@ -131,7 +131,7 @@ def _check_cells(source: Path, notebook: NotebookNode) -> None:
 
 
 def _steps(config: Config) -> tuple[str, ...]:
-    """What happens to a source notebook before it is entered into the gradebook."""
+    """The steps that a source notebook takes before it is entered into the gradebook."""
     configured = GenerateAssignment(
         config=Config({"GenerateAssignment": config.GenerateAssignment})
     ).preprocessors

@@ -93,7 +93,7 @@ class _Sorting:
         return built + pending
 
     def remarks(self) -> list[str]:
-        """What differs from the master in a way that the student should know."""
+        """The differences from the master that the student should know."""
         found = [
             f"The cell {_quoted(name)} was missing. It was put back."
             for name in self._master
@@ -163,12 +163,12 @@ def grade_id(cell: NotebookNode) -> str:
 
 
 def is_answer(cell: NotebookNode) -> bool:
-    """Whether the cell is one that students fill in."""
+    """True if the cell is one that students fill in."""
     return bool(cell.metadata.get("nbgrader", {}).get("solution", False))
 
 
 def is_check(cell: NotebookNode) -> bool:
-    """Whether the cell is one that is graded automatically."""
+    """True if the cell is one that is graded automatically."""
     marked = bool(cell.metadata.get("nbgrader", {}).get("grade", False))
     return marked and not is_answer(cell) and cell.cell_type == CellType.CODE
 

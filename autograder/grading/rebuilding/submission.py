@@ -56,7 +56,7 @@ class SubmittedCell:
 
 
 class NotAFile(UnreadableSubmission):
-    """What lies in the place of the notebook is no ordinary file, or may not be read."""
+    """The file in the place of the notebook is no ordinary one, or may not be read."""
 
 
 def read_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
@@ -84,7 +84,7 @@ def read_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
 
 
 def reason_against_file(path: Path) -> str:
-    """Why what lies at ``path`` cannot be a submission; empty for an ordinary file and where nothing is there."""
+    """The reason why ``path`` cannot be a submission; empty for an ordinary file and where nothing is there."""
     try:
         with _opened(path):
             return ""
@@ -123,7 +123,7 @@ def _check(path: Path, status: os.stat_result) -> None:
 
 
 def _is_somebody_elses(path: Path, status: os.stat_result) -> bool:
-    """Whether a file of several names was in another place of the class first.
+    """True if a file of several names was in another place of the class first.
 
     Only the one who was first keeps it: nobody can have a neighbour refused by giving the neighbour's file a second
     name. A folder's time of change is set by the system when a name is made in it, and by nobody else. Names outside of

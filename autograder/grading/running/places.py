@@ -1,4 +1,4 @@
-"""Where tasks are executed: on this machine, or by the workers of a cluster. Open it, hand over tasks, leave it."""
+"""The place where tasks are executed: this machine, or the workers of a cluster."""
 
 from __future__ import annotations
 

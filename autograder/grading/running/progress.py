@@ -1,4 +1,4 @@
-"""What a person sees while a class is graded: a bar in a terminal, plain lines in a log file or in a notebook.
+"""Progress while a class is graded: a bar in a terminal, plain lines in a log file or in a notebook.
 
 The time left is reckoned from the notebooks that are done. Where that time has passed and somebody still runs, it was
 no good measure, and what is said then is who runs for how long, and when that one is stopped at the latest.
@@ -27,7 +27,7 @@ _SILENCE = 30.0
 
 
 class _Now(ProgressColumn):
-    """What is going on now: asked whenever the bar is drawn, not only when a notebook begins or ends."""
+    """The text on what is going on now: asked whenever the bar is drawn, not only when a notebook begins or ends."""
 
     def __init__(self, now: Callable[[], str]) -> None:
         super().__init__()
@@ -162,7 +162,7 @@ class BatchProgress:
         return self._each() * (self._total - self._done)
 
     def _is_late(self) -> bool:
-        """Whether the time that was said has passed, and somebody still runs."""
+        """True if the time that was said has passed, and somebody still runs."""
         return bool(self._running and self._done) and self._clock() > self._last + self._rest_of_all()
 
     def _slowest(self) -> list[str]:

@@ -1,4 +1,4 @@
-"""Where no sandbox is possible: grading stops, unless somebody has asked for it all the same, and then says so."""
+"""The need of a sandbox: without one grading stops, or says that somebody has asked for it all the same."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def switch_off(path: Path) -> None:
 
 
 def switched_off(directory: ClassDirectory) -> bool:
-    """Whether this class is graded without boxes, by its configuration or by :func:`switch_off`."""
+    """True if this class is graded without boxes, by its configuration or by :func:`switch_off`."""
     configured = directory.config.WireExecute.get("unsafe_no_sandbox", False)
     return bool(configured) or directory.path.resolve() in _off
 

@@ -23,7 +23,7 @@ _changing = threading.Lock()
 
 
 def addresses(sandbox: bool) -> Addresses:
-    """Where the fork servers listen; they are started where they do not run.
+    """The addresses of the fork servers, which are started where they do not run.
 
     Args:
         sandbox: With one for the supervisors of boxes.
@@ -45,7 +45,7 @@ def addresses(sandbox: bool) -> Addresses:
 
 
 def holds(sandbox: bool) -> bool:
-    """Whether all of them run that were started."""
+    """True if all of them run that were started."""
     with _changing:
         kept = _kept.get(sandbox)
         return kept is not None and kept.alive

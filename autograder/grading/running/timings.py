@@ -1,4 +1,4 @@
-"""Where the time of a batch went."""
+"""The time that each part of a batch took."""
 
 from __future__ import annotations
 

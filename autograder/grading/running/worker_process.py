@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from autograder.boxes.fork_server_client import Addresses
 
 ATTEMPTS = 2
-"""How often a task is tried: a second time where its worker died."""
+"""The number of times that a task is tried: a second time where its worker died."""
 GOODBYE_SECONDS = 2.0
 """Seconds after which a worker that was asked to end is killed, so that Ctrl-C takes less than three in all."""
 _RESULT_BYTES = 64_000_000
@@ -69,7 +69,7 @@ class WorkerProcess:
 
     @property
     def stopping(self) -> bool:
-        """Whether it was stopped: then trouble says nothing."""
+        """True if it was stopped: then trouble says nothing."""
         return self._stopping
 
     def kill(self) -> None:
@@ -96,7 +96,7 @@ class WorkerProcess:
         return Execution(cells=(), verdicts=verdicts, trouble=reason)
 
     def _is_stale(self) -> bool:
-        """Whether the worker knows other fork servers than there are: another worker may have started them anew."""
+        """True if the worker knows other fork servers than there are: another worker may have started them anew."""
         holds = shared_fork_servers.holds(self._boxed)
         return not holds or self._addresses != shared_fork_servers.addresses(self._boxed)
 

@@ -1,4 +1,4 @@
-"""What a worker has beside a notebook for its checks of workspaces and launch files."""
+"""The service beside a notebook for its checks of workspaces and launch files."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _BUILDS, _PROGRAMS, _ROBOT = "builds", "bin", "my_robot_pkg"
 
 @dataclass(frozen=True)
 class Arrangement:
-    """Where things are for one notebook.
+    """The places of one notebook's sockets and folders.
 
     Attributes:
         folder: Ours alone.
@@ -50,7 +50,7 @@ class Arrangement:
 
     @property
     def judges_folder(self) -> Path:
-        """What the judge's box must see, and the student's must not."""
+        """The folder that the judge's box must see, and the student's must not."""
         return self.folder / "jobs"
 
     @property
