@@ -38,7 +38,7 @@ _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _DEEPEST = 3
 """Archives in an archive that a student has handed in, one in the other."""
 _NOBODYS = ("__MACOSX", ".git", ".ipynb_checkpoints", "__pycache__", ".DS_Store")
-"""What systems and editors leave beside somebody's files."""
+"""Files that systems and editors leave beside somebody's own."""
 _LEADS_OUT = "its name leads out of the archive"
 
 
@@ -65,7 +65,7 @@ class File:
 
     @property
     def label(self) -> str:
-        """How messages call it."""
+        """Its name in messages."""
         parts = (*self.parts, *self.inner)
         return "/".join(parts if self.source.is_dir() else (self.source.name, *parts))
 
@@ -77,7 +77,7 @@ class File:
 
 @dataclass
 class _Room:
-    """What archives that lie in each other may still have together.
+    """The room that archives in each other still have together.
 
     Attributes:
         files: How many files.
@@ -188,7 +188,7 @@ def _of_zip(outer: File, data: BinaryIO, room: _Room) -> Iterator[File]:
 
 
 def is_zip(name: str, data: bytes) -> bool:
-    """Whether a file that was handed in is an archive to be opened, whatever stands behind its name.
+    """True if a file that was handed in is an archive to be opened, whatever stands behind its name.
 
     Documents of office programs are zips, too, and hold no notebook.
     """
@@ -228,7 +228,7 @@ class _Bounded:
         self.seek, self.tell, self.close = file.seek, file.tell, file.close
 
     def read(self, size: int = -1) -> bytes:
-        """What ``read`` of any file gives.
+        """The content that ``read`` of any file gives.
 
         Raises:
             NotTaken: It is more than the limit.

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     """The way in which a name was read, and of each member of the group who may be meant."""
 
 _PAGES = ("index.html", GRADESCOPE)
-"""What an LMS itself adds to a download."""
+"""Files that an LMS itself adds to a download."""
 _OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".tgz", ".tar", ".bz2", ".xz", ".zst")
 
 
@@ -283,7 +283,7 @@ class _Collecting:
         return self._in_utc(when) or self._handed_in
 
     def _reason_against(self, who: _Who | None, found: Found | None) -> str:
-        """Why nobody's work a file is; empty where it is somebody's."""
+        """The reason why a file is nobody's work; empty where it is somebody's."""
         if who is None:
             return self._whose.reason_against(found.identity if found else None)
         way, members = who
@@ -296,7 +296,7 @@ class _Collecting:
         return ""
 
     def _no_notebook(self, file: File, who: _Who | None) -> Outcome:
-        """What becomes of a file that holds no notebook: a picture, a page of the LMS, or the work in another form."""
+        """The outcome of a file that holds no notebook: a picture, a page of the LMS, or the work in another form."""
         if file.name in _PAGES and not file.inner and who is None:
             return Outcome(file.label, State.BESIDE, "it is a page of the LMS")
         student = _only(who)
@@ -314,7 +314,7 @@ class _Collecting:
         self._outcomes.append(self._outcome(file, State.NOT_PLACED, reason, who))
 
     def _soft(self, file: File, reason: str, who: _Who | None) -> Outcome:
-        """What somebody has to look at, unless its student's notebook has come, too."""
+        """An outcome that somebody has to look at, unless its student's notebook has come, too."""
         return self._outcome(file, State.BESIDE if _only(who) else State.NOT_PLACED, reason, who)
 
     def _outcome(self, file: File, state: State, reason: str, who: _Who | None) -> Outcome:

@@ -1,4 +1,4 @@
-"""How learning management systems name what they let an instructor download, and what such a name says."""
+"""The names that learning management systems give to downloads, and the facts in such a name."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ _NUMBERED = re2.compile(r"^(?P<base>.+?)(?: ?\((?P<in_brackets>\d{1,6})\)|-(?P<b
 
 @dataclass(frozen=True)
 class Found:
-    """What the path of a file says.
+    """The facts in the path of a file.
 
     Attributes:
         identity: Whose it is.
@@ -75,7 +75,7 @@ class Found:
 
 
 def read_path(parts: Sequence[str], form: str, is_notebook: Callable[[str], bool]) -> Found | None:
-    """What a path says in the form of one LMS; None where it is not of that form.
+    """The facts in a path of the form of one LMS; None where it is not of that form.
 
     Args:
         parts: The path's folders and the file, of which none leads upwards.
@@ -115,7 +115,7 @@ def _moodle(parts: Sequence[str]) -> Found | None:
 
 
 def _ends(text: str, mark: str) -> list[str]:
-    """What stands behind each of the last few marks in a text, the longest first."""
+    """The ends of a text behind each of its last few marks, the longest first."""
     pieces = text.rsplit(mark, _MOST_MARKS)[1:]
     return [end for start in range(len(pieces)) if (end := mark.join(pieces[start:]).strip())]
 
@@ -222,13 +222,13 @@ def _github(parts: Sequence[str]) -> Found | None:
 
 
 def _gradescope(parts: Sequence[str]) -> Found | None:
-    """Who a number is says the list in the export, and nothing else does."""
+    """The facts in a path of Gradescope's: only the list in the export says who a number is."""
     found = next(filter(None, map(_GRADESCOPE.match, parts[:2])), None) if len(parts) > 1 else None
     return Found(Identity("gradescope", found["number"]), parts[-1]) if found else None
 
 
 def plain(parts: Sequence[str]) -> list[Found]:
-    """What a path says in which folders have students' ids or names, or end with a user name of GitHub's.
+    """The facts in a path with folders that are students' ids or names, or end with a user name of GitHub's.
 
     Repositories that were downloaded one by one are called ``lab-1-2-adalove-main``; Classroom Assistant makes
     folders with user names.

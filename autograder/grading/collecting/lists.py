@@ -33,7 +33,7 @@ _DAYS = frozenset(("monday", "tuesday", "wednesday", "thursday", "friday", "satu
 
 @dataclass(frozen=True)
 class Entry:
-    """What a list says of one submission, or of one person.
+    """A list's entry on one submission, or on one person.
 
     Attributes:
         lms: Which system the list is from; empty for an instructor's own.
@@ -181,7 +181,7 @@ def _member(submitter: Mapping[str, Any]) -> tuple[Identity, ...]:
 
 
 def is_unread(entry: Entry) -> bool:
-    """Whether a list says when, and nobody could read it."""
+    """True if a list says when, and nobody could read it."""
     return entry.when is None and entry.time not in _NO_TIME
 
 

@@ -1,4 +1,4 @@
-"""Where each file went that was collected: to its place, among earlier attempts, or nowhere, with the reason."""
+"""The outcome of each file that was collected: to its place, among earlier attempts, or nowhere, with the reason."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class State(StrEnum):
-    """What became of a file; each file has one of these."""
+    """The outcome of a file; each file has one of these."""
 
     PLACED = "placed"
     """It is in ``submitted``."""
@@ -39,7 +39,7 @@ class State(StrEnum):
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one file.
+    """The outcome of one file.
 
     Attributes:
         label: How messages call the file.
@@ -64,7 +64,7 @@ class Outcome:
 
 @dataclass(frozen=True)
 class CollectReport:
-    """What came of collecting.
+    """The result of collecting.
 
     Attributes:
         path: The class.

@@ -1,4 +1,4 @@
-"""Which of a student's files counts, and putting it into ``submitted`` so that nothing is lost."""
+"""The choice of the file that counts, and its way into ``submitted`` so that nothing is lost."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Candidate:
         return hashlib.sha256(self.data).hexdigest()
 
     def outcome(self, state: State, reason: str = "", *, replaced: bool = False) -> Outcome:
-        """What became of it."""
+        """Its outcome."""
         late = self.found.late
         return Outcome(self.label, state, reason, self.student, self.assignment, self.when, late, replaced)
 
@@ -175,7 +175,7 @@ class Placing:
 
 
 def _newest(group: list[Candidate]) -> tuple[Candidate | None, _Others]:
-    """Which of a student's files counts, and what becomes of the others. None where nothing says which.
+    """The file of a student's that counts, and the outcomes of the others; None where nothing says which.
 
     Of files that were handed in together the one counts that is called as the notebook is.
     """
@@ -219,12 +219,12 @@ def _best(
 
 
 def _has_news(newest: Candidate, known: Collected) -> bool:
-    """Whether the same notebook comes with a later time, or with the first one."""
+    """True if the same notebook comes with a later time, or with the first one."""
     return newest.when is not None and (known.when is None or newest.when > known.when)
 
 
 def _older(newest: Candidate, known: Collected, history: History) -> Outcome | None:
-    """What becomes of a file that does not replace the one that is there; None where it does."""
+    """The outcome of a file that does not replace the one that is there; None where it does."""
     if newest.when is not None and known.when is not None and newest.when != known.when:
         if newest.when < known.when:
             at = f"{known.when:%Y-%m-%d %H:%M} UTC"
@@ -267,7 +267,7 @@ def _collected(one: Candidate) -> Collected:
 
 
 def _lying(path: Path) -> bytes | None:
-    """What lies at a notebook's place; None where there is nothing.
+    """The file at a notebook's place; None where there is none.
 
     Raises:
         UnreadableSubmission: Something else does.

@@ -1,4 +1,4 @@
-"""What was collected, written down beside the class: only times that stand here are believed from then on."""
+"""The record of what was collected, beside the class: from then on only its times are believed."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Collected:
 
 @dataclass(frozen=True)
 class History:
-    """What was collected of one student for one assignment.
+    """The files that were collected of one student for one assignment.
 
     Attributes:
         now: What lies in ``submitted``, by notebook.
@@ -63,7 +63,7 @@ class History:
 
     @property
     def when(self) -> datetime | None:
-        """When the last of it was handed in, in UTC; None where nothing says so."""
+        """The time at which the last of it was handed in, in UTC; None where nothing says so."""
         return max((one.when for one in self.now.values() if one.when is not None), default=None)
 
     def collected(self, notebook: str) -> set[str]:
@@ -84,11 +84,11 @@ class CollectedRecords:
 
     @property
     def is_used(self) -> bool:
-        """Whether anything was ever collected into this class."""
+        """True if anything was ever collected into this class."""
         return self._folder.is_dir()
 
     def get(self, assignment: str, student: str) -> History | None:
-        """What was collected; None where nothing was, or where the file is damaged."""
+        """The record of what was collected; None where nothing was, or where the file is damaged."""
         try:
             return msgspec.json.decode(self._path(assignment, student).read_bytes(), type=History)
         except (OSError, msgspec.MsgspecError):

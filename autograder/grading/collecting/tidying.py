@@ -1,4 +1,4 @@
-"""What lies a little beside its place in ``submitted``: put there where that is certain, named where it is not."""
+"""Files a little beside their place in ``submitted``: moved there where that is certain, named where it is not."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class Tidied:
-    """What was found.
+    """The result of tidying.
 
     Attributes:
         notices: What was put right or is worth knowing.

@@ -1,4 +1,4 @@
-"""Which notebook of which assignment a file is: its cells say so, or else its name does."""
+"""The notebook and the assignment that a file is for, as its cells say, or else its name."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class NoTarget(ValueError):
 
 
 def is_notebook(name: str, data: bytes) -> bool:
-    """Whether a file is a notebook: by its name, or by what it holds, whatever its name is."""
+    """True if a file is a notebook: by its name, or by what it holds, whatever its name is."""
     head = data[:1000].lstrip(b"\xef\xbb\xbf \t\r\n")
     held = head[:1] == b"{" and b'"nbformat"' in data and (b'"cells"' in data or b'"worksheets"' in data)
     return held or name.lower().endswith(SUFFIX)
@@ -46,7 +46,7 @@ class Which:
         self._asked = asked
 
     def is_notebook(self, file: str) -> bool:
-        """Whether a file of this name is a notebook of the class."""
+        """True if a file of this name is a notebook of the class."""
         return stem_of(file)[0].casefold() in self._notebooks
 
     def named(self, name: str) -> str:
@@ -55,7 +55,7 @@ class Which:
         return self._asked or self._notebooks.get(stem.casefold(), ("", ""))[0]
 
     def target(self, name: str, data: bytes) -> tuple[Target, bool]:
-        """Which notebook a file is, and whether its name says so, too.
+        """The notebook that a file is, and whether its name says so, too.
 
         Args:
             name: The name that the student gave it.

@@ -1,4 +1,4 @@
-"""Whose a file is: what its name says, held against the list of students and the lists that came with the download."""
+"""The owner of a file: its name compared with the list of students and the lists of the download."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Whose:
         self._by_number = {(one.lms, one.number): one for one in (*entries, *self._told) if one.number}
 
     def find(self, way: Found) -> tuple[Found, tuple[tuple[Student, ...], ...]] | None:
-        """Who may be meant, by the first way of reading the name in which somebody is.
+        """The students who may be meant, by the first way of reading the name that names one.
 
         Returns:
             That way, and for each member of the group whose file it is the students who may be meant.
@@ -45,7 +45,7 @@ class Whose:
         return None
 
     def _of(self, identity: Identity) -> tuple[tuple[Student, ...], ...]:
-        """Who may be meant. Without any list of students, whoever is named in the LMS's own form."""
+        """The students who may be meant; without any list of students, whoever is named in the LMS's own form."""
         known = self._by_number.get((identity.lms, identity.number or identity.login))
         if known is not None:
             sure = tuple(student for names in known.members if (student := self._first(names)))
@@ -62,7 +62,7 @@ class Whose:
         return next((hit[0] for name in names if len(hit := self._roster.find(name)) == 1), None)
 
     def reason_against(self, identity: Identity | None) -> str:
-        """Why nobody was found, and what to do."""
+        """The reason why nobody was found, and what to do."""
         if identity is None:
             return _NO_ID
         number = identity.number or identity.login
@@ -74,7 +74,7 @@ class Whose:
         )
 
     def reason_against_several(self, identity: Identity, students: Iterable[Student]) -> str:
-        """Why it is not clear who of several it is, and what to do."""
+        """The reason why it may be several, and what to do."""
         names = ", ".join(student.id for student in students)
         if identity.lms == "moodle":
             return (
@@ -84,7 +84,7 @@ class Whose:
         return f"{identity} may be {names}: put the LMS's id of each into students.csv"
 
     def time(self, identity: Identity, student: str, assignment: str) -> datetime | None:
-        """When a list says that somebody handed in, in its own time; None where none says so."""
+        """The time at which a list says that somebody handed in, in its own time zone; None where none says so."""
         known = self._by_number.get((identity.lms, identity.number or identity.login))
         if known is not None and known.when is not None:
             return known.when
