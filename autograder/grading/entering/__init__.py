@@ -1,1 +1,1 @@
-"""What came of tasks, entered into journal and gradebook by one writer."""
+"""The results of tasks, entered into journal and gradebook by one writer."""

@@ -103,7 +103,7 @@ def _text(notebook: NotebookNode) -> bytes:
 
 
 def _entry(notebook: NotebookNode) -> NotebookEntry:
-    """What nbgrader's SaveAutoGrades would enter."""
+    """The entry that nbgrader's SaveAutoGrades would make."""
     scores: dict[str, float | None] = {}
     comments: dict[str, str | None] = {}
     for cell in notebook.cells:

@@ -35,5 +35,5 @@ def sql(statement: str) -> TextClause:
 
 
 def has_tables(book: Connection) -> bool:
-    """Whether nbgrader has made its tables in this database."""
+    """True if nbgrader has made its tables in this database."""
     return sqlalchemy.inspect(book).has_table("grade")

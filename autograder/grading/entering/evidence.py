@@ -50,7 +50,7 @@ class OfNotebook(msgspec.Struct, frozen=True):
     run: bytes
 
     def cells(self) -> list[RunCell]:
-        """What was judged.
+        """The cells that were judged.
 
         Raises:
             ValueError: It is damaged.

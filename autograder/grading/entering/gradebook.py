@@ -43,7 +43,7 @@ class NoSuchAssignment(LookupError):
 
 @dataclass(frozen=True)
 class NotebookEntry:
-    """What is entered for one notebook.
+    """The entry of one notebook.
 
     Attributes:
         scores: Automatic points of each graded cell, by grade_id; None where a person has to give them.
@@ -56,7 +56,7 @@ class NotebookEntry:
 
 @dataclass(frozen=True)
 class CellState:
-    """What the gradebook has for one cell of a student's notebook.
+    """The gradebook's row of one cell of a student's notebook.
 
     Attributes:
         score: Points, those that a person gave included; None for a cell without points.
@@ -71,7 +71,7 @@ class CellState:
 
 @dataclass(frozen=True)
 class NotebookState:
-    """What the gradebook has for a student's notebook.
+    """The gradebook's rows of a student's notebook.
 
     Attributes:
         cells: By grade_id.
@@ -118,7 +118,7 @@ def scores_of_student(url: str, assignment: str, student: str) -> dict[str, Scor
 
 
 def worth(url: str, assignment: str) -> dict[str, dict[str, float]]:
-    """What the gradebook has each cell with points at: by notebook, by grade_id."""
+    """The points of each cell in the gradebook: by notebook, by grade_id."""
     found: dict[str, dict[str, float]] = {}
     with opened(url) as book:
         if has_tables(book):

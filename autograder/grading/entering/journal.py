@@ -47,7 +47,7 @@ class Journal:
         return entry.execution if entry.key == task.key() else None
 
     def latest(self, student: str, assignment: str) -> list[Execution]:
-        """What was executed last of each notebook of a submission, whether or not that is still what lies there."""
+        """The last execution of each notebook of a submission, also where another file is there now."""
         found = []
         for path in sorted((self._folder / assignment).glob("*.json")):
             if path.stem.partition("@")[2] == student:
@@ -65,7 +65,7 @@ class Journal:
             write_whole(self._path(task), msgspec.json.encode(_Entry(task.key(), execution)))
 
     def has(self, submission: Submission, notebooks: Iterable[str]) -> bool:
-        """Whether anything is known of a submission; it may be of an earlier version of it."""
+        """True if anything is known of a submission; it may be of an earlier version of it."""
         return any(self._file(submission, notebook).is_file() for notebook in notebooks)
 
     def forget(self, submission: Submission, notebooks: Iterable[str]) -> None:

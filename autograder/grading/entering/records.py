@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Written:
-    """What a finished submission left in the gradebook.
+    """The trace of a finished submission in the gradebook.
 
     Attributes:
         fingerprint: Of all that it was made from.
@@ -51,7 +51,7 @@ class Records:
         self._folder = directory.state / "written"
 
     def get(self, submission: Submission) -> Written | None:
-        """What was written; None where nothing was, or where the file is damaged."""
+        """The record of what was written; None where nothing was, or where the file is damaged."""
         try:
             return msgspec.json.decode(self._path(submission).read_bytes(), type=Written)
         except (OSError, msgspec.MsgspecError):
@@ -70,7 +70,7 @@ class Records:
         self._path(submission).unlink(missing_ok=True)
 
     def holds(self, submission: Submission, written: Written, in_gradebook: Mapping[str, Scores]) -> bool:
-        """Whether gradebook and folders still have what was written.
+        """True if gradebook and folders still have what was written.
 
         Args:
             submission: The submission.
@@ -85,7 +85,7 @@ class Records:
         )
 
     def has_pages(self, submission: Submission, notebooks: Sequence[str]) -> bool:
-        """Whether there is a feedback page for each notebook."""
+        """True if there is a feedback page for each notebook."""
         folder = self._directory.path / "feedback" / submission.student / submission.assignment
         return all((folder / f"{notebook}.html").is_file() for notebook in notebooks)
 

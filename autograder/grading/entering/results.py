@@ -70,7 +70,7 @@ def _graded_outputs(
 
 
 def _of_tests(outputs: Sequence[Mapping[str, Any]]) -> Iterator[NotebookNode]:
-    """What tests printed or raised, in a form by which nbgrader decides nothing.
+    """The output and errors of tests, in a form by which nbgrader decides nothing.
 
     It takes an error and a line on standard error for zero points, and the first value for the points.
     """

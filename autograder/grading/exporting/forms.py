@@ -41,7 +41,7 @@ MOODLE_GRADEBOOK = ("First name", "Last name", "ID number", "Email address")
 
 
 def known_there(records: CollectedRecords, assignment: str, student: str, lms: str) -> Collected | None:
-    """What an LMS called a student when the work was collected; None where it came another way."""
+    """The name of a student in the LMS from which work was collected; None where it came another way."""
     history = records.get(assignment, student)
     found = [one for one in history.now.values() if one.lms == lms] if history else []
     return found[-1] if found else None
@@ -172,7 +172,7 @@ def filled_in(
 
 
 _EXCUSED = {"canvas": "EX"}
-"""What an LMS reads as excused."""
+"""The word that an LMS reads as excused."""
 
 
 def _written(score: float | None) -> str:
