@@ -1,4 +1,4 @@
-"""Who is to be graded: the assignments and the students that were named, or all where none was."""
+"""The choice of what is graded: the assignments and the students that were named, or all where none was."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class AskedFor:
-    """What a run was asked to grade.
+    """The choice of what a run is to grade.
 
     Attributes:
         assignments: Only these; all where there is none.
@@ -27,13 +27,13 @@ class AskedFor:
     students: Sequence[str]
 
     def has(self, student: str, assignment: str) -> bool:
-        """Whether a student's work for an assignment was asked for."""
+        """True if a student's work for an assignment was asked for."""
         return (not self.assignments or assignment in self.assignments) and (
             not self.students or student in self.students
         )
 
     def tells_of(self, refused: Refused, class_folder: Path) -> bool:
-        """Whether what was refused belongs to the students and assignments that were named."""
+        """True if what was refused belongs to the students and assignments that were named."""
         submitted = class_folder / "submitted"
         if not refused.path.is_relative_to(submitted):
             return True

@@ -215,7 +215,7 @@ class _Batch:
                 )
 
     def _unplaced(self) -> Iterator[Refused]:
-        """What was collected and has no place: who grades hears of it until it has one."""
+        """Collected files without a place, named to the instructor until they have one."""
         for one in WaitingList(self._directory).read():
             if self._asked.has(one.student or "", one.assignment or "") or not (
                 one.student and one.assignment

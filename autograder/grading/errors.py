@@ -1,4 +1,4 @@
-"""What can be wrong with a class, and what to do. The command line ends with exit code 2 on these."""
+"""Errors about a class, with what to do. The command line ends with exit code 2 on these."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ _GRADEBOOK_ADVICE = {
 
 
 def is_disk_full(error: BaseException | None) -> bool:
-    """Whether a full disk (or an exhausted quota) is at the bottom of ``error``."""
+    """True if a full disk (or an exhausted quota) is at the bottom of ``error``."""
     while error is not None:
         if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
             return True
@@ -136,7 +136,7 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
 
 
 def _said_by_database(error: BaseException | None) -> str:
-    """What a database said that is at the bottom of ``error``; empty where none is."""
+    """The words of the database at the bottom of ``error``; empty where there is none."""
     while error is not None:
         if type(error).__module__.startswith(("sqlite3", "sqlalchemy")):
             return " ".join(str(getattr(error, "orig", None) or error).split())[:200]

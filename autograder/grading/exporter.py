@@ -1,4 +1,4 @@
-"""What ``nbgrader_config.py`` of a class names for grading: through it, nbgrader comes to the engine."""
+"""The exporter that a class's ``nbgrader_config.py`` names for grading: through it, nbgrader comes to the engine."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ``nbgrader_config.py`` of a class names for pages: the exporter of feedback, and a filter for formgrader."""
+"""Names in a class's ``nbgrader_config.py`` for pages: the exporter of feedback, a filter for formgrader."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ``nbgrader_config.py`` of a class names in the place of nbgrader's Execute: a guard."""
+"""The guard that a class's ``nbgrader_config.py`` names in the place of nbgrader's Execute."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ UNREADABLE = "unreadable"
 
 @dataclass(frozen=True)
 class Task:
-    """What a worker needs to know, and nothing else.
+    """A task for a worker: what it needs to know, and nothing else.
 
     Attributes:
         student: The student's id, for messages.
@@ -47,7 +47,7 @@ class Task:
 
     @property
     def label(self) -> str:
-        """How the task is called in messages."""
+        """The name of the task in messages."""
         return f"{self.student}/{self.assignment}/{self.notebook}"
 
     def key(self) -> str:

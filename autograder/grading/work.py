@@ -46,7 +46,7 @@ class Work:
 
     @property
     def complete(self) -> bool:
-        """Whether all of its notebooks have a result."""
+        """True if all of its notebooks have a result."""
         return len(self.results) == len(self.notebooks)
 
     @property
@@ -58,7 +58,7 @@ class Work:
 def would_change(
     works: Iterable[Work], entries: Entries, cells: Mapping[str, Sequence[GradedCell]]
 ) -> list[Difference]:
-    """Who would get other points from the judge.
+    """The students who would get other points from the judge.
 
     Args:
         works: The submissions; those that are not written down are looked at.

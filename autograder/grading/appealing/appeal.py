@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from autograder.grading.entering.evidence import RunCell
 
 FOLDER = "appeals"
-"""Where in a class the files are written."""
+"""The folder of a class in which the files are written."""
 
 
 def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = None) -> Path:
@@ -84,7 +84,7 @@ def _appeal(directory: ClassDirectory, student: str, exercise_id: str, task: str
 
 
 def _before(cells: list[RunCell], exercise_id: str) -> Iterator[Cell]:
-    """What the student wrote above the check: all of it was run in the same kernel before."""
+    """The student's cells above the check: all of it was run in the same kernel before."""
     for cell in cells:
         if cell.checks == exercise_id:
             return

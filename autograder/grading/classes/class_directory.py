@@ -35,7 +35,7 @@ _LONGEST_NAME = 100
 
 @dataclass(frozen=True)
 class Submission:
-    """What one student handed in for one assignment.
+    """One student's work for one assignment.
 
     Attributes:
         student: The student's id.
@@ -87,7 +87,7 @@ class ClassDirectory:
 
     @property
     def gradebook_url(self) -> str:
-        """What SQLAlchemy opens the gradebook by."""
+        """The address by which SQLAlchemy opens the gradebook."""
         return str(
             self._as_written.CourseDirectory.get("db_url") or f"sqlite:///{self.path / 'gradebook.db'}"
         )
@@ -167,7 +167,7 @@ class ClassDirectory:
         return read_master(self.path / "source" / assignment / f"{notebook}{SUFFIX}", self.config)
 
     def files(self, assignment: str) -> dict[str, bytes]:
-        """What lies beside the assignment's notebooks, by relative path."""
+        """The files beside the assignment's notebooks, by relative path."""
         folder = self.path / "source" / assignment
         found = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.suffix != SUFFIX)
         return {
@@ -233,7 +233,7 @@ class ClassDirectory:
 
 
 def reason_against_name(name: str) -> str:
-    """Why a folder's name cannot be a student's id; empty where it can.
+    """The reason why a folder's name cannot be a student's id; empty where it can.
 
     nbgrader looks for folders with wildcards and splits paths at separators, so that some characters would
     find a neighbour's folder or none; control characters would forge lines in a terminal or a log.

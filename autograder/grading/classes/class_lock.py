@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Holder:
-    """Who is at work.
+    """The process that is at work.
 
     Attributes:
         pid: The process.
@@ -95,7 +95,7 @@ def _take(file: IO[bytes], holder: Holder, of: Path) -> bool:
 
 
 def _who(file: IO[bytes]) -> str:
-    """Who holds the lock, as the file says; empty where the holder has not written its name yet."""
+    """The holder of the lock, as the file says; empty where the holder has not written its name yet."""
     file.seek(0)
     try:
         return str(msgspec.json.decode(file.read(), type=Holder))

@@ -1,4 +1,4 @@
-"""Which lines of ``nbgrader_config.py`` decide how a submission is converted, and which of them a class may have.
+"""The lines of ``nbgrader_config.py`` that decide how a submission is converted, and those that a class may have.
 
 There is one conversion into the gradebook, whoever starts it. An option of nbgrader's own conversion that it does not
 know is refused before anything is touched, so that nobody believes in a line without effect.
@@ -69,14 +69,15 @@ _MAY_BE: Mapping[str, Mapping[str, tuple[Any, ...]]] = {
         )
     },
 }
-"""What the options of each section may be; a section that is not here is not about the conversion, or is honoured."""
+"""The values that the options of each section may have; a section that is not here is not about the conversion, or is
+honoured."""
 
 
 _INSTEAD = {
     f"{section}.timeout": "c.WireExecute.cell_seconds limits the time of a cell"
     for section in ("Execute", "ExecutePreprocessor", "NotebookClient")
 }
-"""What has the effect that somebody may have meant, by option."""
+"""The line with the effect that somebody may have meant, by option."""
 
 
 def check_configuration(directory: ClassDirectory) -> None:

@@ -84,7 +84,7 @@ class NewClass:
     assignments: tuple[str, ...]
 
     def summary(self) -> str:
-        """What was made and what comes next, in a few lines."""
+        """The new class and the next steps, in a few lines."""
         return "\n".join(
             (
                 f"{self.path} is a class with these assignments: {', '.join(self.assignments)}.",
@@ -155,7 +155,7 @@ Sources = dict[str, "tuple[Path, NotebookNode]"]
 
 
 def sources_of(course_root: Path, wanted: Sequence[str]) -> Sources:
-    """What the sources of a class are made of.
+    """The masters that the sources of a class are made of.
 
     Args:
         course_root: The folder that holds ``solutions``.

@@ -60,14 +60,14 @@ class SampleNotebook:
 
 @dataclass(frozen=True)
 class _Answer:
-    """What a student wrote into a solution cell, and into cells of their own before it."""
+    """A student's text in a solution cell, and in cells of their own before it."""
 
     source: str
     extra: tuple[str, ...]
 
 
 def sample_notebooks() -> tuple[SampleNotebook, ...]:
-    """What is handed in in the sample class."""
+    """The notebooks that are handed in in the sample class."""
     data = tomllib.loads(DATA.read_text(encoding="utf-8"))
     return msgspec.convert(data["notebook"], tuple[SampleNotebook, ...])
 
@@ -161,7 +161,7 @@ def made_notebook(path: Path, wanted: SampleNotebook) -> NotebookNode:
 def _changed(
     cell: NotebookNode, wanted: SampleNotebook, right: dict[str, str], answers: dict[str, _Answer]
 ) -> list[NotebookNode]:
-    """What stands in the place of one cell of the released notebook."""
+    """The cells in the place of one cell of the released notebook."""
     name = grade_id(cell)
     if not name:
         return [cell]

@@ -1,4 +1,4 @@
-"""When a submission was handed in: nbgrader's file of that, read without trusting it."""
+"""The time of handing in: nbgrader's file of it, read without trusting it."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ _HEX = frozenset("0123456789abcdef")
 _EARLIEST = datetime(2024, 5, 23)
 """The day on which ROS 2 Jazzy came out."""
 _AHEAD = timedelta(days=1)
-"""How much another machine's clock may be ahead."""
+"""The time by which another machine's clock may be ahead."""
 
 
 def read_timestamp(folder: Path) -> str:
-    """What is written in the file; empty where there is none, or where it is no ordinary file.
+    """The text of the file; empty where there is none, or where it is no ordinary file.
 
     Where work is collected with ``./course collect``, the file counts only as far as that has written it: a student
     can put one into what is handed in.
@@ -59,7 +59,7 @@ def companions(folder: Path) -> dict[str, bytes]:
 
 
 def is_not_believed(folder: Path) -> bool:
-    """Whether a file beside a submission says another time than ``./course collect`` wrote down in this class."""
+    """True if a file beside a submission says another time than ``./course collect`` wrote down in this class."""
     records = CollectedRecords(folder.parent.parent.parent / STATE_NAME)
     if not records.is_used or not (folder / TIMESTAMP).exists():
         return False
@@ -80,7 +80,7 @@ def timestamp_text(when: datetime) -> str:
 
 
 def handed_in_at(folder: Path) -> datetime | None:
-    """When the work in a folder was handed in, in UTC; None where nobody wrote it down.
+    """The time at which the work in a folder was handed in, in UTC; None where nobody wrote it down.
 
     Raises:
         ValueError: What was written down is no time, or one at which nobody can have handed in anything.

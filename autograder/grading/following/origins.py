@@ -1,4 +1,4 @@
-"""Which masters the sources of a class were made of, and which of them say something else now.
+"""The masters that the sources of a class were made of, and those that have changed since.
 
 A class has its own copy of each assignment, which its instructor may change. The judge has none: it expects what the
 course says today. So what is compared is a master then and now, and of it the cells that are graded or answered.
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Origin(msgspec.Struct, frozen=True):
-    """What a source of a class was made of.
+    """The origin of a source of a class.
 
     Attributes:
         master: The master's file.
@@ -60,7 +60,7 @@ def moved_on(directory: ClassDirectory, assignments: Iterable[str]) -> list[str]
 
 
 def news(directory: ClassDirectory, assignments: Iterable[str]) -> list[str]:
-    """What to say before a class is graded: which tasks were changed since, or that nobody can know.
+    """The note before a class is graded: the tasks that were changed since, or that nobody can know.
 
     Args:
         directory: The class.
@@ -77,7 +77,7 @@ def news(directory: ClassDirectory, assignments: Iterable[str]) -> list[str]:
 
 
 def warning(directory: ClassDirectory, assignment: str) -> str:
-    """What to say of such an assignment, and what to do."""
+    """The warning about such an assignment, and what to do."""
     return (
         f"{assignment}: its master in the course was changed since this class got its source. The judge expects what "
         "the course says now, so work that was written for the old text may fail. See first who would: "
