@@ -53,7 +53,7 @@ class BuildOrder:
 
 @dataclass(frozen=True)
 class Built:
-    """How a build ended.
+    """The end of a build.
 
     Attributes:
         returncode: Of colcon; None where it was ended, at a limit or because nobody waits for it any more.
@@ -73,7 +73,7 @@ class Builder(Protocol):
     """Runs builds."""
 
     def place(self, name: str, entry: Path) -> Path:
-        """Where jobs see a folder of the cache of builds.
+        """The path at which jobs see a folder of the cache of builds.
 
         Args:
             name: What stands for the kind of workspace, such as ``"ros2_ws"``: each has a place of its own.
@@ -119,7 +119,7 @@ class Program(Protocol):
     """The process that all its processes are below of, as the host counts."""
 
     def read(self, within: float) -> bytes | None:
-        """What it has said meanwhile; None for nothing yet, no bytes at its end.
+        """Its output since the last call; None for nothing yet, no bytes at its end.
 
         Args:
             within: Seconds to wait for something.
@@ -127,7 +127,7 @@ class Program(Protocol):
         ...
 
     def exit_code(self) -> int | None:
-        """How it ended, once it has; negative for a signal."""
+        """Its exit code once it has ended; negative for a signal."""
         ...
 
     def interrupt(self) -> None:
@@ -148,7 +148,7 @@ class Jobs(Builder, Protocol):
         ...
 
     def tree(self, sources: Path) -> Path:
-        """Where programs see the folder with what was submitted."""
+        """The path at which programs see the folder with what was submitted."""
         ...
 
     def start(self, job: ProgramJob) -> Program:

@@ -1,4 +1,4 @@
-"""What a build has made, taken over as data: regular files and folders, and nothing else.
+"""The result of a build, taken over as data: regular files and folders, and nothing else.
 
 Outside a box nothing that a box has made may be more than bytes. A link of the archive (a library has some, from its
 name to the name with its version) becomes a copy of the file that it names: who reads the folder later follows none.
@@ -106,7 +106,7 @@ def _parts(name: str) -> tuple[str, ...]:
 
 
 def _target(member: tarfile.TarInfo) -> PurePosixPath:
-    """Where a link leads. Read as text, which is exact: nothing in the folder is a link."""
+    """The target of a link. Read as text, which is exact: nothing in the folder is a link."""
     inside = os.path.normpath(PurePosixPath(*_parts(member.name)).parent / member.linkname)
     if inside.startswith(("..", "/")) or "\0" in inside:
         raise BadArtefacts(f"{member.name!r} leads out of the install folder")

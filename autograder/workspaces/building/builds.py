@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 MAX_LINE = 1_000
 """Characters of a line of a build's output that are looked at."""
 NO_DEFAULTS = {"COLCON_DEFAULTS_FILE": os.devnull}
-"""What a user tells colcon for all builds is not in the key."""
+"""Turns off a user's own settings for colcon, which are not in the key."""
 
 
 class BuildTookTooLong(RuntimeError):

@@ -95,19 +95,19 @@ def _own(folder: Path) -> Path:
 
 
 def is_ones_own(folder: Path) -> bool:
-    """Whether only this user may write to a folder."""
+    """True if only this user may write to a folder."""
     found = folder.lstat()
     own = stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid()
     return own and not found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
 
 
 def is_complete(key: str, base: Path) -> bool:
-    """Whether there is a finished entry, without waiting for anybody who makes it."""
+    """True if there is a finished entry, without waiting for anybody who makes it."""
     return _is_of(key, base / key / _MARKER)
 
 
 def _is_of(key: str, marker: Path) -> bool:
-    """Whether the marker was written for a build of this key, and not for one whose folder has another name since."""
+    """True if the marker was written for a build of this key, and not for one whose folder has another name since."""
     try:
         return marker.read_text(encoding="utf-8") == key
     except (OSError, UnicodeDecodeError):

@@ -93,7 +93,7 @@ def failed(found: Build, log: str) -> Build:
 
 
 def look(workspace: Path) -> Build:
-    """What is there to be built, without building it.
+    """The packages that are there to be built, without building them.
 
     Args:
         workspace: The folder that holds ``src``.

@@ -71,7 +71,7 @@ def _is_a_library(file: str) -> bool:
 
 
 def _place(error: re2.Match[str], log: str) -> str:
-    """Where a CMake error is to be mended: where it was raised may be a library's file, which the package called."""
+    """The line of the package to which a CMake error leads: it may be raised in a library's file."""
     stack = _CALL_STACK.match(log, error.end())
     own = _CALL.search(stack["calls"].strip().splitlines()[-1].strip()) if stack else None
     place = own or error

@@ -81,7 +81,7 @@ class TrustedBuilds(Builds):
         return made
 
     def _kept(self, found: Build, key: str) -> Build | None:
-        """What is there already; None where it is not, or is just being made."""
+        """The build that is there already; None where it is not, or is just being made."""
         if not cache.is_complete(key, self._folder):
             return None
         with cache.entry(key, self._folder) as entry:

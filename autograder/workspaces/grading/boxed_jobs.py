@@ -42,7 +42,8 @@ BUILD_LIMITS = Limits(
 )
 """An interface package takes 10 s of processor time, 400 MB, and writes 5 million bytes in 600 files."""
 PROGRAM_LIMITS = Limits(cpu_seconds=200.0, memory_bytes=1_500_000_000, processes=400)
-"""What a program may take, where the limits of the whole submission are not held by the system itself."""
+"""The resources that a program may take, where the limits of the whole submission are not held by the system
+itself."""
 LOOK_EVERY = 0.5
 """Seconds between two questions whether a build is still wanted."""
 _ITS_TIME = 1e6
@@ -65,7 +66,7 @@ class BoxedJobs:
 
     @property
     def environment(self) -> Mapping[str, str]:
-        """What every box has."""
+        """The variables of every box."""
         return box_environment()
 
     def place(self, name: str, entry: Path) -> Path:
@@ -74,7 +75,7 @@ class BoxedJobs:
         return HOME / name
 
     def tree(self, sources: Path) -> Path:
-        """Where the notebook is in the student's box."""
+        """The path of the notebook in the student's box."""
         del sources
         return WORK
 

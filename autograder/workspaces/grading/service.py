@@ -38,7 +38,7 @@ MAX_BUILDS = 20
 
 @dataclass(frozen=True)
 class ServiceSockets:
-    """Where the service listens.
+    """The sockets on which the service listens.
 
     Attributes:
         judge: For the judge's box alone.

@@ -176,7 +176,7 @@ class _Run(Preparation):
         self._follow(prepared, watch=True)
 
     def _hidden(self) -> Sequence[Path]:
-        """Where the task is to make interfaces, those that came with the course are not there to be copied."""
+        """The course's own interfaces that a task is to make, hidden so that they cannot be copied."""
         return course_interfaces() if isinstance(self._runner, ServesInterface) else ()
 
     def _follow(self, prepared: Prepared | None, *, watch: bool = False) -> None:
@@ -202,7 +202,7 @@ class _Run(Preparation):
             self._exited(program.exit_code())
 
     def _pass_on(self, program: Program) -> None:
-        """What it says, line by line, as long as it is wanted."""
+        """Pass on its output, line by line, as long as it is wanted."""
         left, line = MAX_OUTPUT, b""
         while not self._cancelled.is_set() and (data := program.read(0.1)) != b"":
             *complete, line = (line + (data or b"")).split(b"\n")
@@ -232,7 +232,7 @@ class _Run(Preparation):
         return made
 
     def place(self, name: str, entry: Path) -> Path:
-        """Where the jobs see it."""
+        """The path at which the jobs see it."""
         return self._jobs.place(name, entry)
 
     def report(self, line: str) -> None:

@@ -51,12 +51,12 @@ class OwnSession:
 
     @property
     def output(self) -> IO[bytes]:
-        """What it says; for who does not use :meth:`read`."""
+        """Its output, for callers that do not use :meth:`read`."""
         assert self._process.stdout is not None
         return self._process.stdout
 
     def read(self, within: float) -> bytes | None:
-        """What it has said meanwhile; None for nothing yet, no bytes at its end.
+        """Its output since the last call; None for nothing yet, no bytes at its end.
 
         Args:
             within: Seconds to wait for something.
@@ -75,7 +75,7 @@ class OwnSession:
     def collect(
         self, limit: float, size: int, unwanted: Callable[[], bool] = lambda: False
     ) -> tuple[bytes, bool]:
-        """What it says to its end, or until nobody wants it any more.
+        """Its output to its end, or until nobody wants it any more.
 
         Args:
             limit: Seconds of wall time in which it must have ended.
@@ -98,7 +98,7 @@ class OwnSession:
         return bytes(output), False
 
     def exit_code(self) -> int | None:
-        """How it ended, once it has; negative for a signal."""
+        """Its exit code once it has ended; negative for a signal."""
         return self._process.poll()
 
     def wait(self) -> int:

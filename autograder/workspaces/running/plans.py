@@ -1,4 +1,4 @@
-"""What an exercise does with a workspace: which packages it needs, what must be there then, and what is run."""
+"""An exercise's plan for a workspace: the packages that it needs, what must be there then, and what is run."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 COURSE_PACKAGE = "my_robot_pkg"
 """The course's own programs, which are launched where a student has none."""
 _LAUNCH_FILES = ("launch.py", ".xml", ".yaml", ".yml")
-"""What the names of launch files end in."""
+"""The endings of launch files' names."""
 _LARGEST = 1_000_000
 """Bytes that a launch file may have to be looked into; what a student's folder holds may be of any size."""
 
@@ -48,7 +48,7 @@ class Plan:
 
 
 def plan_for(runner: RunsProgram | RunsPrograms | ServesInterface, arguments: Sequence[str] = ()) -> Plan:
-    """What is needed of a workspace for what an exercise runs in it.
+    """The plan for what an exercise runs in a workspace.
 
     Args:
         runner: What the exercise runs.
@@ -118,7 +118,7 @@ def launch_targets(file: Path) -> Callable[[Build], Iterable[str]]:
 
 
 def lacks_programs(file: Path, made: Build, course_build: Build) -> bool:
-    """Whether a launch file is for programs of the course's package that the student's has not got.
+    """True if a launch file is for programs of the course's package that the student's has not got.
 
     Who has written talker and listener in the notebooks alone has no programs to launch. Who launches programs of
     other names has them: ``talker`` is then a variable, a node's name or a word in a comment.

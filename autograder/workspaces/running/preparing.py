@@ -61,7 +61,7 @@ class Preparation(ABC):
         self.report(line)
 
     def place(self, name: str, entry: Path) -> Path:
-        """Where the program sees a folder of the cache, which is its own place unless there is a box.
+        """The path at which the program sees a folder of the cache: its own, unless there is a box.
 
         Args:
             name: See :meth:`autograder.workspaces.jobs.Builder.place`.

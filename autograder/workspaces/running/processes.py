@@ -49,7 +49,7 @@ def _parent_of(pid: int) -> int:
 
 
 def started_at(pid: int) -> str:
-    """When a process began, in clock ticks since the system did: tells it from a later one of its number."""
+    """The start of a process, in clock ticks since the system's: a later one of its number has another."""
     try:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[19]
     except OSError:

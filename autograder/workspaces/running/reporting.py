@@ -20,7 +20,7 @@ MAX_LOG = 3_000
 
 
 def found_line(found: Build, plan: Plan) -> str:
-    """What is there, before it is built.
+    """The line on the sources, before they are built.
 
     Args:
         found: The workspace.
@@ -30,7 +30,7 @@ def found_line(found: Build, plan: Plan) -> str:
 
 
 def built_line(made: Build, plan: Plan | None = None, missing: str = "") -> str:
-    """What came of a build.
+    """The line on the result of a build.
 
     Args:
         made: The build.

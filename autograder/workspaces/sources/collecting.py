@@ -30,7 +30,7 @@ MAX_NAME = 120
 MAX_DEPTH = 16
 """Parts of a path."""
 LAUNCH_COMPANIONS = (".py", ".xml", ".yaml", ".yml", ".json", ".txt")
-"""How the names of files end that a launch file may need beside it."""
+"""The endings of the names of files that a launch file may need beside it."""
 
 
 def collect_workspace(workspace: Path) -> list[Source]:
@@ -130,7 +130,7 @@ def check_path(path: str) -> None:
 
 
 def _tree(folder: Path, name: str) -> Iterator[Source]:
-    """What a workspace's folder holds that a build may need, beginning with the folder itself."""
+    """The files of a workspace's folder that a build may need, beginning with the folder itself."""
     if not folder.is_dir():
         return
     yield Source(name)

@@ -1,4 +1,4 @@
-"""Which workspace a launch file belongs to."""
+"""The workspace that a launch file belongs to."""
 
 from __future__ import annotations
 

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 DEFINITIONS = (".msg", ".srv", ".action")
 UNREADABLE = (SyntaxError, ValueError, LookupError, RecursionError, MemoryError)
-"""How Python's parsers of Python and XML refuse a text: malformed, in an encoding that they do not know, too deep."""
+"""The errors with which Python's parsers of Python and XML refuse a text: malformed, in an encoding that they do not
+know, too deep."""
 _PROSE = ("LICENSE", "README.md", "README.rst", "CHANGELOG.rst")
 """Files that only people read, and no build."""
 _FOR_PEOPLE = {"description", "maintainer", "author", "license", "url"}
@@ -30,7 +31,7 @@ _FOR_PEOPLE = {"description", "maintainer", "author", "license", "url"}
 
 
 def holds_only_interfaces(package: Package) -> bool:
-    """Whether nothing but interfaces can come of a package: its files are those of an interface package."""
+    """True if nothing but interfaces can come of a package: its files are those of an interface package."""
     files = [path for path in package.folder.rglob("*") if path.is_file()]
     known = {"package.xml", "CMakeLists.txt", *_PROSE}
     return (

@@ -65,7 +65,7 @@ class Package:
 
     @property
     def commented(self) -> tuple[str, ...]:
-        """What it would depend on, too, if the lines in the comments of its package.xml counted."""
+        """The dependencies that it would also have if the lines in the comments of its package.xml counted."""
         comments = re2.findall(r"(?s)<!--(.*?)-->", _text(self.folder / "package.xml"))
         line = r"<(?:\w*depend|member_of_group)\b[^>]*>\s*([^<\s]+)\s*</"
         return tuple(name for comment in comments for name in re2.findall(line, comment))
@@ -162,7 +162,7 @@ def sources_of(src: Path, packages: Iterable[Package]) -> Tree:
 
 
 def key(tree: Tree, *words: str) -> str:
-    """What a build is known by: everything that is built, and everything that builds it.
+    """The key of a build: everything that is built, and everything that builds it.
 
     Args:
         tree: What is built.
@@ -172,7 +172,7 @@ def key(tree: Tree, *words: str) -> str:
 
 
 def toolchain() -> tuple[str, ...]:
-    """What else decides what a build brings: the interpreter, the build tools, the compiler and the underlay."""
+    """All else that decides on a build: the interpreter, the build tools, the compiler and the underlay."""
     programs = [
         shutil.which(os.environ.get(name) or usual) or "" for name, usual in (("CC", "cc"), ("CXX", "c++"))
     ]
@@ -203,7 +203,7 @@ def _tools() -> tuple[str, ...]:
 
 
 def state(file: str) -> str:
-    """What tells a file of the tools from a later one of the same name; empty where there is none."""
+    """A mark of a file of the tools, not shared by a later one of its name; empty where there is none."""
     try:
         found = Path(file).stat()
     except OSError:

@@ -64,7 +64,7 @@ class Tree:
 
 
 def is_source(path: str) -> bool:
-    """Whether a path is a source's, by its names alone: compiled Python and folders of tools are none."""
+    """True if a path is a source's, by its names alone: compiled Python and folders of tools are none."""
     return not any(part in _NOT_SOURCES or part.endswith(".pyc") for part in path.split("/"))
 
 
