@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 VARIABLE = "AUTOGRADER_COURSE"
-"""Names the top folder of a course that lies elsewhere than the package."""
+"""Names the top folder of a course that is elsewhere than the package."""
 SOLUTIONS = "solutions"
 """The folder of the chapters as their authors write them."""
 HANDED_OUT = "exercises"

@@ -1,4 +1,4 @@
-"""The exercises, found by what lies in the labs' folders. A module is imported when it is asked for.
+"""The exercises, found by what is in the labs' folders. A module is imported when it is asked for.
 
 An exercise ``lab_1_2.talker`` is the file ``talker.py`` in the folder ``lab_1_2`` of a chapter, and a module of the
 same name, so that the files of a lab import each other as in a package. A file whose name begins with an underscore is
@@ -127,7 +127,7 @@ def _files_of(root: Path) -> dict[str, Path]:
 
 
 class _LabsFinder:
-    """Has Python find the folder of a lab as a package, wherever its chapter lies."""
+    """Has Python find the folder of a lab as a package, wherever its chapter is."""
 
     @staticmethod
     def find_spec(

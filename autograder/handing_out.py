@@ -37,7 +37,7 @@ PAGES = ("students-guide.md", "mistakes.md", "fairness.md", "ros2-command.md", "
 """Of ``docs/``."""
 _MADE = frozenset({"__pycache__", ".ipynb_checkpoints"})
 _MADE_BY_COLCON = frozenset({"build", "install", "log"})
-"""Folders of what is made from other files; colcon's lie beside the folder ``src`` of a workspace."""
+"""Folders of what is made from other files; colcon's are beside the folder ``src`` of a workspace."""
 README = """\
 # {title}
 

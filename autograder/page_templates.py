@@ -6,7 +6,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 
 def page_templates(package: str) -> Environment:
-    """The templates that lie beside a package's modules.
+    """The templates that are beside a package's modules.
 
     Args:
         package: Its name, such as ``"autograder.progress"``.

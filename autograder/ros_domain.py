@@ -100,7 +100,7 @@ def domain_from_environment() -> int | None:
 
 
 def port(domain: int, offset: int) -> int:
-    """The UDP port of a domain that lies ``offset`` ports behind its first."""
+    """The UDP port of a domain that is ``offset`` ports behind its first."""
     return _PORT_BASE + _DOMAIN_GAIN * domain + offset
 
 

@@ -1,6 +1,6 @@
 """JupyterLab's settings from the environment: the kernel's variables, its terminals, no questions about news.
 
-All of it lies inside the environment (``.venv/share/jupyter``, ``.venv/etc/jupyter``), so that it holds
+All of it is inside the environment (``.venv/share/jupyter``, ``.venv/etc/jupyter``), so that it holds
 however JupyterLab is started and touches no setting of the user's own.
 """
 

@@ -1,6 +1,6 @@
 """``python -m autograder.authoring.as_edit FILE``: a whole answer as an edit of the right answer that is nearest to it.
 
-Prints its entry for a table in ``right`` or ``wrong``. The file can be removed when the entry stands there.
+Prints its entry for a table in ``right`` or ``wrong``. The file can be removed when the entry is there.
 """
 
 from __future__ import annotations

@@ -9,9 +9,9 @@ The form is that of a diff without line numbers::
     -        self.i += 1
     +        self.i += 2
 
-A line with ``-`` in front stands in the base and goes, one with ``+`` comes, and one with a space stands in the base
-and stays: it says which place is meant where the other lines stand in the base more than once. An empty line is an
-empty line that stays. ``...`` stands between two places.
+A line with ``-`` in front is in the base and goes, one with ``+`` comes, and one with a space is in the base
+and stays: it says which place is meant where the other lines are in the base more than once. An empty line is an
+empty line that stays. ``...`` is between two places.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def edited(base: str, change: str) -> str:
 
 
 def _sides(block: str) -> tuple[list[str], list[str]]:
-    """The lines of one place as they stand in the base, and as they are to be."""
+    """The lines of one place as they are in the base, and as they are to be."""
     old, new = [], []
     for line in block.split("\n"):
         if line[:1] not in ("", " ", "-", "+"):

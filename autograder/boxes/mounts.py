@@ -2,7 +2,7 @@
 
 Only what Python, ROS and a build of a workspace need, all of it read-only: the system's programs and libraries, the
 Python installation, the environment with the course's packages, and the package itself. Nothing of ``solutions/``,
-of a class or of the home folder, though an installation may lie below one. All that can be written to is the
+of a class or of the home folder, though an installation may be below one. All that can be written to is the
 scratch, which has a limit and vanishes with the box.
 """
 
@@ -112,7 +112,7 @@ def box_arguments(scratch: Path, binds: Sequence[Bind], *, scratch_visible: bool
 
 
 def _course_below_the_scratch() -> tuple[str, ...]:
-    """The course's folder where it lies below ``/tmp``: Python searches it, and in the scratch one could write."""
+    """The course's folder where it is below ``/tmp``: Python searches it, and in the scratch one could write."""
     folder = _PACKAGE.parent
     return (str(folder),) if any(folder.is_relative_to(place) for place in (HOME, Path("/tmp"))) else ()
 
@@ -199,7 +199,7 @@ def _installation(variables: Mapping[str, str]) -> tuple[Path, ...]:
 
 
 def _ros_prefix(path: Path) -> Path | None:
-    """The folder of an installation of ROS that a path lies in."""
+    """The folder of an installation of ROS that a path is in."""
     for folder in (path, *path.parents):
         if (folder / "share" / "ament_index").is_dir() or (folder / "conda-meta").is_dir():
             return folder
@@ -211,7 +211,7 @@ def _in_system(path: Path) -> bool:
 
 
 def _outermost(paths: Iterable[Path]) -> list[Path]:
-    """The folders without those that lie in another of them."""
+    """The folders without those that are in another of them."""
     every = sorted(set(paths))
     return [
         path for path in every if not any(path != other and path.is_relative_to(other) for other in every)

@@ -56,7 +56,7 @@ class BoxedPlace:
     Args:
         addresses: The fork servers.
         folder: Ours alone; short, because Unix sockets will be in it.
-        files: What lies beside the notebook.
+        files: What is beside the notebook.
         variables: More variables of the kernel's environment.
         socket_variable: The one that tells the kernel where the judge is.
         judge: What the judge's process needs.

@@ -66,7 +66,7 @@ class Enclosure:
     Args:
         supervisors: Where the fork server of supervisors listens.
         folder: Ours alone and short-lived; nothing of it is seen in a box but what is bound. Made where it is not.
-        files: Files to lie in the notebook's folder, by relative path.
+        files: Files to be in the notebook's folder, by relative path.
         scratch_bytes: What all files that the boxes write may have together.
         scratch_inodes: How many files, folders and links there may be.
         guard: Holds the limits of the commands; they share them with whatever else it guards.

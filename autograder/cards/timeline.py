@@ -1,7 +1,7 @@
 """The layout of the traffic picture: pure geometry, drawn by ``traffic.html.j2``.
 
 One picture is one part of the check: a row (lane) for each name on the graph, time from left to right. A mark
-stands at its time, also where another one stands; those that would hide each other are drawn one below the other.
+is at its time, also where another one stands; those that would hide each other are drawn one below the other.
 Lengths along the time axis are computed for the narrowest picture and given out as percentages, so that a
 wider card only gets more room; heights are pixels.
 """

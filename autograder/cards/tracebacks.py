@@ -20,7 +20,7 @@ class Place:
 
     Attributes:
         where: ``"Line 11 of your cell"``, or of a file.
-        quote: That line as it stands there, without its indentation; empty where it is not known.
+        quote: That line as it is there, without its indentation; empty where it is not known.
         error: What was raised, such as ``"AttributeError: 'Talker' object has no attribute 'nmae'"``.
     """
 

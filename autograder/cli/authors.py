@@ -1,4 +1,4 @@
-"""The commands of whoever writes the course: build, execute and record it, and add an exercise."""
+"""The commands of authors: build, execute and record the course, and add an exercise."""
 
 from __future__ import annotations
 

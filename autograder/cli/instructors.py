@@ -1,4 +1,4 @@
-"""The commands of whoever teaches: a class from handing out to returning."""
+"""The commands of instructors: a class from handing out to returning."""
 
 from __future__ import annotations
 

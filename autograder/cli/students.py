@@ -1,4 +1,4 @@
-"""The commands of whoever learns: check a program, open the course, see what is missing."""
+"""The commands of students: check a program, open the course, see what is missing."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """``nbgrader autograde`` and ``nbgrader generate_feedback`` on a class of ours, as commands or as formgrader's buttons.
 
-nbgrader's own conversion has no judge, and copies whatever lies in a submission: a pipe would hold it up for ever,
+nbgrader's own conversion has no judge, and copies whatever is in a submission: a pipe would hold it up for ever,
 and a file with a hole of a terabyte would fill the disk. So its steps are replaced by those of ``./course grade``.
 The class's configuration names exporters of ours. nbgrader makes an exporter before it converts the first notebook, and
 ours hands the converter that made it to :func:`take_over`.

@@ -28,7 +28,7 @@ class Task:
         seed: What the judge draws random inputs from.
         course: Stands for the version of everything that decides a grade.
         limits: All limits.
-        files: Files of the assignment that lie beside the notebook, by relative path.
+        files: Files of the assignment that are beside the notebook, by relative path.
         problem: Why there is nothing to execute; empty for a notebook that can be.
         boxed: Execute in boxes, or not at all. Without boxes is for the course's own notebooks, and for an instructor
             who has typed so; such a result never stands for one from a box.

@@ -24,7 +24,7 @@ class Work:
     """A submission on its way through the batch.
 
     Attributes:
-        submission: Where it lies.
+        submission: Its place.
         fingerprint: Of what it is made from, as it was at the start.
         notebooks: The names of its notebooks.
         results: What is known of the notebooks that are not written down yet, by notebook.

@@ -1,9 +1,9 @@
 """Clients whose server is late or does not come: how long they wait, what they say meanwhile, and how they give up.
 
-One rule holds for every client of the course. Who ends and says why has given up well; what it says just as well where
-the server is there, a bare number, or an error that nobody meant say nothing. Who says again and again that it
-waits has not left its user in the dark either, and may go on: a limit is then a remark on the card. Who is silent, or
-says something once and is silent then, does neither. A function that is told how long to wait, by a parameter
+One rule holds for every client of the course. A client that ends and says why has given up well; a bare number, an
+error that nobody meant, or words that it also says where the server is there are no such report. A client that says
+again and again that it waits may go on, with a remark on the card about limits. A client that is silent, or says
+something once and is silent then, does neither. A function that is told how long to wait, by a parameter
 ``patience_sec``, keeps that time.
 """
 
@@ -32,7 +32,7 @@ LATENESS = 1.5
 """Seconds that a late server comes after its client."""
 PATIENCES = (6.5, 6.95)
 """Between which the seconds are drawn that a function is told to wait. No usual constant, such as 5 or 10, is taken for
-one of these: it may differ from its patience by what stands below."""
+one of these: it may differ from its patience by what is below."""
 TOO_LONG = 2.0
 """Seconds that a function may need on top of its patience: to make its node, to take it away, to be slow."""
 SLACK = 3.0

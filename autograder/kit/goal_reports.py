@@ -147,7 +147,7 @@ def reports_result(part: Part) -> bool:
 
 
 def _are_in_order(numbers: Sequence[str], lines: Sequence[str]) -> bool:
-    # The numbers are long and random, so that their digits alone are told from whatever stands between them.
+    # The numbers are long and random, so that their digits alone are told from whatever is between them.
     digits, place = re2.sub(r"\D", "", " ".join(lines)), 0
     for number in numbers:
         place = digits.find(number, place)
@@ -174,7 +174,7 @@ def miscalled(part: Part) -> str:
     """A line that calls a goal canceled or aborted that has succeeded; empty where there is none."""
     said = said_of_result(part)
     if any(re2.search(r"(?i)\bsucceeded\b", words.without_lists(line)) for line in said):
-        # The other names may stand in a table around the true one.
+        # The other names may be in a table around the true one.
         return next((line for line in said for word in _FAILURES if words.flag(word, line)), "")
     for line in said:
         plain = words.without_lists(line)
@@ -310,7 +310,7 @@ def given_up(evidence: Evidence) -> str:
     """The fault in its giving up without a server, in words."""
     part = evidence.part(ABSENT)
     # Who ends at once whether there is a server or not has not given up. But one that looks under another name has.
-    # In which other runs one asks that hardly waits is a matter of chance; where the server is late, in none.
+    # A client that hardly waits may or may not have asked in the other runs: timing decides.
     late = evidence.part(LATE)
     asked = (
         asked_for(late)

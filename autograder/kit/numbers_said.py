@@ -19,7 +19,7 @@ _UNSIGNED_ZERO = rf"(?:^|[^\d.\-−]|{_DASH}|(?:^|\D)\.)"
 
 
 def mentions(lines: Sequence[str], number: int) -> bool:
-    """True if the number stands in one of the lines, with or without separators between its digits."""
+    """True if the number is in one of the lines, with or without separators between its digits."""
     digits = r"[,_' .]?".join(str(abs(number)))
     before, after = _UNSIGNED, r"(?:\D|$)"
     if number < 0:

@@ -174,7 +174,7 @@ def gives_up_in_time(evidence: Evidence) -> Finding:
     """Without a service it gives up, or goes on, as the one rule for all clients says."""
     part = evidence.part(ABSENT)
     # Who ends at once whether there is a service or not has not given up. But one that looks under another name has.
-    # In which other runs one asks that gives up at once is a matter of chance; where the service is late, in none.
+    # A client that gives up at once may or may not have called in the other runs: timing decides.
     asked = bool(requests(evidence.part(LATE)) or giving_up.other_names(evidence, "client"))
     numbers = part.inputs.get("numbers", ())
     # Who names the sum has not given up, but added up by itself; a sum that is one of the numbers shows nothing.
@@ -338,7 +338,7 @@ def fields_never_filled(evidence: Evidence) -> Advice | None:
 
 
 def waits_for_nobody(evidence: Evidence) -> Advice | None:
-    """Without a service it never ends, and leaves its user in the dark; or not when it was told to."""
+    """Without a service it neither stops in time nor says that it waits."""
     part = evidence.part(ABSENT)
     if not part.events or part.ending is not None or giving_up.goes_on_waiting(part):
         return None

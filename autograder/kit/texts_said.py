@@ -56,8 +56,8 @@ class Frame:
     """The words in which a program says a text.
 
     Attributes:
-        before: What stands before the text in its line.
-        after: What stands behind it.
+        before: What is before the text in its line.
+        after: What is behind it.
     """
 
     before: str
@@ -77,7 +77,7 @@ class Frame:
 
     @property
     def has_quotes(self) -> bool:
-        """True if the text stands in quotation marks."""
+        """True if the text is in quotation marks."""
         return self.before.endswith(_OPENING) and self.after.startswith(_CLOSING)
 
     @property
@@ -98,7 +98,7 @@ class Frame:
 def invented(part: Part, sent: Sequence[str]) -> list[str]:
     """The texts that it claims to have heard although nobody sent them.
 
-    Its own way of saying is learnt from the first line that carries a sent text: what stands before and after the text.
+    Its own way of saying is learnt from the first line that carries a sent text: what is before and after the text.
     A line with the same frame and another text in it was invented. Where it said none of the texts, a line with a
     quoted text is taken for such a claim.
     """

@@ -1,6 +1,6 @@
 """Figures: drawn once as SVG, carried by a notebook as a PNG inside the text cell that shows it.
 
-A notebook has to show its figures wherever it lies, so they travel in it. As a PNG, because no SVG that is attached to
+A notebook has to show its figures wherever it is, so they travel in it. As a PNG, because no SVG that is attached to
 a cell is shown by JupyterLab, and no file beside the notebook follows it into a student's folder. The PNG is drawn from
 the SVG by :mod:`autograder.masters.drawing` and committed beside it; it holds a digest of the SVG, so that a figure
 that was changed and not drawn again is noticed.
@@ -54,7 +54,7 @@ def attach_figures(folder: Path, markdown: str) -> tuple[str, dict[str, dict[str
     """A text cell that brings its figures along.
 
     Args:
-        folder: Where the master lies; its references start from there.
+        folder: Where the master is; its references start from there.
         markdown: The text of the cell.
 
     Returns:

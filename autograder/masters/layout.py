@@ -75,7 +75,7 @@ def chapter_notebooks(root: Path) -> list[Path]:
 
 
 def find_root(start: Path) -> Path:
-    """The course that ``start`` lies in: the nearest folder at or above it with a ``solutions`` folder.
+    """The course that ``start`` is in: the nearest folder at or above it with a ``solutions`` folder.
 
     Raises:
         MasterError: No folder at or above ``start`` has one.

@@ -39,7 +39,7 @@ def reference_source(master: Path, exercise: str, *, points: Points = exercise_p
 
     Solution cells are kept whole. Of given cells only imports, functions, classes and constants are kept: the
     rest demonstrates. Files are written, and where the subject is a path the shell runs what is given to it:
-    what is judged then lies on the disk, and commands such as ``ros2 pkg create`` put it there.
+    what is judged then is on the disk, and commands such as ``ros2 pkg create`` put it there.
 
     Raises:
         MasterError: The master cannot be used, or has no check of ``exercise``.

@@ -24,7 +24,7 @@ class LeaveStubs(ClearSolutions):
     """nbgrader's ClearSolutions, changed so that each solution leaves a stub of its own.
 
     Stock nbgrader puts the same text into every cleared region. Here each region opens with the comment that students
-    get in its place (``regions.py``), so the cell runs as it stands and says what is to be done. Any other solution is
+    get in its place (``regions.py``), so the cell runs as it is and says what is to be done. Any other solution is
     cleared as nbgrader does it.
     """
 

@@ -1,6 +1,6 @@
 """The reference solution of each exercise as students may read it once they have full marks: code, and why it is so.
 
-Why stands beside the exercise, in a file such as ``talker.why.md``: one paragraph, and where another way is worth a
+Why is beside the exercise, in a file such as ``talker.why.md``: one paragraph, and where another way is worth a
 look, the heading ``## Another way``, a paragraph and a block of code. The code of the solution is the master's.
 """
 

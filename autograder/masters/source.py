@@ -29,7 +29,7 @@ GRADE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 SCHEMA_VERSION = 3
 """Of nbgrader's cell metadata."""
 
-# No version of Python or of a package stands here: it would change the chapters from machine to machine.
+# No version of Python or of a package is here: it would change the chapters from machine to machine.
 NOTEBOOK_METADATA: dict[str, Any] = {
     "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
     "language_info": {

@@ -27,7 +27,7 @@ class _Element:
     """An element of the list of entry points.
 
     Attributes:
-        source: As it stands in setup.py. It is written back as it was read.
+        source: As it is in setup.py. It is written back as it was read.
         text: What it comes to; the same as the source where that is known only when setup.py runs.
         above: The comments on the lines above it.
         behind: The comment behind it.

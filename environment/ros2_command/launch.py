@@ -146,7 +146,7 @@ def _launch(args: argparse.Namespace) -> Outcome:
     if Path(args.package_name).is_file():
         path = args.package_name
         if args.launch_file_name is not None:
-            # With a path there is no second name: what stands there is the first argument.
+            # With a path there is no second name: what is there is the first argument.
             given.insert(0, args.launch_file_name)
     else:
         path = launch_file_in_package(args.package_name, args.launch_file_name)

@@ -83,7 +83,7 @@ def _group(prog: str, command: Command, argv: list[str]) -> Outcome:
         return _needs_full(f"{prog} {name}")
     if name in command.verbs and not {"-h", "--help"} & set(argv[:at]):
         word = command.verbs[name]
-        # Options may stand before the verb (`ros2 topic --include-hidden-topics list`).
+        # Options may be before the verb (`ros2 topic --include-hidden-topics list`).
         args = _parse(f"{prog} {name}", word.summary, verb := word.load(name), argv[:at] + argv[at + 1 :])
         return verb.main(args)
     parser = _parser(prog, command.summary)

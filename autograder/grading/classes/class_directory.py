@@ -40,7 +40,7 @@ class Submission:
     Attributes:
         student: The student's id.
         assignment: The assignment's name.
-        folder: Where it lies.
+        folder: Its place.
     """
 
     student: str
@@ -181,7 +181,7 @@ class ClassDirectory:
     def submissions(self) -> tuple[list[Submission], list[Refused]]:
         """Everything that was handed in, and what cannot be graded under the name it has.
 
-        What lies in the place of a notebook and is no ordinary file is among both: it is graded, with zero points
+        What is in the place of a notebook and is no ordinary file is among both: it is graded, with zero points
         and the reason.
         """
         notebooks = {assignment: self.notebooks(assignment) for assignment in self.assignments()}

@@ -113,7 +113,7 @@ def new_class(
         notebook_seconds: Wall time of a notebook.
 
     Raises:
-        ClassExists: There is something already, or the place lies inside the repository.
+        ClassExists: There is something already, or the place is inside the repository.
         GradingError: An assignment is not known, its master cannot be used, or nbgrader could not make it.
     """
     path = path.absolute()

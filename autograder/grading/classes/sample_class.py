@@ -84,7 +84,7 @@ def submit_sample(path: Path) -> None:
 def demo(path: Path, *, console: Console | None = None) -> GradeReport:
     """Make the sample class, grade it, print the table and where everything is.
 
-    A class that this made before from the same course is graded as it stands, which takes seconds. Where no sandbox
+    A class that this made before from the same course is graded as it is, which takes seconds. Where no sandbox
     is possible it is graded without one: the samples are the course's own.
 
     Args:

@@ -51,8 +51,8 @@ class File:
     """A file of an archive or folder.
 
     Attributes:
-        source: The archive, or the folder that the named folder or file lies in.
-        parts: Its path in there, without anything that leads upwards; of what lies in an archive that a student has
+        source: The archive, or the folder that the named folder or file is in.
+        parts: Its path in there, without anything that leads upwards; of what is in an archive that a student has
             handed in, the path of that archive.
         read: Reads it, up to the limit of a notebook; raises :class:`NotTaken`.
         inner: The path within an archive that a student has handed in: the student chose it.
@@ -188,7 +188,7 @@ def _of_zip(outer: File, data: BinaryIO, room: _Room) -> Iterator[File]:
 
 
 def is_zip(name: str, data: bytes) -> bool:
-    """True if a file that was handed in is an archive to be opened, whatever stands behind its name.
+    """True if a file that was handed in is an archive to be opened, whatever is behind its name.
 
     Documents of office programs are zips, too, and hold no notebook.
     """

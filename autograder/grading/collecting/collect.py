@@ -210,7 +210,7 @@ class _Collecting:
                 self._take_file(inner, held, who, found, source)
 
     def _likely_form(self, files: Sequence[File], depth: int) -> str:
-        """The form that most of the names have; empty where as many lie in folders that are called as students are.
+        """The form that most of the names have; empty where as many are in folders that are called as students are.
 
         A student chooses the names of files in such a folder, and might choose one that another system would give
         to somebody else's.
@@ -249,7 +249,7 @@ class _Collecting:
             self._refuse(file, reason, who)
             return
         way, members = who
-        # Of what lies in a student's own zip the name says which notebook it is, though not whose.
+        # Of what is in a student's own zip the name says which notebook it is, though not whose.
         name = file.name if file.inner else way.file
         for (student,) in members:
             try:
@@ -336,7 +336,7 @@ class _Collecting:
 
 
 def _alone(one: Outcome) -> Outcome:
-    """A file that lies beside its student's notebook needs no place; one that came without any does."""
+    """A file that is beside its student's notebook needs no place; one that came without any does."""
     return replace(one, state=State.NOT_PLACED) if one.state == State.BESIDE and one.student else one
 
 

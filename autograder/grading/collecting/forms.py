@@ -21,7 +21,7 @@ FORMS = ("moodle", "blackboard", "brightspace", "canvas", "google", "github", "g
 # Ada Lovelace_12345_assignsubmission_file_lab_1_2.ipynb; since 4.1, and with folders before, it is a folder's name.
 _MOODLE = re2.compile(r"^(?P<name>[^_]+)_(?P<number>\d+)_assignsubmission_(?:file|onlinetext)_?(?P<file>.*)$")
 # lab_1_2_adal_attempt_2025-10-03-14-05-06_lab_1_2.ipynb; without the file, .txt: what the student typed.
-# The first attempt in the name is Blackboard's: what stands behind it is the student's own.
+# The first attempt in the name is Blackboard's: what is behind it is the student's own.
 _BLACKBOARD = re2.compile(
     r"^(?P<item>.+?)_(?P<login>[^_]+)_attempt_(?P<when>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)$"
 )
@@ -107,7 +107,7 @@ def _moodle(parts: Sequence[str]) -> Found | None:
         found = _MOODLE.match(part)
         if found is not None:
             is_file = place == len(parts) - 1
-            # Of a group's work, or with a group chosen, the group's name stands in front: Group A-Ada Lovelace.
+            # Of a group's work, or with a group chosen, the group's name is in front: Group A-Ada Lovelace.
             names = [found["name"], *_ends(found["name"], "-")]
             whole, *shorter = (Identity("moodle", found["number"], name=name) for name in names)
             return Found(whole, found["file"] if is_file else parts[-1], readings=(whole, *shorter))
@@ -126,7 +126,7 @@ def _blackboard(parts: Sequence[str]) -> Found | None:
         if found is not None:
             file = found["file"] if place == len(parts) - 1 else parts[-1]
             when = datetime.strptime(found["when"], "%Y-%m-%d-%H-%M-%S") if _is_date(found["when"]) else None
-            # A user name may have the mark in it that stands in front of it.
+            # A user name may have the mark in it that is in front of it.
             logins = _ends(f"{found['item']}_{found['login']}", "_") or [found["login"]]
             *longer, usual = (Identity("blackboard", login=login) for login in logins)
             return Found(usual, file or part, when, readings=(*longer, usual), time=found["when"])
@@ -163,7 +163,7 @@ def _of_brightspace(number: str, name: str) -> list[Identity]:
 
 
 def _clock_time(text: str) -> datetime | None:
-    """``Oct 3, 2025 205 PM`` or ``3 October, 2025 1405``: the colon cannot stand in a folder's name."""
+    """``Oct 3, 2025 205 PM`` or ``3 October, 2025 1405``: the colon cannot be in a folder's name."""
     words = text.replace(",", "").replace(".", "").replace(":", "").upper().replace("SEPT ", "SEP ")
     half = next((half for half in ("AM", "PM") if words.endswith(half)), "")
     *date, clock = words.removesuffix(half).split()

@@ -158,7 +158,7 @@ class WaitingList:
         return Waiting(outcome.label, outcome.reason, outcome.student, outcome.assignment, there, now)
 
     def _there(self, one: Outcome | Waiting) -> str:
-        """A digest of what lies at the place of a file of which it is known."""
+        """A digest of what is at the place of a file of which it is known."""
         if not one.student or not one.assignment:
             return ""
         folder = self._directory.path / "submitted" / one.student / one.assignment

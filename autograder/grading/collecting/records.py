@@ -54,7 +54,7 @@ class History:
     """The files that were collected of one student for one assignment.
 
     Attributes:
-        now: What lies in ``submitted``, by notebook.
+        now: The content of ``submitted``, by notebook.
         before: What was there before it, the oldest first; its bytes are kept.
     """
 

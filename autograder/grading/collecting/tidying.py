@@ -22,7 +22,7 @@ class Tidied:
     Attributes:
         notices: What was put right or is worth knowing.
         refused: What somebody has to put right.
-        waiting: What would be put right: where it lies, and where it belongs.
+        waiting: What would be put right: where it is, and where it belongs.
         moves: Whether anything is put right, or only found.
     """
 

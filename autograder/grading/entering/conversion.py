@@ -1,4 +1,4 @@
-"""The one conversion: a graded submission as it lies in ``autograded/``, and what the gradebook has to hold of it.
+"""The one conversion: a graded submission as it is in ``autograded/``, and what the gradebook has to hold of it.
 
 It leaves behind what nbgrader's own conversion would, in a twentieth of the time: that one reads, validates and writes
 every notebook twice and opens the gradebook a dozen times.

@@ -37,7 +37,7 @@ def with_results(nb: NotebookNode, task: Task, execution: Execution) -> Notebook
         else:
             node.outputs = [nodes.output(**output) for output in run.outputs]
             node.outputs += _remark(node, cell, run, task.limits) if execution.cells else []
-    # Here and not on the page: formgrader shows what lies in autograded/, and it cleans nothing.
+    # Here and not on the page: formgrader shows what is in autograded/, and it cleans nothing.
     make_harmless(nb, range(len(nb.cells)) if execution.trouble else execution.as_typed)
     nb.cells = list(_with_rubrics(nb.cells))
     if not task.boxed:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 _MADE_BY_PYTHON = "__pycache__"
 _MADE_BY_COLCON = frozenset({"build", "install", "log"})
-"""Folders of what is made from the files that count; colcon's lie beside the folder ``src`` of a workspace."""
+"""Folders of what is made from the files that count; colcon's are beside the folder ``src`` of a workspace."""
 _OF_CHAPTERS = (f"*/{course.CHAPTER}", "*/*/*.py", f"*/*/*{REFERENCE}")
 """The files of the chapters that count: their descriptions, the exercises and their reference outputs."""
 

@@ -6,7 +6,7 @@ domain of its own, so that nothing of such a cell reaches it.
 
 A cell counts as a demonstration only where that is plain: it is the master's own, locked and without points,
 it is a terminal's (``%%bash``), and each of its commands looks, talks to running nodes or waits. Whatever makes or
-changes a file that is not its own log, such as ``ros2 pkg create`` or ``colcon build``, is run, unless it stands below
+changes a file that is not its own log, such as ``ros2 pkg create`` or ``colcon build``, is run, unless it is below
 the last cell that earns points. There a notebook has its nodes written into a package, built and run as programs, which
 its reader sees and no check looks at: its files and terminals are left out.
 """
@@ -101,7 +101,7 @@ def _only_looks(script: str) -> bool:
 
 
 def _looks(words: list[str]) -> bool:
-    """True if one simple command only looks; keywords and ``timeout`` stand before the command they lead to."""
+    """True if one simple command only looks; keywords and ``timeout`` are before the command they lead to."""
     while words and (
         words[0] in {"do", "then", "until", "while", "if", "timeout", "!"} or _FLAGS.match(words[0])
     ):

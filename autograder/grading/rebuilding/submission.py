@@ -154,7 +154,7 @@ def _found_instead(folder: Path) -> str:
 
 
 def _shown(name: str) -> str:
-    """A file's name as it can stand in any text: a student chose it, or a program that a student wrote."""
+    """A file's name as it can be in any text: a student chose it, or a program that a student wrote."""
     name = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in name)
     return name if len(name) <= _LONGEST_SHOWN else f"{name[:_LONGEST_SHOWN]}…"
 

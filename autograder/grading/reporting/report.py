@@ -111,7 +111,7 @@ class GradeReport:
     Attributes:
         path: The class.
         rows: By student, in the order of the course.
-        refused: What lies in ``submitted`` and cannot be graded under that name.
+        refused: Files in ``submitted`` that cannot be graded under that name.
         problems: What else went wrong, each a sentence; none of it earned anybody points.
         notices: What is worth knowing and is nobody's mistake, each a sentence.
         would_change: Who would get other points, where nothing was entered; None where it was.
@@ -166,7 +166,7 @@ class GradeReport:
 def columns(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
     """The name of the column for each exercise, by assignment and exercise.
 
-    Cells of an instructor's own are often called alike in several assignments; then the assignment stands in front.
+    Cells of an instructor's own are often called alike in several assignments; then the assignment is in front.
     """
     keys = list(dict.fromkeys((row.assignment, row.exercise) for row in rows if row.exercise != LATE))
     often = Counter(exercise for _, exercise in keys)

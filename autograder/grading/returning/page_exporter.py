@@ -88,7 +88,7 @@ class PageExporter(HTMLExporter):
         """Make the page of one notebook.
 
         Args:
-            notebook: As it lies in ``autograded/``, with points and comments filled in; it is changed.
+            notebook: As it is in ``autograded/``, with points and comments filled in; it is changed.
             names: What the template asks of the student, the notebook and the points.
         """
         language = notebook.metadata.get("language_info", {})

@@ -32,7 +32,7 @@ def with_summary(body: str, notebook: NotebookNode, names: Mapping[str, Any]) ->
     """A page with a table of its exercises at the top, in the place of nbgrader's list.
 
     Args:
-        body: The page; nothing that a student wrote stands before the list.
+        body: The page; nothing that a student wrote is before the list.
         notebook: What it was made of, with points filled in.
         names: What the template knows of the whole.
     """

@@ -30,7 +30,7 @@ class Answer:
         assignment: The assignment's name.
         notebook: The notebook's name.
         cell: The cell's name.
-        text: What stands there.
+        text: What is there.
     """
 
     student: str

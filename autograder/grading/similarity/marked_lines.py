@@ -22,7 +22,7 @@ class Piece:
     """A piece of a line.
 
     Attributes:
-        text: What stands there, safe to read; a template escapes it for HTML.
+        text: What is there, safe to read; a template escapes it for HTML.
         passage: The number of the common passage that it belongs to; 0 for none.
         begins: Whether this is where its number has to stand.
     """
@@ -38,7 +38,7 @@ class Line:
 
     Attributes:
         number: Counted from 1; 0 where lines are left out.
-        pieces: What stands in it.
+        pieces: What is in it.
         left_out: How many lines are left out here.
     """
 

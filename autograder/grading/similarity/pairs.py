@@ -69,7 +69,7 @@ def closest_first(pairs: Sequence[Pair]) -> list[Pair]:
 def _candidates(answers: Sequence[Compared]) -> list[tuple[Compared, Compared]]:
     """The pairs with sequences enough in common for a finding; to lay all answers side by side would take long.
 
-    In a passage, at least every seventh of the shared own words begins a sequence, or stands in one, that is shared.
+    In a passage, at least every seventh of the shared own words begins a sequence, or is in one, that is shared.
     """
     holders: defaultdict[tuple[str, ...], list[int]] = defaultdict(list)
     for place, answer in enumerate(answers):

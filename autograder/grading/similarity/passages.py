@@ -21,7 +21,7 @@ _FOUND_IN_FIRST, _FOUND_IN_SECOND = -3, -4
 
 @dataclass(frozen=True)
 class Passage:
-    """Words that stand in both answers in the same order.
+    """Words that are in both answers in the same order.
 
     Attributes:
         first: The place of the first word in one answer.

@@ -174,7 +174,7 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
     """The students of ``students.csv``; none where there is no such file.
 
     Raises:
-        RosterError: A column or an id is missing, or stands there twice.
+        RosterError: A column or an id is missing, or is there twice.
     """
     path = directory.path / NAME
     try:

@@ -45,7 +45,7 @@ def true_rows(
         cells: The cells with points, by assignment.
         judged: The judge's results.
         entries: What the gradebook has.
-        handed_in: What lies in ``submitted``: students and assignments.
+        handed_in: The content of ``submitted``: students and assignments.
         excused: Students and assignments that they need not do.
         what_counts: What the instructor leaves out or gives another weight.
     """

@@ -112,7 +112,7 @@ class Wire:
         """Let the executor take one message or call of each endpoint that has any; whether it did, in time.
 
         An executor begins each of its rounds with its tasks and takes then what there is (rclpy/executors.py,
-        _wait_for_ready_callbacks), so a round lies between two tasks.
+        _wait_for_ready_callbacks), so a round is between two tasks.
         """
         for _ in range(2):
             done = threading.Event()

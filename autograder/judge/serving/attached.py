@@ -45,7 +45,7 @@ def environment(*, boxed: bool) -> dict[str, str]:
 
     They are for a judge that gets a new set.
 
-    The folder of the logs is not among them: it lies in the box.
+    The folder of the logs is not among them: it is in the box.
     """
     profile = str(settings.PROFILE)
     return {

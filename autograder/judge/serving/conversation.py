@@ -96,7 +96,7 @@ def own_seed(seed: str, exercise_id: str) -> str:
 
 
 def _tell(lines: Lines, message: Message) -> None:
-    # A verdict stands also where its notebook has gone away meanwhile.
+    # A verdict holds also where its notebook has gone away meanwhile.
     with contextlib.suppress(Hangup):
         lines.say(message)
 

@@ -74,7 +74,7 @@ class Child:
     def result(self, *, within: float | None = None) -> Outcome:
         """Wait for the child's bytes, at most until its limit.
 
-        A judge that is deciding then is told to come to an end, and says so: what stands in its way is what the
+        A judge that is deciding then is told to come to an end, and says so: what is in its way is what the
         subject has said. One that is still looking is killed.
 
         Args:

@@ -50,7 +50,7 @@ def load(exercise_id: str) -> Reference:
 
 
 def digest(exercise_id: str) -> str:
-    """The SHA-256 of a reference output as it lies on the disk.
+    """The SHA-256 of a reference output as it is on the disk.
 
     Raises:
         NoReference: It does not exist.

@@ -155,7 +155,7 @@ class Launched:
         return any(self._begins(old) and _leads_to(self.topic, new) for old, new in remappings(argv))
 
     def _begins(self, name: str) -> bool:
-        """True if a rule is one for the name in the code; a node's name may stand before it, and a namespace."""
+        """True if a rule is one for the name in the code; a node's name may be before it, and a namespace."""
         return name.rpartition(":")[2].rpartition("/")[2] == self._old_name
 
 

@@ -181,7 +181,7 @@ class ServiceType:
         )
 
     def _interface_in_python_package(self, evidence: Evidence) -> Advice | None:
-        """The file lies in an ament_python package, where nothing is generated from it."""
+        """The file is in an ament_python package, where nothing is generated from it."""
         holders = self._holders(evidence)
         if (
             self.builds(evidence).passed

@@ -1,4 +1,4 @@
-"""The arrow of a traceback at the line that raised, also where a ``finally`` stands below it.
+"""The arrow of a traceback at the line that raised, also where a ``finally`` is below it.
 
 IPython counts the lines of the file in which a frame's code is, to show long files in a quicker way. A cell's file is
 not there, and so IPython 9 takes each cell for a long one. On the quick way the arrow is at the line at which the frame

@@ -81,7 +81,7 @@ class CardDisplay:
     ) -> None:
         self._stop_telling()
         if error is not None and self._handle is not None and (earlier := _shown.get(self.exercise)):
-            # Interrupted: what stands there is an earlier result, and no check goes on.
+            # Interrupted: what is there is an earlier result, and no check goes on.
             notice = "This is the result of an earlier check: the last one was interrupted."
             update_card(
                 self._handle, bundle.mimebundle(earlier.verdict, before=earlier.before, notice=notice)

@@ -48,7 +48,7 @@ def plot(topic: str, field: str, minutes: float = 10.0) -> LivePicture:
 
     Args:
         topic: Its name, such as ``"/odom"``.
-        field: Where the number stands in a message, such as ``"data"``, ``"pose.pose.position.x"`` or ``"ranges[0]"``.
+        field: Where the number is in a message, such as ``"data"``, ``"pose.pose.position.x"`` or ``"ranges[0]"``.
         minutes: How long it goes on at most.
 
     Raises:
@@ -68,10 +68,10 @@ _STEP = re2.compile(r"(\w+)(?:\[(\d+)\])?")
 
 
 def number_in(message: Any, field: str) -> float:
-    """The number that stands in a field of a message.
+    """The number that is in a field of a message.
 
     Raises:
-        LookupError: There is no such field, or what stands there is no number; the error says what there is.
+        LookupError: There is no such field, or what is there is no number; the error says what there is.
     """
     value, way = message, list[str]()
     for name, index in _STEP.findall(field):

@@ -59,7 +59,7 @@ class _Here:
     """Implements :class:`autograder.workspaces.jobs.Builder`.
 
     Args:
-        workspace: What lies in it is not found by the build.
+        workspace: What is in it is not found by the build.
     """
 
     def __init__(self, workspace: Path) -> None:

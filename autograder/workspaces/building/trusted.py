@@ -2,9 +2,8 @@
 
 It may be used again for the same sources, whoever hands them in. No box can write to the cache.
 
-Packages that hold interfaces and nothing else are often the same but for comments and spaces. When a second one comes
-that means the same as one that was built before, a simplified form of it is built, with nobody's own words in it, and
-serves all that are to come.
+Packages that hold interfaces and nothing else are often the same but for comments and spaces. Of the second one with
+the same meaning a normalised copy without comments is built, so that equal definitions are built once.
 """
 
 from __future__ import annotations

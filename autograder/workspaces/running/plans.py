@@ -104,7 +104,7 @@ def _interface_plan(runner: ServesInterface) -> Plan:
 
 
 def launch_targets(file: Path) -> Callable[[Build], Iterable[str]]:
-    """The packages of a workspace whose names stand in a launch file, or in one that it includes.
+    """The packages of a workspace whose names are in a launch file, or in one that it includes.
 
     Args:
         file: The launch file, in whatever language.

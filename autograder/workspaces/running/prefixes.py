@@ -72,7 +72,7 @@ def relocated(environment: Mapping[str, str], here: Path, there: Path) -> dict[s
 
 
 def without_workspaces(environment: Mapping[str, str], workspace: Path) -> dict[str, str]:
-    """The environment without what lies in a workspace: a build must not see the results of the one before."""
+    """The environment without what is in a workspace: a build must not see the results of the one before."""
     result = dict(environment)
     inside = f"{workspace.resolve()}{os.sep}"
     for name in (

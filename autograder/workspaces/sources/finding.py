@@ -15,7 +15,7 @@ PACKAGE_VARIABLE = "AUTOGRADER_ROBOT_PACKAGE"
 
 
 def workspace_of(file: Path, beside: Iterable[Path]) -> Path | None:
-    """The workspace that a launch file lies in, or the one in a folder beside it.
+    """The workspace that a launch file is in, or the one in a folder beside it.
 
     Args:
         file: The launch file.

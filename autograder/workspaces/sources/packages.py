@@ -89,9 +89,9 @@ class Package:
 
     @property
     def programs(self) -> tuple[str, ...]:
-        """The console scripts that its setup.py names, as they stand there.
+        """The console scripts that its setup.py names, as they are there.
 
-        Read, not run: texts of the form ``name = module:function`` anywhere in it. What is computed, or stands in
+        Read, not run: texts of the form ``name = module:function`` anywhere in it. What is computed, or is in
         setup.cfg, is known when the package is built.
         """
         return tuple(_entry_points(_text(self.folder / "setup.py")))
