@@ -1,14 +1,17 @@
-"""Files that somebody else has made, who may have put anything in their place."""
+"""Regular files: others' opened, who may have put anything in their place, and own ones written in one step."""
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import os
 import stat
-from typing import IO, TYPE_CHECKING
+from pathlib import Path
+from typing import IO
 
-if TYPE_CHECKING:
-    from pathlib import Path
+import re2
+
+_UNFINISHED = re2.compile(r"\..+\.\d+\.new")
 
 
 def opened(path: str | Path, folder: int | None = None) -> IO[bytes]:
@@ -28,3 +31,44 @@ def opened(path: str | Path, folder: int | None = None) -> IO[bytes]:
         return os.fdopen(descriptor, "rb")
     os.close(descriptor)
     raise OSError(errno.EINVAL, "not a regular file")
+
+
+def write_whole(path: Path, data: bytes) -> None:
+    """Write a file so that it is never there in part, and still there after a power cut when this returns.
+
+    Raises:
+        OSError: It could not be written; then what was there before still is.
+    """
+    changed = [path.parent, *(one.parent for one in path.parents if not one.exists())]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    beside = path.with_name(f".{path.name}.{os.getpid()}.new")
+    try:
+        with beside.open("wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        beside.replace(path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            beside.unlink(missing_ok=True)
+        raise
+    for folder in changed:
+        _keep_names(folder)
+
+
+def remove_unfinished(folder: Path) -> None:
+    """Remove what killed processes had begun to write below a folder, in which nobody else is at work."""
+    for place, _, names in os.walk(folder):
+        for name in filter(_UNFINISHED.fullmatch, names):
+            with contextlib.suppress(OSError):
+                Path(place, name).unlink()
+
+
+def _keep_names(folder: Path) -> None:
+    """Have the disk know the names in a folder; some file systems of a network cannot be told to."""
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        with contextlib.suppress(OSError):
+            os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

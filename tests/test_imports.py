@@ -29,7 +29,7 @@ MAY_IMPORT = {
     "messages": frozenset({"verdict"}),
     "cards": frozenset({"verdict"}),
     "boxes": frozenset({"verdict", "parent_death"}),
-    "masters": frozenset({"course", "exercises"}),
+    "masters": frozenset({"course", "exercises", "regular_files"}),
     "journal": frozenset({"course", "verdict"}),
     "message_files": frozenset[str](),
     "parent_death": frozenset[str](),

@@ -15,6 +15,7 @@ from autograder.masters.release import release_text
 from autograder.masters.solutions import solution_files
 from autograder.masters.source import Points, named_cells, notebook_of
 from autograder.masters.work import holds_work
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -80,11 +81,7 @@ def _settle(path: Path, text: str, *, check: bool) -> str:
         return "edited"
     if check:
         return "stale"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    # Written beside and moved, so that an interrupted build leaves no half notebook.
-    beside = path.with_name(f".{path.name}.new")
-    beside.write_text(text, encoding="utf-8", newline="\n")
-    beside.replace(path)
+    write_whole(path, text.encode())
     return "written"
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from autograder import course, journal
 from autograder.progress.standing import notebook_path
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -48,13 +49,9 @@ def reset(root: Path, folder: Path, name: str, entries_in: Path | None = None) -
     chapter, lab = _find(root, name)
     path = notebook_path(chapter, lab, folder)
     fresh = released_text(lab)
-    beside = path.with_name(f".{path.name}.new")
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         copy = _keep(path) if path.exists() and path.read_bytes() != fresh else None
-        # Written beside and moved, so that an interrupted reset leaves no half notebook.
-        beside.write_bytes(fresh)
-        beside.replace(path)
+        write_whole(path, fresh)
     except OSError as error:
         raise CannotReset(f"{path} cannot be put back: {error.strerror or error}") from error
     journal.note(journal.Entry("reset", lab.name, time.time()), entries_in)

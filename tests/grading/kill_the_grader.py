@@ -153,7 +153,8 @@ class Trial:
         demand(executed <= len(STUDENTS) - (0 if untouched else done), f"{executed} run, {done} were done")
         self.check_finished()
         state = "untouched" if untouched else f"{done} of {len(STUDENTS)} graded"
-        return f"killed after {seconds:5.2f} s by {with_.name}: {state}, {last:.2f} s until all had ended, {executed} run again"
+        when = f"killed after {seconds:5.2f} s by {with_.name}"
+        return f"{when}: {state}, {last:.2f} s until all had ended, {executed} run again"
 
     def check_finished(self) -> None:
         """After a batch that came to its end."""

@@ -15,11 +15,12 @@ from autograder.boxes.limits import Limits
 from autograder.cards.readable import printable
 from autograder.grading.classes.class_directory import reason_against_name
 from autograder.grading.classes.seeds import create_secret, read_secret, seed_for
-from autograder.grading.entering.journal import Journal, write_whole
+from autograder.grading.entering.journal import Journal
 from autograder.grading.entering.points import points
 from autograder.grading.errors import DiskFull, is_disk_full
 from autograder.grading.reporting.report import Row, write_csv
 from autograder.grading.task import Task, decode_execution, decode_task, encode
+from autograder.regular_files import write_whole
 from autograder.verdict import State, Verdict
 
 CHECK = Check("lab.one", "One", points=10, worth=4, limit=2)

@@ -68,7 +68,7 @@ def test_what_cannot_be_written_stays_as_it_is(folder: Path, monkeypatch: pytest
     def full_disk(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("pathlib.Path.write_bytes", full_disk)
+    monkeypatch.setattr("pathlib.Path.replace", full_disk)
     with pytest.raises(CannotReset, match="No space left"):
         reset(ROOT, folder, "lab_1_2")
     assert (folder / NOTEBOOK).read_text() == "work"

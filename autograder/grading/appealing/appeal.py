@@ -9,11 +9,11 @@ from autograder import exercises
 from autograder.appeals.appeal_file import Appeal, Cell, dump
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
 from autograder.grading.entering.evidence import EvidenceFolder
-from autograder.grading.entering.journal import write_whole
 from autograder.grading.entering.records import Records
 from autograder.grading.errors import GradingError, clear_disk_errors
 from autograder.judge.verdicts import reference
 from autograder.judge.verdicts.keeping import NoEvidence, unpack
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -17,9 +17,9 @@ from traitlets.config.loader import PyFileConfigLoader
 
 from autograder.grading.classes.class_lock import held
 from autograder.grading.classes.seeds import create_secret, read_secret
-from autograder.grading.entering.journal import remove_unfinished
 from autograder.grading.errors import ClassIncomplete, NotAClass, clear_disk_errors
 from autograder.grading.rebuilding.submission import reason_against_file
+from autograder.regular_files import remove_unfinished
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -12,8 +12,8 @@ import msgspec
 
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.collecting.records import FOLDER
-from autograder.grading.entering.journal import write_whole
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

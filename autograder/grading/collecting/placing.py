@@ -13,8 +13,8 @@ from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory
 from autograder.grading.classes.timestamps import TIMESTAMP, timestamp_text
 from autograder.grading.collecting.outcomes import Outcome, State
 from autograder.grading.collecting.records import Collected, CollectedRecords, History
-from autograder.grading.entering.journal import write_whole
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator

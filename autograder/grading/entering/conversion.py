@@ -16,9 +16,9 @@ from nbgrader.utils import compute_checksum, determine_grade, is_grade, is_solut
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.classes.timestamps import companions
 from autograder.grading.entering.gradebook import NotebookEntry
-from autograder.grading.entering.journal import write_whole
 from autograder.grading.entering.results import with_results
 from autograder.grading.rebuilding.task_making import rebuilt_notebook, task_of
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder.boxes.execution import CellType
-from autograder.grading.entering.journal import write_whole
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from pathlib import Path

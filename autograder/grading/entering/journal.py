@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import contextlib
-import os
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import msgspec
-import re2
 
 from autograder.boxes.execution import Execution  # noqa: TC001  (msgspec reads the annotations)
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from pathlib import Path
 
     from autograder.grading.classes.class_directory import Submission
     from autograder.grading.task import Task
-
-_UNFINISHED = re2.compile(r"\..+\.\d+\.new")
 
 
 @dataclass(frozen=True)
@@ -78,44 +75,3 @@ class Journal:
 
     def _file(self, submission: Submission, notebook: str) -> Path:
         return self._folder / submission.assignment / f"{notebook}@{submission.student}.json"
-
-
-def write_whole(path: Path, data: bytes) -> None:
-    """Write a file so that it is never there in part, and still there after a power cut when this returns.
-
-    Raises:
-        OSError: It could not be written; then what was there before still is.
-    """
-    changed = [path.parent, *(one.parent for one in path.parents if not one.exists())]
-    path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(f".{path.name}.{os.getpid()}.new")
-    try:
-        with beside.open("wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        beside.replace(path)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            beside.unlink(missing_ok=True)
-        raise
-    for folder in changed:
-        _keep_names(folder)
-
-
-def remove_unfinished(folder: Path) -> None:
-    """Remove what killed processes had begun to write below a folder, in which nobody else is at work."""
-    for place, _, names in os.walk(folder):
-        for name in filter(_UNFINISHED.fullmatch, names):
-            with contextlib.suppress(OSError):
-                Path(place, name).unlink()
-
-
-def _keep_names(folder: Path) -> None:
-    """Have the disk know the names in a folder; some file systems of a network cannot be told to."""
-    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        with contextlib.suppress(OSError):
-            os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

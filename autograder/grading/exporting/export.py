@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
-from autograder.grading.entering.journal import write_whole
 from autograder.grading.errors import GradingError
 from autograder.grading.exporting import feedback_zips, forms, sheets
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.grading.table.class_table import ClassTable, read_table
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

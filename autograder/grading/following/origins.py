@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.grading.entering.journal import write_whole
 from autograder.masters.errors import MasterError
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

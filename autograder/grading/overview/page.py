@@ -12,13 +12,14 @@ from autograder.cards.readable import printable
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.entering import attempts
-from autograder.grading.entering.journal import Journal, write_whole
+from autograder.grading.entering.journal import Journal
 from autograder.grading.errors import GradingError, clear_disk_errors
 from autograder.grading.overview import statistics as figures
 from autograder.grading.reporting.report import EXCUSED, NOT_SUBMITTED, columns
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.table.class_table import ClassTable, by_exercise, read_table
 from autograder.page_templates import page_templates
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -13,9 +13,9 @@ import msgspec
 
 from autograder import course
 from autograder.grading.entering import gradebook
-from autograder.grading.entering.journal import write_whole
 from autograder.grading.errors import ClassIncomplete, MasterUnusable
 from autograder.grading.reporting.report import LATE
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from autograder.grading.classes.class_directory import ClassDirectory

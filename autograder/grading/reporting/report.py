@@ -6,10 +6,10 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from autograder.grading.entering.journal import write_whole
 from autograder.grading.entering.points import points
 from autograder.grading.reporting.spreadsheet import csv_text
 from autograder.grading.running.timings import Timings
+from autograder.regular_files import write_whole
 from autograder.verdict import State
 
 if TYPE_CHECKING:

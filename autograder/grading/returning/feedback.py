@@ -9,11 +9,11 @@ from nbgrader.utils import is_grade, is_solution, is_task
 
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.entering import gradebook
-from autograder.grading.entering.journal import write_whole
 from autograder.grading.rebuilding import nodes
 from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.returning.page_head import mark_waiting
 from autograder.grading.table.entries import SubmissionEntry, read_entries
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from autograder.cards.readable import one_line
-from autograder.grading.entering.journal import write_whole
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.similarity.marked_lines import Line, lines, stretches
 from autograder.grading.similarity.pairs import LEAST_SHARE, SHORTEST
 from autograder.grading.similarity.passages import own_words
 from autograder.grading.similarity.wording import HINT, nothing_found, percent, place
 from autograder.page_templates import page_templates
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

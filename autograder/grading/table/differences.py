@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.grading.entering.journal import write_whole
 from autograder.grading.errors import GradingError
 from autograder.grading.reporting.report import Row  # noqa: TC001  (msgspec reads the annotations)
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

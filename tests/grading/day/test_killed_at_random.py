@@ -24,7 +24,7 @@ from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.outcomes import WaitingList
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.entering import journal
-from autograder.grading.entering.journal import write_whole
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable

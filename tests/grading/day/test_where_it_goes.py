@@ -21,10 +21,10 @@ from autograder.grading.collecting import outcomes, placing, records
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.outcomes import CollectReport, State, WaitingList
 from autograder.grading.collecting.records import CollectedRecords
-from autograder.grading.entering.journal import write_whole
 from autograder.grading.errors import GradingError
 from autograder.grading.exporting.export import export
 from autograder.grading.overview.page import write_report
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
