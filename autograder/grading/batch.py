@@ -316,7 +316,7 @@ class _Batch:
         )
         changes: list[Difference] = []
         if self._dry_run:
-            changes = would_change(self._works, entries, self._cells)
+            changes = would_change(self._directory, self._works, entries, self._cells)
         else:
             write_csv(self._directory.path / "grades.csv", rows)
             Runs(self._directory.state).keep(course_version(), rows)

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import contextlib
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from autograder.grading.reporting.report import Row
+from autograder.grading.classes.timestamps import handed_in_at
+from autograder.grading.reporting.report import LATE, Row
 from autograder.grading.table.differences import Difference
-from autograder.grading.table.entries import SubmissionEntry
+from autograder.grading.table.entries import CellEntry, SubmissionEntry, read_due_dates
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+    from datetime import datetime
 
     from autograder.boxes.execution import Execution
-    from autograder.grading.classes.class_directory import Submission
+    from autograder.grading.classes.class_directory import ClassDirectory, Submission
     from autograder.grading.rebuilding.source_points import GradedCell
     from autograder.grading.table.entries import Entries
     from autograder.grading.task import Task
@@ -56,16 +59,21 @@ class Work:
 
 
 def would_change(
-    works: Iterable[Work], entries: Entries, cells: Mapping[str, Sequence[GradedCell]]
+    directory: ClassDirectory,
+    works: Iterable[Work],
+    entries: Entries,
+    cells: Mapping[str, Sequence[GradedCell]],
 ) -> list[Difference]:
-    """The students who would get other points from the judge.
+    """The students who would get other points from the judge, or lose others for being late.
 
     Args:
-        works: The submissions; those that are not written down are looked at.
+        directory: The class.
+        works: The submissions.
         entries: What the gradebook has.
         cells: The cells with points, by assignment.
     """
     found = []
+    due = read_due_dates(directory.gradebook_url)
     for work in works:
         entry = entries.get(work.key, SubmissionEntry())
         by_exercise = {cell.exercise: cell for cell in cells[work.submission.assignment]}
@@ -76,7 +84,31 @@ def would_change(
             if before != row.score:
                 note = "a person's points stay" if kept and kept.by_hand is not None else ""
                 found.append(Difference(*work.key, row.exercise, before, row.score, "", row.diagnosis, note))
+        then = _foreseen(work, entry, by_exercise, due.get(work.submission.assignment))
+        if then.is_late or entry.penalty:
+            from autograder.grading.table.late_policy import penalties  # here: nbgrader takes a second
+
+            costs = penalties(directory.config, work.submission.student, then).values()
+            then = replace(then, penalty=sum(cost or 0.0 for cost in costs))
+            if then.taken_off != entry.taken_off:
+                off = (-one.taken_off if one.taken_off else None for one in (entry, then))
+                found.append(Difference(*work.key, LATE, *off, note=then.why_late))
     return found
+
+
+def _foreseen(
+    work: Work, entry: SubmissionEntry, by_exercise: Mapping[str, GradedCell], due: datetime | None
+) -> SubmissionEntry:
+    """What the gradebook would have of a submission after a run, but for what being late costs."""
+    cells = {notebook: dict(of_notebook) for notebook, of_notebook in entry.cells.items()}
+    for row in () if work.written else work.rows or ():
+        cell = by_exercise[row.exercise]
+        of_notebook = cells.setdefault(cell.notebook, {})
+        of_notebook[cell.name] = replace(of_notebook.get(cell.name, CellEntry(cell.worth)), judged=row.score)
+    at = entry.handed_in
+    with contextlib.suppress(ValueError):  # the run itself refuses such a time
+        at = handed_in_at(work.submission.folder) or at
+    return replace(entry, handed_in=at, due=entry.due or due, cells=cells)
 
 
 def without_grade(row: Row) -> Row:

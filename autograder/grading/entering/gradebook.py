@@ -286,6 +286,28 @@ def enter_time(url: str, assignment: str, student: str, timestamp: datetime) -> 
             _submission(book, found, student, timestamp)
 
 
+def enter_penalties(url: str, assignment: str, student: str, penalties: Mapping[str, float | None]) -> None:
+    """Enter what being late costs in each notebook of a submission.
+
+    Args:
+        url: What SQLAlchemy opens the gradebook by.
+        assignment: The assignment's name.
+        student: The student's id.
+        penalties: Points to be taken off, by notebook; None for nothing.
+    """
+    rows: list[dict[str, object]] = [
+        {"a": assignment, "s": student, "n": notebook, "costs": costs}
+        for notebook, costs in penalties.items()
+    ]
+    with opened(url) as book:
+        _put(
+            book,
+            rows,
+            "UPDATE submitted_notebook SET late_submission_penalty = :costs WHERE id IN"
+            f" (SELECT sn.id FROM {_SUBMITTED} WHERE a.name = :a AND s.student_id = :s AND n.name = :n)",
+        )
+
+
 def _enter_notebook(book: Connection, submission: str, cells: _Cells, entry: NotebookEntry) -> None:
     notebook = book.execute(
         sql("SELECT id FROM submitted_notebook WHERE assignment_id = :s AND notebook_id = :n"),

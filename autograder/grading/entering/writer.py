@@ -8,16 +8,15 @@ import shutil
 import warnings
 from typing import TYPE_CHECKING
 
-from nbgrader.preprocessors import AssignLatePenalties
-
 from autograder.grading.classes.timestamps import handed_in_at
 from autograder.grading.entering import conversion, gradebook
 from autograder.grading.entering.attempts import Attempt, note, now
 from autograder.grading.entering.points import scores_of
 from autograder.grading.entering.records import Records, Written
 from autograder.grading.errors import is_disk_full
-from autograder.grading.rebuilding import nodes
 from autograder.grading.returning import feedback
+from autograder.grading.table.entries import read_entries
+from autograder.grading.table.late_policy import penalties
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -110,7 +109,7 @@ class Writer:
             url, submission.assignment, submission.student, entries, handed_in_at(submission.folder)
         )
         if has_due_date:
-            self._assign_penalties(submission, [task.notebook for task, _ in results])
+            self._assign_penalties(submission)
 
     def enter_time(self, submission: Submission, at: datetime | None) -> None:
         """Enter when a submission that is graded already was handed in, and what being late costs now.
@@ -124,20 +123,13 @@ class Writer:
             if at is not None:
                 gradebook.enter_time(self._directory.gradebook_url, *names, at)
                 conversion.write_companions(submission, self._folder("autograded", submission))
-            self._assign_penalties(submission, self._directory.notebooks(submission.assignment))
+            self._assign_penalties(submission)
 
-    def _assign_penalties(self, submission: Submission, notebooks: Sequence[str]) -> None:
-        """Have nbgrader say what being late costs: a class may have a rule of its own."""
-        for notebook in notebooks:
-            names = {
-                "notebook": notebook,
-                "assignment": submission.assignment,
-                "student": submission.student,
-                "db_url": self._directory.gradebook_url,
-            }
-            AssignLatePenalties(config=self._directory.config).preprocess(
-                nodes.notebook([], {}), {"nbgrader": names}
-            )
+    def _assign_penalties(self, submission: Submission) -> None:
+        url, student, assignment = self._directory.gradebook_url, submission.student, submission.assignment
+        entry = read_entries(url, student=student, assignment=assignment)[student, assignment]
+        costs = penalties(self._directory.config, student, entry)
+        gradebook.enter_penalties(url, assignment, student, costs)
 
     def write_feedback(self, submission: Submission) -> None:
         """Make the HTML pages that go back to a student; ask ``Records.has_pages`` afterwards.

@@ -75,7 +75,9 @@ class SubmissionEntry:
         """The reason why points are taken off; empty where none are."""
         if not self.taken_off:
             return ""
-        return f"handed in {self.handed_in:%Y-%m-%d %H:%M} UTC, due {self.due:%Y-%m-%d %H:%M} UTC"
+        # A due date may have been removed after the penalty was entered.
+        times = (("handed in", self.handed_in), ("due", self.due))
+        return ", ".join(f"{word} {at:%Y-%m-%d %H:%M} UTC" for word, at in times if at)
 
     def shown(self) -> str:
         """Changes with whatever a page of feedback says about points and comments."""
@@ -149,6 +151,15 @@ def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entrie
             key = (row.student, row.assignment)
             found[key] = SubmissionEntry(row.timestamp, due, float(row.penalty or 0.0), cells.get(key, {}))
     return found
+
+
+def read_due_dates(url: str) -> dict[str, datetime]:
+    """Until when assignments are due, in UTC, without any student's extension; by name."""
+    with opened(url) as book:
+        if not has_tables(book):
+            return {}
+        dates = sqlalchemy.text("SELECT name, duedate FROM assignment WHERE duedate IS NOT NULL")
+        return {row.name: row.duedate for row in book.execute(dates.columns(duedate=sqlalchemy.DateTime()))}
 
 
 def read_students(url: str) -> dict[str, str]:

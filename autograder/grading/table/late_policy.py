@@ -6,9 +6,16 @@ A class names it in its ``nbgrader_config.py``; nbgrader asks it, whichever comm
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 from nbgrader.plugins import LateSubmissionPlugin
+from nbgrader.preprocessors import AssignLatePenalties
 from traitlets import Float
+
+if TYPE_CHECKING:
+    from traitlets.config import Config
+
+    from autograder.grading.table.entries import SubmissionEntry
 
 _DAY = 86_400.0
 
@@ -39,3 +46,24 @@ class LatePolicy(LateSubmissionPlugin):
             return score
         days = math.ceil(total_seconds_late / _DAY)
         return round(min(1.0, days * self.percent_per_day / 100) * score, 4)
+
+
+def penalties(config: Config, student: str, entry: SubmissionEntry) -> dict[str, float | None]:
+    """What being late costs a submission, by notebook, as nbgrader asks the class's own rule; None for nothing.
+
+    Args:
+        config: The class's.
+        student: The student's id.
+        entry: Its points and times, as the gradebook has them or would have them.
+    """
+    if not (entry.handed_in and entry.due and entry.is_late):
+        return dict.fromkeys(entry.cells)
+    asking = AssignLatePenalties(config=config)
+    asking.init_plugin()
+    late = (entry.handed_in - entry.due).total_seconds()
+    found: dict[str, float | None] = {}
+    for notebook, cells in entry.cells.items():
+        score = sum(cell.score for cell in cells.values())
+        costs = asking.plugin_inst.late_submission_penalty(student, score, late)
+        found[notebook] = None if costs is None else min(max(0.0, costs), score)
+    return found

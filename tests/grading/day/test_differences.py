@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from click.testing import CliRunner
 from conftest import LISTENER, TALKER
-from instructor import by_person
-from test_true_table import shown
+from instructor import by_person, due, penalty
+from test_true_table import DUE, EARLY, LATE, shown, total
 
 from autograder.cli import cli
 from autograder.grading import batch
@@ -53,6 +53,31 @@ def test_a_dry_run_enters_nothing_and_says_who_would_get_other_points(
     fake_engine.ran.clear()
     assert tiny.grade(feedback=True).would_change is None
     assert (fake_engine.ran, tiny.scores("ben")) == ([], {TALKER: 10, LISTENER: 7})
+
+
+def test_a_dry_run_foresees_what_being_late_costs(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    penalty(tiny)
+    due(tiny, DUE)
+    tiny.submit("ada", 4, 7).with_name("timestamp.txt").write_text(EARLY)
+    tiny.submit("ben", 4, 7).with_name("timestamp.txt").write_text(LATE)
+    tiny.submit("eve", 4, 7).with_name("timestamp.txt").write_text(EARLY)
+
+    def foreseen() -> list[str]:
+        report = tiny.grade(dry_run=True)
+        assert report.would_change is not None
+        return [change.line() for change in report.would_change if change.exercise == "late"]
+
+    why = "handed in 2026-01-11 12:00 UTC, due 2026-01-10 12:00 UTC"
+    assert foreseen() == [f"ben  late  – → -11, {why}"]
+    tiny.grade()
+    assert foreseen() == []
+    (tiny.path / "submitted" / "eve" / "lab_1_2" / "timestamp.txt").write_text(LATE)
+    assert foreseen() == [f"eve  late  – → -11, {why}"]
+    assert total(tiny, "eve") == 11
+    tiny.grade()
+    assert (total(tiny, "ben"), total(tiny, "eve"), foreseen()) == (0, 0, [])
+    due(tiny, None)
+    assert foreseen() == ["ben  late  -11 → –", "eve  late  -11 → –"]
 
 
 def test_two_runs_can_be_compared_at_any_time(tiny: TinyClass, fake_engine: FakeEngine) -> None:
