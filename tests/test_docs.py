@@ -123,6 +123,26 @@ def test_every_picture_has_words(path: Path) -> None:
     assert not silent
 
 
+NAMED = re.compile(r"`((?:autograder|benchmarks|environment|tests)/[\w./-]*[\w/])`")
+IN_THE_PACKAGE = re.compile(r"`((?:[a-z_]+/)+(?:\w+\.[\w.]+)?)`")
+
+
+@pytest.mark.parametrize("path", [*DOCS, ROOT / "CONTRIBUTING.md"], ids=lambda path: path.name)
+def test_every_file_that_a_page_names_is_there(path: Path) -> None:
+    """The architecture names files as they are seen from the package."""
+    text = FENCE.sub("", path.read_text(encoding="utf-8"))
+    places = [ROOT]
+    names = NAMED.findall(text)
+    if path.stem == "architecture":
+        places, names = [ROOT, ROOT / "autograder"], IN_THE_PACKAGE.findall(text)
+        assert len(names) > 20
+    assert not [name for name in names if not any((place / name).exists() for place in places)]
+
+
+def test_the_architecture_fits_on_two_screens() -> None:
+    assert len((ROOT / "docs" / "architecture.md").read_text(encoding="utf-8").split()) <= 900
+
+
 def test_pictures_are_small_and_shown_somewhere() -> None:
     shown = "\n".join(markdown(path) for path in READ)
     for picture in (ROOT / "docs/images").glob("*.png"):
