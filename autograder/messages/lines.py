@@ -125,6 +125,20 @@ class Lines:
         self._socket.close()
 
 
+def listen(path: Path) -> socket.socket:
+    """A Unix socket that this user can connect to, in place of one that an ended process has left.
+
+    Args:
+        path: At most 107 bytes long (unix(7)).
+    """
+    listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    path.unlink(missing_ok=True)
+    listener.bind(str(path))
+    path.chmod(0o600)
+    listener.listen(16)
+    return listener
+
+
 def encode(message: Message) -> bytes:
     """A message as it travels, with the end of its line.
 

@@ -11,7 +11,7 @@ import os
 import threading
 from typing import TYPE_CHECKING, Self
 
-from autograder.judge.serving.sockets import listen
+from autograder.messages.lines import listen
 from autograder.messages.orders import Report
 from autograder.verdict import Diagnosis, State, Verdict
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Protocol, Self
 
 import msgspec
 
-from autograder.judge.serving.sockets import listen
+from autograder.messages.lines import listen
 from autograder.messages.orders import Close, Open, Report
 
 if TYPE_CHECKING:

@@ -18,10 +18,9 @@ from autograder import exercises
 from autograder.clean_stdout import private_stdout
 from autograder.judge.serving import conversation
 from autograder.judge.serving.fork import Child
-from autograder.judge.serving.sockets import listen
 from autograder.judge.subjects.command import SPARE
 from autograder.messages.checks import Refused
-from autograder.messages.lines import encode
+from autograder.messages.lines import encode, listen
 from autograder.messages.orders import Close, Open, Order, Report
 
 if TYPE_CHECKING:

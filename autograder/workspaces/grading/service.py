@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
-from autograder.messages.lines import Hangup, Lines
+from autograder.messages.lines import Hangup, Lines, listen
 from autograder.messages.workspaces import NotBuilt, Trouble
 from autograder.workspaces.building.server import serve_builds
 from autograder.workspaces.building.trusted import TrustedBuilds
@@ -95,10 +95,7 @@ class WorkspaceService:
         shutil.rmtree(self._folder, ignore_errors=True)
 
     def _open(self, path: Path, serve: Callable[[Lines, Path], None]) -> socket.socket:
-        listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        listener.bind(str(path))
-        path.chmod(0o600)
-        listener.listen(16)
+        listener = listen(path)
         thread = threading.Thread(target=self._accept, args=(listener, serve), daemon=True)
         self._threads.append(thread)
         thread.start()
