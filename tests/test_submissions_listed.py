@@ -15,7 +15,6 @@ from typing import Any
 from autograder import exercises
 from autograder.authoring.answer_tables import KINDS
 from autograder.authoring.answers import answers, folder_of
-from autograder.authoring.as_edit import nearest, whole_right_answers, worth
 
 NOTEBOOKS = Path(__file__).parent / "submissions" / "notebooks"
 MISTAKES = Path(__file__).parents[1] / "docs" / "mistakes.md"
@@ -79,15 +78,6 @@ def test_every_edit_fits_its_base_and_no_two_answers_are_the_same(tmp_path: Path
         folder = tmp_path / str(number)
         folder.mkdir()
         answer.unpack(folder)
-
-
-def test_what_is_nearly_a_right_answer_is_stored_as_an_edit_of_it() -> None:
-    for folder in FOLDERS:
-        bases = whole_right_answers(folder)
-        for file in sorted((folder / "wrong").glob("*.py")):
-            text = file.read_text(encoding="utf-8")
-            near = nearest(text, bases)
-            assert near is None or not worth(text, near), f"python -m autograder.authoring.as_edit {file}"
 
 
 def test_a_program_says_in_its_first_line_what_it_shows() -> None:

@@ -25,7 +25,6 @@ table is named after the file of its answer::
 
 ``shows`` is the first line of its program (it can be left out where that is ``Wrong: `` and ``why``), ``change`` has
 the form of ``autograder.authoring.edits``, or of ``autograder.authoring.workspace_answers``.
-``python -m autograder.authoring.as_edit FILE`` makes such an entry of a program.
 """
 
 from __future__ import annotations

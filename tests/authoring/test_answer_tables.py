@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.authoring import as_edit
 from autograder.authoring.answer_tables import BadTable, listed, settings
 
 if TYPE_CHECKING:
@@ -128,23 +127,3 @@ def test_an_answer_is_told_once_and_either_whole_or_as_an_edit(folder: Path) -> 
     (folder / "right" / "answers.toml").write_text('"usual.py" = { why = "counts", diagnosis = "crashed" }\n')
     with pytest.raises(BadTable, match="a right answer has no diagnosis"):
         list(listed(folder))
-
-
-def test_a_program_becomes_the_entry_that_gives_it_back(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    file = folder / "wrong" / "counter_step.py"
-    text = RIGHT.replace("Right: counts", 'Wrong: says "2"').replace("    i += 1\n", "    i += 2\n\n")
-    file.write_text(text)
-    table = folder / "wrong" / "more.toml"
-    table.write_text('"counter_step.py" = { diagnosis = "counter_step", also = ["crashed"], why = "0, 2" }')
-    assert as_edit.main([str(file)]) == 0
-    table.write_text(capsys.readouterr().out)
-    file.unlink()
-    (answer,) = (answer for answer in listed(folder) if answer.file == file)
-    assert answer.text() == text
-    assert (answer.entry.diagnosis, answer.entry.also, answer.entry.why) == (
-        "counter_step",
-        ("crashed",),
-        "0, 2",
-    )
