@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 from autograder.cards.readable import one_line
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.similarity.marked_lines import Line, lines, stretches
-from autograder.grading.similarity.pairs import LEAST_SHARE, SHORTEST
+from autograder.grading.similarity.pairs import HINT, LEAST_SHARE, SHORTEST, nothing_found
 from autograder.grading.similarity.passages import own_words
-from autograder.grading.similarity.wording import HINT, nothing_found, percent, place
 from autograder.page_templates import page_templates
 from autograder.regular_files import write_whole
 
@@ -95,7 +94,7 @@ def _shown(pair: Pair, names: Mapping[str, str]) -> _Shown:
         )
         for side, firsts in starts
     )
-    return _Shown(place(pair), percent(pair), pair.shared, (left, right))
+    return _Shown(pair.place, pair.percent, pair.shared, (left, right))
 
 
 def _called(student: str, names: Mapping[str, str]) -> str:

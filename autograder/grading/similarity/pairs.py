@@ -22,6 +22,13 @@ LEAST_SHARE = 0.5
 """Of the own words of the shorter answer, what must be shared."""
 
 
+HINT = (
+    "A pair is a hint, not a proof: two students may have learnt from each other, or from one page on the web. "
+    "Read both answers, and talk with both, before you decide anything."
+)
+"""Said wherever pairs are shown."""
+
+
 @dataclass(frozen=True)
 class Pair:
     """Two answers that are close.
@@ -42,6 +49,17 @@ class Pair:
     def share(self) -> float:
         """The shared part of the own words of that answer which has fewer of them."""
         return self.shared / min(self.one.length, self.other.length)
+
+    @property
+    def percent(self) -> str:
+        """The share in words; rounded down, so that 100 % is all of it."""
+        return f"{int(100 * self.share)} %"
+
+    @property
+    def place(self) -> str:
+        """In which notebook and cell it is."""
+        cells = dict.fromkeys((self.one.answer.cell, self.other.answer.cell))
+        return f"{self.one.answer.notebook}, {' and '.join(cells)}"
 
 
 def close_pairs(answers: Sequence[Compared]) -> list[Pair]:
@@ -90,3 +108,8 @@ def _names(pair: Pair) -> tuple[str, ...]:
         pair.other.answer.student,
         pair.one.answer.cell,
     )
+
+
+def nothing_found(compared: int) -> str:
+    """What is said where no pair is close."""
+    return f"No pair is closer than the task explains ({compared} notebooks compared)."

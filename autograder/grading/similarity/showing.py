@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from autograder.cards.readable import printable
-from autograder.grading.similarity.wording import HINT, nothing_found, percent, place
+from autograder.grading.similarity.pairs import HINT, nothing_found
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -56,8 +56,8 @@ def _table(found: Similar) -> Table:
     for pair in found.pairs:
         shown.add_row(
             Text(printable(f"{pair.one.answer.student}, {pair.other.answer.student}")),
-            Text(printable(place(pair))),
-            percent(pair),
+            Text(printable(pair.place)),
+            pair.percent,
             f"{pair.shared} of {pair.one.length} and {pair.other.length}",
         )
     return shown
