@@ -14,7 +14,7 @@ from autograder.kit.hangs import something_spins
 from autograder.kit.model import Advice, Mistake
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from autograder.kit.evidence import Evidence, Part
 
@@ -29,6 +29,7 @@ __all__ = [
     "everything_twice",
     "message_type",
     "never_spun",
+    "one_is_missing",
     "only_if_ended",
     "qos_mismatch",
     "usage_message",
@@ -46,18 +47,25 @@ _WORD = {
 _KEY = {"topic": "topic_name", "service": "service_name", "action": "action_name"}
 
 
+def _wanted(evidence: Evidence, role: str) -> Mapping[str, str]:
+    """The reference's endpoints of a role, of which there is one at least: name -> type."""
+    evidence.reference.only(role)
+    return evidence.reference.interface[role]
+
+
 def endpoint_name(role: str) -> Mistake:
-    """The expected name is not on the graph, and another one of the same role is."""
+    """An expected name is not on the graph, and another one of the same role is."""
     verb, noun = _WORD[role]
 
     def recognise(evidence: Evidence) -> Advice | None:
-        expected, _ = evidence.reference.only(role)
+        wanted = _wanted(evidence, role)
         made: set[str] = set().union(*(part.endpoints(role) for part in evidence))
-        if not made or expected in made:
+        missing, strange = sorted(wanted.keys() - made), made - wanted.keys()
+        if not missing or not strange:
             return None
-        near = difflib.get_close_matches(expected, made, n=1, cutoff=0.0) or sorted(made)
+        near = difflib.get_close_matches(missing[0], strange, n=1, cutoff=0.0) or sorted(strange)
         return Advice(
-            f"Your node {verb} {near[0]}; the {noun} is called {expected}.",
+            f"Your node {verb} {near[0]}; the {noun} is called {missing[0]}.",
             f"Correct the name. `ros2 {noun} list` shows what is on the graph: two nodes meet only where the "
             f"names are "
             "the same to the letter.",
@@ -67,15 +75,16 @@ def endpoint_name(role: str) -> Mistake:
 
 
 def message_type(role: str) -> Mistake:
-    """The name is right and the type is another one."""
+    """A name is right and its type is another one."""
 
     def recognise(evidence: Evidence) -> Advice | None:
-        name, expected = evidence.reference.only(role)
-        made = evidence.main.endpoints(role).get(name)
-        if made is None or made == expected:
+        wanted, made = _wanted(evidence, role), evidence.main.endpoints(role)
+        name = next((name for name in sorted(wanted) if made.get(name, wanted[name]) != wanted[name]), None)
+        if name is None:
             return None
+        expected = wanted[name]
         return Advice(
-            f"On {name} your node uses {made}; the other side uses {expected}. Two types on one name never "
+            f"On {name} your node uses {made[name]}; the other side uses {expected}. Two types on one name never "
             f"meet.",
             f"Import and use {expected.split('/')[-1]} from "
             f"{expected.split('/')[0]}.{expected.split('/')[1]}.",
@@ -84,17 +93,38 @@ def message_type(role: str) -> Mistake:
     return Mistake("message_type", recognise, certain=True)
 
 
+def one_is_missing(*roles: str) -> Mistake:
+    """Some of the expected endpoints are there, and others are not."""
+
+    def recognise(evidence: Evidence) -> Advice | None:
+        made = {role: evidence.main.endpoints(role) for role in roles}
+        missing = [
+            (role, name) for role in roles for name in sorted(_wanted(evidence, role).keys() - made[role])
+        ]
+        if evidence.main.ending is not None or not missing or not any(made.values()):
+            return None
+        role, name = missing[0]
+        return Advice(
+            f"Nothing of your node {_WORD[role][0]} {name}, and the rest is there.",
+            "Find the TODO in your solution cell and write that step; the hints below it open one at a time.",
+        )
+
+    return Mistake("not_written", recognise)
+
+
 def qos_mismatch(role: str) -> Mistake:
     """The two ends offer and ask for qualities that do not fit."""
 
     def recognise(evidence: Evidence) -> Advice | None:
-        name, _ = evidence.reference.only(role)
-        mismatch = evidence.main.first("mismatch", name)
-        if mismatch is None or evidence.main.of("message", name):
+        mismatches = [
+            event for name in sorted(_wanted(evidence, role)) for event in evidence.main.of("mismatch", name)
+        ]
+        mismatch = next((event for event in mismatches if not evidence.main.of("message", event.name)), None)
+        if mismatch is None:
             return None
         policy = mismatch.data["policy"]
         return Advice(
-            f"Your node and the other side are both on {name}, but their {policy} does not fit, so nothing "
+            f"Your node and the other side are both on {mismatch.name}, but their {policy} does not fit, so nothing "
             f"is "
             "exchanged.",
             "Use the queue depth 10 in place of the QoS profile: that is reliable and volatile, as the "
@@ -163,9 +193,9 @@ def went_deaf(role: str) -> Mistake:
 
 
 def _silent_node(evidence: Evidence, role: str) -> bool:
-    name, _ = evidence.reference.only(role)
     part = evidence.main
-    return name in part.endpoints(role) and part.ending is None and bool(part.of("unanswered"))
+    there = _wanted(evidence, role).keys() & part.endpoints(role)
+    return bool(there) and part.ending is None and bool(part.of("unanswered"))
 
 
 def _worked(part: Part, role: str) -> bool:

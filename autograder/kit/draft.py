@@ -123,28 +123,41 @@ class Draft(Generic[View]):
         """
 
         def add(recognise: Recognise[View]) -> Recognise[View]:
-            def advice(evidence: Evidence) -> Advice | None:
-                seen, expected = self._views(evidence)
-                found = recognise(seen, expected)
-                if not found or isinstance(found, Advice):
-                    return found or None
-                return Advice(
-                    says.format(seen=seen, expected=expected), next_step.format(seen=seen, expected=expected)
-                )
-
-            def proven(evidence: Evidence) -> Advice | None:
-                return (
-                    advice(evidence) if callable(certain) and certain(self._recipe.seen(evidence)) else None
-                )
-
-            usual = self._own[id(OWN_LATE if late else OWN)]
-            own = self._before.setdefault(before, []) if before else usual
-            if callable(certain):
-                own.append(Mistake(key, proven, certain=True))
-            own.append(Mistake(key, advice, certain=certain is True))
+            self.knows(key, recognise, says, next_step, certain=certain, late=late, before=before)
             return recognise
 
         return add
+
+    def knows(
+        self,
+        key: str,
+        recognise: Recognise[View],
+        says: str = "",
+        next_step: str = "",
+        *,
+        certain: bool | Callable[[View], bool] = False,
+        late: bool = False,
+        before: str = "",
+    ) -> None:
+        """Add a known mistake that a function of the exercise, or a ``lambda``, recognises; as :meth:`mistake` does."""
+
+        def advice(evidence: Evidence) -> Advice | None:
+            seen, expected = self._views(evidence)
+            found = recognise(seen, expected)
+            if not found or isinstance(found, Advice):
+                return found or None
+            return Advice(
+                says.format(seen=seen, expected=expected), next_step.format(seen=seen, expected=expected)
+            )
+
+        def proven(evidence: Evidence) -> Advice | None:
+            return advice(evidence) if callable(certain) and certain(self._recipe.seen(evidence)) else None
+
+        usual = self._own[id(OWN_LATE if late else OWN)]
+        own = self._before.setdefault(before, []) if before else usual
+        if callable(certain):
+            own.append(Mistake(key, proven, certain=True))
+        own.append(Mistake(key, advice, certain=certain is True))
 
     def exercise(self, **more: Any) -> Exercise:
         """The exercise, once everything is said of it.

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder.kit import common_mistakes as common
 from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.evidence import Event
 from autograder.kit.hangs import HANGS
 from autograder.kit.model import Finding
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from autograder.kit.evidence import Evidence, Part
     from autograder.kit.model import Bench, Mistake
@@ -20,10 +22,11 @@ _NOUN |= {"service": "a service", "action_client": "a client of the action", "ac
 
 
 class OwnScenario:
-    """The recipe for a subject with one endpoint of each of its roles. Its view is what was seen in the first part.
+    """The recipe for a subject with endpoints of some roles. Its view is what was seen in the first part.
 
     Args:
-        scenario: Drives the bench. It takes names and types from ``bench.reference.only(role)``.
+        scenario: Drives the bench. It takes name and type from ``bench.reference.only(role)``; where it has several,
+            their types by their names from ``bench.reference.interface[role]``.
         roles: Such as ``"publisher"``, the most telling first.
     """
 
@@ -36,17 +39,31 @@ class OwnScenario:
         return evidence.main
 
     def expected(self, evidence: Evidence) -> Part:
-        """The reference solution, as it was recorded; the subject itself while that is being recorded."""
-        return evidence.reference.parts[0] if evidence.reference.parts else evidence.main
+        """The recording of the reference solution, with its endpoints.
+
+        While that is being recorded it is what was seen itself.
+        """
+        if not evidence.reference.parts:
+            return evidence.main
+        recorded, interface = evidence.reference.parts[0], evidence.reference.interface
+        return replace(recorded, events=[Event(0.0, "interface", "graph", interface), *recorded.events])
 
     def is_there(self, evidence: Evidence) -> Finding:
-        """The endpoint of the first role has the reference's name and type."""
-        role = self.roles[0]
-        name, type_name = evidence.reference.only(role)
-        made = evidence.main.endpoints(role)
-        seen = ", ".join(f"{_NOUN[role]} {other} ({kind})" for other, kind in sorted(made.items()))
-        expected = f"{_NOUN[role]} {name} ({type_name})"
-        return Finding(made.get(name) == type_name, expected, seen or "nothing of this kind")
+        """The endpoints of the first role have the reference's names and types."""
+        return self.has(self.roles[0])(evidence)
+
+    def has(self, role: str) -> Callable[[Evidence], Finding]:
+        """For :meth:`autograder.kit.draft.Draft.asks`: the endpoints of a role have the reference's names and types."""
+
+        def judge(evidence: Evidence) -> Finding:
+            wanted, made = evidence.reference.interface.get(role, {}), evidence.main.endpoints(role)
+            return Finding(
+                bool(wanted) and wanted.items() <= made.items(),
+                _in_words(role, wanted),
+                _in_words(role, made) or "nothing of this kind",
+            )
+
+        return judge
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
@@ -64,8 +81,13 @@ class OwnScenario:
             *map(common.never_spun, self.roles),
             *map(common.went_deaf, self.roles),
             OWN_LATE,
+            common.one_is_missing(*self.roles),
             *common.NOTHING_THERE,
         )
+
+
+def _in_words(role: str, endpoints: Mapping[str, str]) -> str:
+    return ", ".join(f"{_NOUN[role]} {name} ({kind})" for name, kind in sorted(endpoints.items()))
 
 
 class OwnLadder:

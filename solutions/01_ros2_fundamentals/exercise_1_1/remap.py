@@ -96,15 +96,13 @@ def not_remapped(seen: Launched, _: Launched) -> Advice | None:
     )
 
 
-@remap.mistake(
+remap.knows(
     "started_twice",
+    lambda seen, _: seen.talkers > 1,
+    "There are {seen.talkers} talkers on {seen.topic}: the launch file starts that program more than once.",
+    "Start the talker once. A listener hears every talker of its topic, and cannot tell them apart.",
     certain=True,
-    says="There are {seen.talkers} talkers on {seen.topic}: the launch file starts that program more than once.",
-    next_step="Start the talker once. A listener hears every talker of its topic, and cannot tell them apart.",
 )
-def started_twice(seen: Launched, _: Launched) -> bool:
-    """More than one talker speaks under the new name."""
-    return seen.talkers > 1
 
 
 @remap.mistake(

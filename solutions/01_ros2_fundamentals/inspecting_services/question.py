@@ -355,17 +355,15 @@ def _crashed(part: Part) -> bool:
     return bool(part.traceback) and "TimeoutError" not in part.traceback and not meant(part.traceback)
 
 
-@question.mistake(
+question.knows(
     "looked_once",
-    certain=True,
-    says="You looked only once. A node that was just made knows hardly anything of the graph, and a service may "
+    lambda seen, _: gave_up_at_once(seen.part(LATE)) and not _crashed(seen.part(LATE)),
+    "You looked only once. A node that was just made knows hardly anything of the graph, and a service may "
     "start later than whoever looks for it.",
-    next_step="Look again and again, with a short pause, until the service is there or patience_sec seconds have "
+    "Look again and again, with a short pause, until the service is there or patience_sec seconds have "
     "passed.",
+    certain=True,
 )
-def looked_once(seen: Evidence, _: Evidence) -> bool:
-    """It has given up before the late service was there."""
-    return gave_up_at_once(seen.part(LATE)) and not _crashed(seen.part(LATE))
 
 
 @question.mistake(

@@ -315,14 +315,12 @@ def type_missing(seen: Evidence, _: Evidence) -> Advice | None:
     return None
 
 
-@mismatched.mistake(
+mismatched.knows(
     "never_ended",
-    says="Your function was still busy when the time was over.",
-    next_step="Looking at the graph needs no spin. Wait for the two nodes with a limit, and return.",
+    lambda seen, _: not all(_is_answered(Evidence([part], seen.reference)) for part in seen),
+    "Your function was still busy when the time was over.",
+    "Looking at the graph needs no spin. Wait for the two nodes with a limit, and return.",
 )
-def never_ended(seen: Evidence, _: Evidence) -> bool:
-    """No answer came in time."""
-    return not all(_is_answered(Evidence([part], seen.reference)) for part in seen)
 
 
 EXERCISE = mismatched.exercise(

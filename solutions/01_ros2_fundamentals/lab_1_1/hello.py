@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from autograder.kit.draft import Draft
-from autograder.kit.recipes.program import Program, Ran
+from autograder.kit.recipes.program import Program
 
 recipe = Program("my_robot_pkg", "simple_node", "saying hello")
 hello = Draft(
@@ -17,38 +17,28 @@ hello.asks("node", 3, "Is a node on the graph", recipe.is_a_node)
 hello.asks("line", 4, "Says the line", recipe.says_the_line)
 
 
-@hello.mistake(
+hello.knows(
     "wrong_text",
+    lambda seen, _: seen.has_node and bool(seen.words) and not seen.says_it,
+    "Your node says “{seen.nearest}”; the task asks for “{seen.line}”.",
+    "{seen.first_difference} Every letter counts.",
     late=True,
-    says="Your node says “{seen.nearest}”; the task asks for “{seen.line}”.",
-    next_step="{seen.first_difference} Every letter counts.",
 )
-def wrong_text(seen: Ran, _: Ran) -> bool:
-    """Its node says something else."""
-    return seen.has_node and bool(seen.words) and not seen.says_it
-
-
-@hello.mistake(
+hello.knows(
     "not_logged",
+    lambda seen, _: seen.has_node and not seen.words and not seen.says_it,
+    "Your node is on the graph, but it says nothing.",
+    "Log the line in __init__, after super().__init__: self.get_logger().info('...').",
     late=True,
-    says="Your node is on the graph, but it says nothing.",
-    next_step="Log the line in __init__, after super().__init__: self.get_logger().info('...').",
 )
-def not_logged(seen: Ran, _: Ran) -> bool:
-    """Its node says nothing."""
-    return seen.has_node and not seen.words and not seen.says_it
-
-
-@hello.mistake(
+hello.knows(
     "nothing_on_the_graph",
-    late=True,
-    says="The line is there, but no node says it: your program never appeared on the graph.",
-    next_step="Make a class derived from Node, call super().__init__('simple_node') in it, and log with "
+    lambda seen, _: seen.says_it and not seen.has_node,
+    "The line is there, but no node says it: your program never appeared on the graph.",
+    "Make a class derived from Node, call super().__init__('simple_node') in it, and log with "
     "self.get_logger().info(...).",
+    late=True,
 )
-def no_node(seen: Ran, _: Ran) -> bool:
-    """It says the line, and no node says it."""
-    return seen.says_it and not seen.has_node
 
 
 EXERCISE = hello.exercise(

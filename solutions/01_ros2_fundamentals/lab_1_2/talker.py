@@ -75,27 +75,21 @@ def around(numbers: list[int], place: int) -> str:
     return "…, " * bool(first) + row(numbers[first : first + 6])
 
 
-@talker.mistake(
+talker.knows(
     "field_typo",
+    lambda seen, _: bool(seen.texts) and not any(seen.texts),
+    "Your messages arrive, but their text is empty: the field was never filled.",
+    "A String has one field, data. Write msg.data = ...; String(...) ignores a misspelt keyword silently.",
     certain=True,
-    says="Your messages arrive, but their text is empty: the field was never filled.",
-    next_step="A String has one field, data. Write msg.data = ...; String(...) ignores a misspelt keyword silently.",
 )
-def field_typo(seen: Publisher, _: Publisher) -> bool:
-    """Messages arrive, and every text is empty."""
-    return bool(seen.texts) and not any(seen.texts)
-
-
-@talker.mistake(
+talker.knows(
     "counter_stuck",
-    certain=True,
-    says="Every message carries the number {seen.counters[0]}: the counter is never counted up.",
-    next_step="Add self.count += 1 at the end of the method. Without self. in front, another variable is changed, not "
+    lambda seen, _: len(seen.counters) >= 3 and len(set(seen.counters)) == 1,
+    "Every message carries the number {seen.counters[0]}: the counter is never counted up.",
+    "Add self.count += 1 at the end of the method. Without self. in front, another variable is changed, not "
     "the node's count.",
+    certain=True,
 )
-def counter_stuck(seen: Publisher, _: Publisher) -> bool:
-    """The number never changes."""
-    return len(seen.counters) >= 3 and len(set(seen.counters)) == 1
 
 
 @talker.mistake("wrong_text", certain=True)

@@ -93,16 +93,14 @@ def alive(seen: Server, _: Server) -> Finding:
     return seen.all_right(seen.last, objection, "answers once more after all that")
 
 
-@server.mistake(
+server.knows(
     "field_typo",
-    certain=True,
-    says="Every answer is 0: the field sum of the response was never filled.",
-    next_step="Set response.sum = request.a + request.b. A misspelt keyword in AddTwoInts.Response(...) is ignored "
+    lambda seen, _: bool(seen.answers) and not any(answer["sum"] for answer in seen.answers.values()),
+    "Every answer is 0: the field sum of the response was never filled.",
+    "Set response.sum = request.a + request.b. A misspelt keyword in AddTwoInts.Response(...) is ignored "
     "silently.",
+    certain=True,
 )
-def field_typo(seen: Server, _: Server) -> bool:
-    """Every answer is 0."""
-    return bool(seen.answers) and not any(answer["sum"] for answer in seen.answers.values())
 
 
 @server.mistake("wrong_sum", certain=True)

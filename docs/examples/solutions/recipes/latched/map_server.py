@@ -66,26 +66,20 @@ def text(seen: Part, expected: Part) -> Finding:
     )
 
 
-@map_server.mistake(
+map_server.knows(
     "not_latched",
+    lambda seen, _: any(event.data["policy"] == "durability" for event in seen.of("mismatch")),
+    "Your publisher keeps no message: who subscribes after it was published hears nothing.",
+    "Give create_publisher QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) in place of 10.",
     certain=True,
-    says="Your publisher keeps no message: who subscribes after it was published hears nothing.",
-    next_step="Give create_publisher QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) in place of 10.",
 )
-def not_latched(seen: Part, _: Part) -> bool:
-    """Its durability is less than the late listener asks for."""
-    return any(event.data["policy"] == "durability" for event in seen.of("mismatch"))
-
-
-@map_server.mistake(
+map_server.knows(
     "wrong_text",
+    lambda seen, expected: bool(messages(seen)) and not text(seen, expected).passed,
+    "Who comes late hears something else than the name of the map.",
+    "Publish the text kitchen, once. A depth of 1 keeps the last message alone.",
     certain=True,
-    says="Who comes late hears something else than the name of the map.",
-    next_step="Publish the text kitchen, once. A depth of 1 keeps the last message alone.",
 )
-def wrong_text(seen: Part, expected: Part) -> bool:
-    """Another text comes."""
-    return bool(messages(seen)) and not text(seen, expected).passed
 
 
 EXERCISE = map_server.exercise()

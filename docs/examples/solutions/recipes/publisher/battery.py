@@ -42,26 +42,20 @@ def row(numbers: list[int]) -> str:
     return ", ".join(map(str, numbers[:5])) + ", …"
 
 
-@battery.mistake(
+battery.knows(
     "counter_stuck",
+    lambda seen, _: len(seen.counters) > 2 and len(set(seen.counters)) == 1,
+    "Every message says {seen.counters[0]} percent: the charge never changes.",
+    "Take 1 away at the end of the method that the timer calls: self.charge -= 1.",
     certain=True,
-    says="Every message says {seen.counters[0]} percent: the charge never changes.",
-    next_step="Take 1 away at the end of the method that the timer calls: self.charge -= 1.",
 )
-def counter_stuck(seen: Publisher, _: Publisher) -> bool:
-    """The charge never changes."""
-    return len(seen.counters) > 2 and len(set(seen.counters)) == 1
-
-
-@battery.mistake(
+battery.knows(
     "counter_step",
+    lambda seen, _: len(seen.counters) > 2 and seen.counters[0] < seen.counters[1] < seen.counters[2],
+    "The charge goes up: {seen.counters[0]}, {seen.counters[1]}, …",
+    "Take 1 away each time: self.charge -= 1.",
     certain=True,
-    says="The charge goes up: {seen.counters[0]}, {seen.counters[1]}, …",
-    next_step="Take 1 away each time: self.charge -= 1.",
 )
-def counter_step(seen: Publisher, _: Publisher) -> bool:
-    """It goes up where it should go down."""
-    return len(seen.counters) > 2 and seen.counters[0] < seen.counters[1] < seen.counters[2]
 
 
 EXERCISE = battery.exercise()

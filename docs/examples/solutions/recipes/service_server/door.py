@@ -52,15 +52,13 @@ def success(seen: Server, _: Server) -> Finding:
     return Finding(bool(said) and all(said), "success is true", f"success was {said[:1] or 'never told'}")
 
 
-@door.mistake(
+door.knows(
     "counter_stuck",
+    lambda seen, _: len(told(seen)) >= SINGLE and len(set(told(seen))) == 1 and bool(told(seen)[0]),
+    "Every visitor is told the same: the number never changes.",
+    "Count in an attribute, at the beginning of the method: self.visitors += 1.",
     certain=True,
-    says="Every visitor is told the same: the number never changes.",
-    next_step="Count in an attribute, at the beginning of the method: self.visitors += 1.",
 )
-def counter_stuck(seen: Server, _: Server) -> bool:
-    """All answers are the same, and not empty."""
-    return len(told(seen)) >= SINGLE and len(set(told(seen))) == 1 and bool(told(seen)[0])
 
 
 EXERCISE = door.exercise()

@@ -87,12 +87,13 @@ def only(seen: Part, _: Part) -> Finding:
     )
 
 
-@guard.mistake(
-    "limit_included", certain=True, says="Your node warns of 20 percent too.", next_step="Compare with <."
+guard.knows(
+    "limit_included",
+    lambda seen, _: set(needless(seen)) == {LIMIT},
+    "Your node warns of 20 percent too.",
+    "Compare with <.",
+    certain=True,
 )
-def limit_included(seen: Part, _: Part) -> bool:
-    """It takes the limit for a low charge, and is right otherwise."""
-    return set(needless(seen)) == {LIMIT}
 
 
 EXERCISE = guard.exercise()

@@ -86,15 +86,13 @@ def off(seen: Part, _: Part) -> Finding:
     return Finding(len(counts) > 2 and not loud, "no message while it is off", loud[0] if loud else "silence")
 
 
-@lamp.mistake(
+lamp.knows(
     "always_on",
+    lambda seen, _: any(heard(seen)[::2]),
+    "Your lamp publishes while it is off.",
+    "Keep in self.on what the last request said (False at first), and publish only if it is true.",
     certain=True,
-    says="Your lamp publishes while it is off.",
-    next_step="Keep in self.on what the last request said (False at first), and publish only if it is true.",
 )
-def always_on(seen: Part, _: Part) -> bool:
-    """It publishes in a phase in which it is off."""
-    return any(heard(seen)[::2])
 
 
 EXERCISE = lamp.exercise()
