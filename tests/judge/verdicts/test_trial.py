@@ -1,0 +1,67 @@
+"""One check: when a subject is looked at a second time, in real time, and which look counts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from autograder import exercises
+from autograder.judge.verdicts import reference, trial
+from autograder.kit.evidence import Evidence, Part
+from autograder.kit.model import Advice, Criterion, Finding, Mistake, Pace
+
+if TYPE_CHECKING:
+    from autograder.kit.model import Exercise
+
+FAST, REAL = Pace.FAST, Pace.REAL_TIME
+USUAL = exercises.get("lab_1_2.listener")
+
+
+class Anybody:
+    def begin(self, domain_id: int) -> None:
+        del domain_id
+
+
+def exercise(*, certain: bool = False, second_look: bool = True) -> Exercise:
+    """One whose criterion holds where the part is called good."""
+
+    def judge(evidence: Evidence) -> Finding:
+        return Finding(evidence.main.name == "good", "", "")
+
+    mistake = Mistake("mistake", lambda _: Advice("", ""), certain=certain)
+    criterion = Criterion("good", "Good", 10, judge)
+    return replace(USUAL, criteria=(criterion,), mistakes=(mistake,), second_look=second_look)
+
+
+@pytest.mark.parametrize(
+    ("judged", "seen", "looks", "passed"),
+    [
+        pytest.param(exercise(), ["good"], [FAST], True, id="a fast pass counts"),
+        pytest.param(exercise(), ["bad", "good"], [FAST, REAL], True, id="what fails is looked at again"),
+        pytest.param(exercise(), ["bad", "bad"], [FAST, REAL], False, id="and may fail again"),
+        pytest.param(exercise(certain=True), ["bad"], [FAST], False, id="not where a mistake is certain"),
+        pytest.param(exercise(second_look=False), ["bad"], [FAST], False, id="nor where nobody looks twice"),
+        pytest.param(exercise(), ["doubtful", "good"], [FAST, REAL], True, id="a doubtful pass is confirmed"),
+        pytest.param(exercise(), ["doubtful", "bad"], [FAST, REAL], False, id="or not"),
+    ],
+)
+def test_the_last_look_that_is_needed_decides(
+    monkeypatch: pytest.MonkeyPatch, judged: Exercise, seen: list[str], looks: list[Pace], passed: bool
+) -> None:
+    made: list[Pace] = []
+    stored = reference.load(USUAL.id)
+
+    def look(*words: Any, **_: object) -> trial.Seen:
+        name = seen[len(made)]
+        made.append(words[3])
+        part = Part("good" if name == "doubtful" else name)
+        return trial.Seen(Evidence([part], stored), doubtful=name == "doubtful")
+
+    monkeypatch.setattr(trial, "look", look)
+    subject: Any = Anybody()
+    checked = trial.check(judged, subject, stored, seed="s", domain_id=0)
+    assert made == looks
+    assert checked.verdict.passed is passed
+    assert (checked.evidence.before is not None) is (len(looks) == 2)
