@@ -63,6 +63,17 @@ def rebuild_unreadable(master: NotebookNode, problem: str) -> Rebuilt:
     return _finished(master, [nodes.copied(cell) for cell in master.cells], remarks)
 
 
+def is_of_another(master: NotebookNode, submitted: Sequence[SubmittedCell]) -> bool:
+    """Whether a notebook was made from another master: most of its named cells are not of this one, and no graded one.
+
+    Labs have some cells of the same names. A notebook without any named cell may be anything.
+    """
+    names = {cell.grade_id for cell in submitted if cell.grade_id}
+    ours = {grade_id(cell) for cell in master.cells}
+    graded = {grade_id(cell) for cell in master.cells if cell.metadata.get("nbgrader", {}).get("grade")}
+    return len(names - ours) > len(names & ours) and not names & graded
+
+
 class _Sorting:
     """Finds for each cell of the master the submitted cell that answers it."""
 

@@ -14,7 +14,13 @@ from autograder.grading.classes.seeds import seed_for
 from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.rebuilding.demonstrations import are_run, demonstrations_of
 from autograder.grading.rebuilding.master import check_of
-from autograder.grading.rebuilding.rebuild import Rebuilt, grade_id, rebuild, rebuild_unreadable
+from autograder.grading.rebuilding.rebuild import (
+    Rebuilt,
+    grade_id,
+    is_of_another,
+    rebuild,
+    rebuild_unreadable,
+)
 from autograder.grading.rebuilding.submission import UnreadableSubmission, parse, read_bytes
 from autograder.grading.returning.sanitize import is_the_masters
 from autograder.grading.running import sandboxing
@@ -30,6 +36,10 @@ def rebuilt_notebook(path: Path, master: NotebookNode) -> tuple[Rebuilt, str]:
     """The notebook that stands for the submitted file, and why it was not taken over (empty where it was)."""
     try:
         cells, left_out = parse(read_bytes(path))
+        if is_of_another(master, cells):
+            raise UnreadableSubmission(
+                f"The cells of {path.name} are those of another assignment: the notebook of this one is missing."
+            )
     except UnreadableSubmission as error:
         return rebuild_unreadable(master, str(error)), str(error)
     return rebuild(master, cells, left_out), ""

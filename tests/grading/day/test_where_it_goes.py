@@ -219,6 +219,27 @@ def test_the_cells_say_which_assignment_it_is(klass: TinyClass, tmp_path: Path) 
     assert [one.assignment for one in report.having(State.PLACED)] == ["lab_1_3"]
 
 
+def test_a_notebook_of_another_assignment_that_was_put_there_by_hand_is_refused_with_its_page(
+    klass: TinyClass, fake_engine: FakeEngine
+) -> None:
+    other = klass.released()
+    named = [cell.metadata["nbgrader"] for cell in other.cells if "nbgrader" in cell.metadata]
+    for marks in named[1:]:
+        marks["grade_id"] = f"other-{marks['grade_id']}"
+    klass.hand_in("ada", other)
+    klass.submit("ben", 4, 7)
+    report = klass.grade(feedback=True)
+    assert fake_engine.ran == ["ben"]
+    said = {row.reason for row in report.rows if row.student == "ada" and row.assignment == "lab_1_2"}
+    reason = (
+        "The cells of lab_1_2.ipynb are those of another assignment: the notebook of this one is missing."
+    )
+    assert said == {reason}
+    page = (klass.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html").read_text()
+    assert reason in page
+    assert "was missing. It was put back" not in page
+
+
 # -- when
 # ------------------------------------------------------------------------------------------------------
 
