@@ -91,8 +91,8 @@ def would_change(
             costs = penalties(directory.config, work.submission.student, then).values()
             then = replace(then, penalty=sum(cost or 0.0 for cost in costs))
             if then.taken_off != entry.taken_off:
-                off = (-one.taken_off if one.taken_off else None for one in (entry, then))
-                found.append(Difference(*work.key, LATE, *off, note=then.why_late))
+                before, after = (-one.taken_off if one.taken_off else None for one in (entry, then))
+                found.append(Difference(*work.key, LATE, before, after, note=then.why_late))
     return found
 
 

@@ -13,6 +13,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -23,12 +24,10 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.outcomes import WaitingList
 from autograder.grading.collecting.records import CollectedRecords
-from autograder.grading.entering import journal
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from conftest import FakeEngine, TinyClass
 
@@ -194,7 +193,7 @@ def test_a_file_is_on_the_disk_before_it_has_its_name_and_its_name_before_anythi
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     done: list[str] = []
-    real_sync, real_replace = os.fsync, journal.Path.replace
+    real_sync, real_replace = os.fsync, Path.replace
 
     def sync(descriptor: int) -> None:
         done.append(f"sync {os.path.basename(os.readlink(f'/proc/self/fd/{descriptor}'))}")  # noqa: PTH115, PTH119
@@ -205,7 +204,7 @@ def test_a_file_is_on_the_disk_before_it_has_its_name_and_its_name_before_anythi
         return real_replace(path, to)
 
     monkeypatch.setattr(os, "fsync", sync)
-    monkeypatch.setattr(journal.Path, "replace", replace)
+    monkeypatch.setattr(Path, "replace", replace)
     write_whole(tmp_path / "new" / "deep" / "file", b"all of it")
     half = f".file.{os.getpid()}.new"
     assert done == [f"sync {half}", "name file", "sync deep", "sync new", f"sync {tmp_path.name}"]
