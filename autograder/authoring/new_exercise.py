@@ -57,9 +57,24 @@ def new_exercise(root: Path, exercise_id: str, recipe: str, *, chapter: str | No
         made = Path(scratch) / lab
         shutil.copytree(example, made, ignore=LEFT_OUT)
         _rename(made, f"{example.name}.{_exercise_of(example)}", exercise_id)
-        folder.parent.mkdir(parents=True, exist_ok=True)
+        written = _described(folder.parent)
         shutil.copytree(made, folder)
-    return sorted(path for path in folder.rglob("*") if path.is_file())
+    return [*written, *sorted(path for path in folder.rglob("*") if path.is_file())]
+
+
+def _described(chapter: Path) -> list[Path]:
+    """Make the folder of a new chapter, with a description for its author to complete; what was written."""
+    if chapter.is_dir():
+        return []
+    chapter.mkdir(parents=True)
+    description = chapter / course.CHAPTER
+    title = chapter.name.lstrip("0123456789_-").replace("_", " ").capitalize() or chapter.name
+    description.write_text(
+        f'title = "{title}"\n\n# The folders of the labs, in the order in which they are read. One that is not named '
+        "here comes last.\nlabs = []\n",
+        encoding="utf-8",
+    )
+    return [description]
 
 
 def _lab_of(exercise_id: str) -> str:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import textwrap
-from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from autograder import exercises, recording
 from autograder.authoring.answers import Answer, answers, folder_of
 from autograder.authoring.judging import Turn, judge_all, warm_up
+from autograder.authoring.readiness import still_to_do
 from autograder.cards.text import card_text
 
 if TYPE_CHECKING:
@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
 JOBS = 4
 """Answers that are judged at once: most of the time of each is waiting."""
-ENOUGH = {"right": 5, "wrong": 8}
-"""As many answers as tell something of an exercise. It works with fewer; how fair it is, is then not known."""
 
 
 class NothingToTry(LookupError):
@@ -45,7 +43,7 @@ class Surprise:
 def try_exercise(
     exercise_id: str, *, only: Sequence[str] = (), jobs: int = JOBS, tell: Callable[[str], object]
 ) -> bool:
-    """Record or compare the reference output, then judge the answers and tell what does not fit.
+    """Record or compare the reference output, judge the answers and tell what does not fit, and what is still to do.
 
     A reference output that is not there is recorded. One that differs from what the solution does now is left as it
     is, and no answer is judged by it: what is expected of students does not change unasked.
@@ -76,7 +74,8 @@ def try_exercise(
     count = f"{len(wanted)} answer{'s' * (len(wanted) != 1)}"
     tell(f"\n{count}, {len(surprises) or 'none'} not as expected")
     if not only:
-        _tell_what_is_missing(wanted, tell)
+        for line in still_to_do(exercise_id, wanted):
+            tell(f"to do: {line}")
     return not surprises
 
 
@@ -152,13 +151,3 @@ def _is_in_step(exercise_id: str, tell: Callable[[str], object]) -> bool:
         "look at the difference, and try again."
     )
     return False
-
-
-def _tell_what_is_missing(wanted: Sequence[Answer], tell: Callable[[str], object]) -> None:
-    there = Counter(answer.file.parent.name for answer in wanted)
-    few = [f"{there[kind]} {kind}" for kind, enough in ENOUGH.items() if there[kind] < enough]
-    if few:
-        tell(
-            f"So far there are {' and '.join(few)} answers; a new exercise should have {ENOUGH['right']} right ones in "
-            f"different styles and {ENOUGH['wrong']} wrong ones before students meet it."
-        )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from autograder import course
 from autograder.authoring.new_exercise import EXAMPLES, CannotMake, new_exercise, recipes
 
 if TYPE_CHECKING:
@@ -39,8 +40,10 @@ def test_it_is_written_into_the_newest_chapter_or_the_one_that_is_named(root: Pa
     (root / "solutions/02_second/chapter.toml").write_text('title = "Second"\n')
     made = new_exercise(root, ID, "publisher")
     assert {path.parent for path in made} >= {root / "solutions/02_second/lab_9_1"}
-    made = new_exercise(root, "lab_9_2.other", "publisher", chapter="03_third")
-    assert root / "solutions/03_third/lab_9_2/other.py" in made
+    made = new_exercise(root, "lab_9_2.other", "publisher", chapter="03_my_third")
+    assert made[0] == root / "solutions/03_my_third/chapter.toml"
+    assert root / "solutions/03_my_third/lab_9_2/other.py" in made
+    assert [chapter.title for chapter in course.chapters(root)] == ["First", "Second", "My third"]
 
 
 @pytest.mark.parametrize("recipe", recipes())

@@ -1,0 +1,87 @@
+"""How the labs of the course are written: rules that each master keeps, and that a new one is measured by."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from typing import TYPE_CHECKING
+
+from autograder.masters.copies import COPY
+from autograder.masters.parsing import CellRole, parse_master
+from autograder.masters.regions import find_region
+from autograder.masters.source import named_cells
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from pathlib import Path
+
+    from autograder.masters.source import NamedCell
+
+HEAD, BEFORE_A_TASK, SOLUTION = 150, 400, 8
+"""Words before the first cell of code, words before the first task, and lines of the student's in one cell, at most."""
+_MINUTES = re.compile(r"^\*\d+ minutes · for ", re.MULTILINE)
+_PICTURE = re.compile(r"!\[[^\]]*\]\([^)]*\)")
+"""The text alternative of a figure is for those who do not see it."""
+
+
+def broken_rules(master: Path) -> list[str]:
+    """The house rules that a master breaks, each with its name and what to write.
+
+    Args:
+        master: A file ``lab.md``.
+
+    Raises:
+        autograder.masters.errors.MasterError: It is no master.
+    """
+    copying = {cell.line for cell in parse_master(master) if COPY.search(cell.source)}
+    cells = [
+        one for one in named_cells(master) if one.cell.line
+    ]  # without the links to the labs before and after
+    return [
+        *_beginning(cells),
+        *_solutions(one for one in cells if one.cell.line not in copying),
+        *_introductions(cells),
+        *_end(cells),
+    ]
+
+
+def _beginning(cells: list[NamedCell]) -> Iterator[str]:
+    head = list(itertools.takewhile(_is_text, cells))
+    if _words(head) > HEAD:
+        yield f"begin by doing: {_words(head)} words before the first cell of code, and {HEAD} are enough"
+    if not head or not _MINUTES.search(head[0].cell.source):
+        yield "minutes: the first text says how long it takes and for whom, such as *20 minutes · for beginners*"
+    task = next((place for place, one in enumerate(cells) if one.cell.kind is CellRole.SOLUTION), 0)
+    if (before := _words(filter(_is_text, cells[:task]))) > BEFORE_A_TASK:
+        yield f"the first task comes soon: {before} words before it, and {BEFORE_A_TASK} are enough"
+
+
+def _solutions(cells: Iterable[NamedCell]) -> Iterator[str]:
+    for one in cells:
+        if one.cell.kind is CellRole.SOLUTION:
+            written = sum(bool(line.strip()) for line in find_region(one.cell.source).answer)
+            if not 1 <= written <= SOLUTION:
+                yield (
+                    f"a task is small: the cell {one.name} (line {one.cell.line}) asks for {written} lines, and "
+                    f"{SOLUTION} are enough; give the rest, or make two cells of it"
+                )
+
+
+def _introductions(cells: list[NamedCell]) -> Iterator[str]:
+    for before, one in itertools.pairwise(cells):
+        said = [line for line in before.cell.source.splitlines() if line.strip() and not line.startswith("#")]
+        if not _is_text(one) and not (_is_text(before) and said):
+            yield f"a cell of code is introduced: no word before line {one.cell.line}"
+
+
+def _end(cells: list[NamedCell]) -> Iterator[str]:
+    if not cells or "https://docs.ros.org/en/jazzy/" not in cells[-1].cell.source:
+        yield "closing link: the last text says where to read on, in https://docs.ros.org/en/jazzy/"
+
+
+def _is_text(one: NamedCell) -> bool:
+    return one.cell.kind is CellRole.TEXT
+
+
+def _words(cells: Iterable[NamedCell]) -> int:
+    return len(_PICTURE.sub("", "\n".join(one.cell.source for one in cells)).split())

@@ -1,0 +1,101 @@
+"""What the tests and the linters will say of a new exercise, told while its author still works on it."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from autograder import course, exercises
+from autograder.authoring.answers import folder_of
+from autograder.authoring.as_edit import nearest, whole_right_answers, worth
+from autograder.authoring.house_rules import broken_rules
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from autograder.authoring.answers import Answer
+
+ENOUGH = {"right": 5, "wrong": 8}
+"""As many answers as tell something of an exercise. It works with fewer; how fair it is, is then not known."""
+MISTAKES = "docs/mistakes.md"
+"""Where students read of each diagnosis, below a heading with its key."""
+_PACKAGE = Path(course.__file__).resolve().parents[1]
+_SETTINGS = _PACKAGE / "pyproject.toml"
+
+
+def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
+    """What an exercise still lacks before it is committed, a line for each.
+
+    Args:
+        exercise_id: Such as ``"lab_1_2.talker"``.
+        listed: All answers to it.
+
+    Raises:
+        autograder.exercises.UnknownExercise: There is no such exercise.
+        autograder.exercises.BrokenExercise: Its file is none.
+        autograder.masters.errors.MasterError: Its master cannot be used.
+    """
+    yield from _of_answers(exercise_id, listed)
+    yield from _of_mistakes(exercise_id, listed)
+    if not exercises.get(exercise_id).text:
+        yield "text: the exercise does not say which words of the task are behind which criterion"
+    lab = exercises.path(exercise_id).parent
+    yield from (f"{course.LAB}: {rule}" for rule in broken_rules(lab / course.LAB))
+    yield from _of_linters(lab)
+
+
+def _of_answers(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
+    there = Counter(answer.file.parent.name for answer in listed)
+    few = [f"{there[kind]} {kind}" for kind, enough in ENOUGH.items() if there[kind] < enough]
+    if few:
+        yield (
+            f"answers: so far there are {' and '.join(few)} ones; a new exercise should have {ENOUGH['right']} right "
+            f"ones in different styles and {ENOUGH['wrong']} wrong ones before students meet it"
+        )
+    for answer in listed:
+        if answer.diagnoses and not answer.file.name.startswith(answer.diagnoses[0]):
+            yield f"answers: {answer.short_name} is named after its diagnosis, {answer.diagnoses[0]}"
+    bases = whole_right_answers(folder_of(exercise_id))
+    for answer in listed:
+        if answer.edit is None and answer.diagnoses and answer.file.suffix == ".py":
+            near = nearest(answer.text, bases)
+            if near and worth(answer.text, near):
+                yield f"answers: store {answer.short_name} as an edit: python -m autograder.authoring.as_edit FILE"
+
+
+def _of_mistakes(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
+    page = course.root() / MISTAKES
+    if page.is_file():
+        told = set(re.findall(r"^### `(\w+)`$", page.read_text(encoding="utf-8"), re.MULTILINE))
+        used = {mistake.key for mistake in exercises.get(exercise_id).mistakes}
+        used |= {key for answer in listed for key in answer.diagnoses}
+        yield from (f"{MISTAKES}: no paragraph about `{key}` yet" for key in sorted(used - told))
+
+
+def _of_linters(lab: Path) -> Iterator[str]:
+    """The lines of ruff and mypy about the files of a lab, where they are installed and the course has settings."""
+    files = [str(file) for file in sorted(lab.glob("*.py"))]
+    for name, *words in (
+        ("ruff", "check", "--quiet", "--output-format=concise", f"--config={_SETTINGS}"),
+        ("ruff", "format", "--check", "--quiet", f"--config={_SETTINGS}"),
+        ("mypy", "--no-error-summary", f"--config-file={_SETTINGS}"),
+    ):
+        program = Path(sys.executable).with_name(name)
+        if program.is_file() and _SETTINGS.is_file():
+            done = subprocess.run(
+                [program, *words, *files],
+                cwd=_PACKAGE,
+                env=os.environ | {"MYPYPATH": str(lab.parent)},
+                capture_output=True,
+                text=True,
+                check=False,
+            )
+            said = (done.stdout + done.stderr).splitlines()
+            yield from (f"{name}: {line}" for line in said)
+            if done.returncode and not said:
+                yield f"{name}: {name} {words[0]} would change the files"

@@ -1,0 +1,88 @@
+"""What a new exercise still lacks is told by the name of its rule; the examples break none."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder import course, exercises
+from autograder.authoring.answers import answers
+from autograder.authoring.new_exercise import EXAMPLES, new_exercise, recipes
+from autograder.authoring.readiness import still_to_do
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+ID = "lab_9_1.battery"
+FOR_ITS_AUTHOR = ("answers: so far there are ", "text: the exercise does not say ")
+"""What an example leaves to whoever copies it."""
+
+
+@pytest.fixture
+def lab(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of a new exercise, in a course with a page of mistakes."""
+    forget()
+    monkeypatch.setenv(course.VARIABLE, str(tmp_path))
+    new_exercise(tmp_path, ID, "publisher", chapter="01_first")
+    (tmp_path / "docs").mkdir()
+    keys = sorted({mistake.key for mistake in exercises.get(ID).mistakes})
+    (tmp_path / "docs/mistakes.md").write_text("".join(f"### `{key}`\n" for key in keys))
+    return tmp_path / "solutions/01_first/lab_9_1"
+
+
+def forget() -> None:
+    """Have the exercise imported anew, as another process would."""
+    for name in [name for name in sys.modules if name.partition(".")[0] == "lab_9_1"]:
+        del sys.modules[name]
+
+
+def told() -> list[str]:
+    lines = still_to_do(ID, list(answers([ID])))
+    return [line for line in lines if not line.startswith(FOR_ITS_AUTHOR)]
+
+
+@pytest.mark.parametrize("recipe", recipes())
+def test_an_example_keeps_every_rule(recipe: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(course.VARIABLE, str(EXAMPLES))
+    example = next(name for name in exercises.all_ids() if name.startswith(f"{recipe}."))
+    lines = list(still_to_do(example, list(answers([example]))))
+    assert [line for line in lines if not line.startswith(FOR_ITS_AUTHOR)] == []
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "rule"),
+    [
+        ("lab.md", "*20 minutes · for beginners*", "", "lab.md: minutes: "),
+        ("lab.md", "https://docs.ros.org/en/jazzy/", "https://example.com/", "lab.md: closing link: "),
+        ("lab.md", "Robots tell", "Robots " * 151 + "tell", "lab.md: begin by doing: "),
+        ("lab.md", "Robots tell", "Robots " * 401 + "tell", "lab.md: the first task comes soon: "),
+        (
+            "lab.md",
+            "        self.charge -= 1\n",
+            "        self.charge -= 1\n" * 9,
+            "lab.md: a task is small: ",
+        ),
+        ("battery.py", "import annotations\n", "import annotations\n\nimport os\n", "ruff: "),
+        ("battery.py", ") -> str:", ") -> int:", "mypy: "),
+        (
+            "battery.py",
+            '"counter_step",',
+            '"counted_up",',
+            "docs/mistakes.md: no paragraph about `counted_up`",
+        ),
+        (
+            "battery.answers/wrong/answers.toml",
+            '["topic_name.py"]',
+            '["odd.py"]',
+            "answers: wrong/odd.py is named ",
+        ),
+    ],
+)
+def test_a_rule_that_is_broken_is_named(lab: Path, file: str, old: str, new: str, rule: str) -> None:
+    text = (lab / file).read_text()
+    assert old in text
+    (lab / file).write_text(text.replace(old, new, 1))
+    forget()
+    assert any(line.startswith(rule) for line in told()), told()
