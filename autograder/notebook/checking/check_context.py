@@ -6,6 +6,7 @@ this one, so that nodes of the notebook's demonstrations are neither heard nor d
 
 from __future__ import annotations
 
+import gc
 import os
 import time
 from typing import TYPE_CHECKING, Self
@@ -16,6 +17,7 @@ from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
+from autograder.notebook.nodes.node_ends import destroy_node
 from autograder.ros_domain import DOMAIN_VARIABLE
 from autograder.ros_participant import receivers_wait
 
@@ -132,9 +134,16 @@ class CheckContext:
         }
 
     def _end(self) -> None:
+        """End what is on the context, then the context.
+
+        A node that outlives it would hold the place of its name among the loggers: what a later node of that name logs
+        would go to a dead publisher ("Failed to publish log message to rosout").
+        """
         keeper, self._keeper = self._keeper, None
         if keeper is not None:
-            keeper.destroy_node()
+            for node in gc.get_objects():
+                if issubclass(type(node), Node) and getattr(node, "context", None) is self.context:
+                    destroy_node(node)
         self.context.try_shutdown()
 
     @staticmethod
