@@ -1,7 +1,12 @@
-"""The packages with interfaces that the set-up builds: the course's own, and those in the folders of its chapters."""
+"""The packages with interfaces that the set-up builds: the course's own, and those in the folders of its chapters.
+
+A folder holds definitions only, and the set-up makes the package of them: students write such a package in a lab, and
+nothing that they are handed may be the answer.
+"""
 
 from __future__ import annotations
 
+import shutil
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -10,6 +15,34 @@ if TYPE_CHECKING:
 
 # Where chapters are written, and where they are in what students are handed.
 _CHAPTERS = ("solutions", "exercises")
+_DEFINITIONS = (".action", ".msg", ".srv")
+_PACKAGE_XML = """\
+<?xml version="1.0"?>
+<package format="3">
+  <name>{name}</name>
+  <version>0.1.0</version>
+  <description>Interfaces of the course.</description>
+  <maintainer email="course@example.com">The course</maintainer>
+  <license>MIT</license>
+  <buildtool_depend>ament_cmake</buildtool_depend>
+{dependencies}
+  <member_of_group>rosidl_interface_packages</member_of_group>
+  <export><build_type>ament_cmake</build_type></export>
+</package>
+"""
+_CMAKE_LISTS = """\
+cmake_minimum_required(VERSION 3.8)
+project({name})
+find_package(ament_cmake REQUIRED)
+find_package(rosidl_default_generators REQUIRED)
+rosidl_generate_interfaces(${{PROJECT_NAME}} {definitions})
+ament_package()
+"""
+_TAGS = {
+    "rosidl_default_generators": "buildtool_depend",
+    "action_msgs": "depend",
+    "rosidl_default_runtime": "exec_depend",
+}
 
 
 def interface_packages(root: Path) -> tuple[Path, ...]:
@@ -18,31 +51,52 @@ def interface_packages(root: Path) -> tuple[Path, ...]:
     Args:
         root: the folder of the course.
     """
-    patterns = ("environment/ros2_ws/src/*", *(f"{name}/*/interfaces/*" for name in _CHAPTERS))
+    patterns = ("environment/interfaces/*", *(f"{name}/*/interfaces/*" for name in _CHAPTERS))
     return tuple(
-        folder
-        for pattern in patterns
-        for folder in sorted(root.glob(pattern))
-        if (folder / "package.xml").is_file()
+        folder for pattern in patterns for folder in sorted(root.glob(pattern)) if _definitions(folder)
     )
 
 
 def build_command(
     colcon: Path, python: Path, packages: Sequence[Path], prefix: Path, scratch: Path
 ) -> list[str | Path]:
-    """Return the command that builds packages into a prefix.
+    """Make the packages, and return the command that builds them into a prefix.
 
     Args:
         colcon: the program.
         python: the interpreter that the interfaces are for.
-        packages: the folders of the packages.
+        packages: the folders of the definitions.
         prefix: where they are installed, all merged into one.
         scratch: a folder for what is made on the way.
+
+    Raises:
+        OSError: They cannot be written.
     """
+    sources = scratch / "interfaces"
+    shutil.rmtree(sources, ignore_errors=True)
+    for package in packages:
+        _make_package(package, sources / package.name)
     # Release defines NDEBUG. With asserts, a field of a wrong type would end a student's process.
     cmake = ["-G", "Ninja", f"-DPython3_EXECUTABLE={python}", "-DCMAKE_BUILD_TYPE=Release"]
     command: list[str | Path] = [colcon, "--log-base", scratch / "colcon-log", "build"]
-    command += ["--base-paths", *packages, "--build-base", scratch / "build"]
+    command += ["--base-paths", sources, "--build-base", scratch / "build"]
     command += ["--merge-install", "--install-base", prefix, "--event-handlers", "console_direct+"]
     command += ["--cmake-args", *cmake, "-DBUILD_TESTING=OFF", "--no-warn-unused-cli"]
     return command
+
+
+def _definitions(folder: Path) -> list[Path]:
+    return sorted(file for file in folder.glob("*/*") if file.suffix in _DEFINITIONS)
+
+
+def _make_package(folder: Path, place: Path) -> None:
+    """Write the package of a folder: a copy of its definitions, and what colcon and CMake have to know."""
+    shutil.copytree(folder, place)
+    names = [file.relative_to(folder).as_posix() for file in _definitions(folder)]
+    needless = {"action_msgs"} if not any(name.endswith(".action") for name in names) else set()
+    lines = [f"  <{tag}>{name}</{tag}>" for name, tag in _TAGS.items() if name not in needless]
+    package_xml = _PACKAGE_XML.format(name=folder.name, dependencies="\n".join(lines))
+    (place / "package.xml").write_text(package_xml, encoding="utf-8")
+    definitions = " ".join(f'"{name}"' for name in names)
+    cmake_lists = _CMAKE_LISTS.format(name=folder.name, definitions=definitions)
+    (place / "CMakeLists.txt").write_text(cmake_lists, encoding="utf-8")

@@ -67,6 +67,7 @@ class Setup:
         kind = (str(place.root), str(place.base_python), sys.version, ros)
         interfaces = (
             place.environment / "repair_wheels.py",
+            place.environment / "interface_packages.py",
             *(file for package in place.interfaces for file in files_below(package)),
         )
         lighter = (place.environment / "lighter_imports.py",)

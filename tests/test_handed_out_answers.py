@@ -164,3 +164,13 @@ def test_no_other_file_offers_what_a_solution_offers(handed_out: Path) -> None:
         for exercise, given in candidates(folder, asked_for())
         if given.file.suffix == ".py"
     ]
+
+
+def test_no_package_generates_interfaces(handed_out: Path) -> None:
+    for folder in (handed_out, Path(sys.prefix) / "share/my_robot_interfaces"):
+        lists = [
+            file
+            for file in folder.rglob("CMakeLists.txt")
+            if "rosidl_generate_interfaces" in file.read_text()
+        ]
+        assert not lists

@@ -69,7 +69,7 @@ class Course:
 def course(tmp_path: Path) -> Course:
     root = tmp_path / "the course"
     (root / "environment/requirements").mkdir(parents=True)
-    (root / "environment/ros2_ws/src/interfaces/srv").mkdir(parents=True)
+    (root / "environment/interfaces/own_interfaces/srv").mkdir(parents=True)
     (root / "environment/ros2_command").mkdir()
     (root / "chapters").mkdir()
     (root / "tests").mkdir()
@@ -79,8 +79,7 @@ def course(tmp_path: Path) -> Course:
     (root / "environment/bootstrap.py").write_text(SET_UP)
     (root / "environment/ros2_command/install.py").write_text("")
     (root / "environment/requirements/course.lock").write_text("six==1.17.0\n")
-    (root / "environment/ros2_ws/src/interfaces/package.xml").write_text("<package/>\n")
-    (root / "environment/ros2_ws/src/interfaces/srv/A.srv").write_text("---\n")
+    (root / "environment/interfaces/own_interfaces/srv/A.srv").write_text("---\n")
     made = Course(root)
     for name in ("autograder", "jupyter", "ruff", "mypy", "pytest"):
         made.program(name)
@@ -109,10 +108,9 @@ def test_a_command_sets_up_once_and_then_is_only_run(course: Course) -> None:
         "environment/bootstrap.py",
         "environment/ros2_command/install.py",
         "environment/requirements/course.lock",
-        "environment/ros2_ws/src/interfaces/package.xml",
-        "environment/ros2_ws/src/interfaces/srv/A.srv",
+        "environment/interfaces/own_interfaces/srv/A.srv",
         "solutions/02_power/interfaces/power_interfaces/srv/B.srv",
-        "exercises/02_power/interfaces/power_interfaces/package.xml",
+        "exercises/02_power/interfaces/power_interfaces/msg/C.msg",
     ],
 )
 def test_a_change_of_what_it_is_made_from_sets_up_again(course: Course, changed: str) -> None:

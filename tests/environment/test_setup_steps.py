@@ -86,8 +86,7 @@ def test_the_interfaces_are_made_from_every_file_of_their_package() -> None:
         "AddTwoInts.srv",
         "Fibonacci.action",
         "WalkTo.action",
-        "CMakeLists.txt",
-        "package.xml",
+        "interface_packages.py",
         "repair_wheels.py",
     } == names
 
@@ -96,12 +95,11 @@ def test_a_package_in_a_chapters_folder_is_one_of_them(tmp_path: Path) -> None:
     usual = steps(Place(tmp_path, PLACE.base_python))["interfaces"]
     package = tmp_path / "solutions/02_power/interfaces/power_interfaces"
     (package / "srv").mkdir(parents=True)
-    for name in ("package.xml", "srv/SetLevel.srv"):
-        (package / name).touch()
+    (package / "srv/SetLevel.srv").touch()
     (tmp_path / "solutions/02_power/lab_2_1").mkdir()
     step = steps(Place(tmp_path, PLACE.base_python))["interfaces"]
     assert step.doing == "building power_interfaces with colcon"
-    assert set(step.inputs) - set(usual.inputs) == {package / "package.xml", package / "srv/SetLevel.srv"}
+    assert set(step.inputs) - set(usual.inputs) == {package / "srv/SetLevel.srv"}
 
 
 def test_a_sourced_ros_comes_after_the_environment_in_every_search_path(tmp_path: Path) -> None:
