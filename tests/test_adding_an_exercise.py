@@ -15,7 +15,7 @@ from autograder.authoring.new_exercise import recipes
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = (ROOT / "docs/adding-an-exercise.md").read_text(encoding="utf-8")
 COMMAND = re.compile(r"^\$ \./course (.+)$", re.MULTILINE)
-EXERCISE = "lab_9_1.battery"
+EXERCISE = "lab_8_1.battery"
 WRITTEN = re.compile(r"^written .*$", re.MULTILINE)
 
 
@@ -44,7 +44,7 @@ def test_the_page_does_what_it_says(tmp_path: Path) -> None:
     making, trying, building = COMMAND.findall(PAGE)
     made = run(tmp_path, making)
     assert made.returncode == 0, made.stderr
-    folder = tmp_path / "solutions/01_ros2_fundamentals/lab_9_1"
+    folder = tmp_path / "solutions/01_ros2_fundamentals/lab_8_1"
     for name in re.findall(r"^\| `([^`]+)` \|", PAGE, re.MULTILINE):
         assert (folder / name).exists(), name
     tried = run(tmp_path, trying)

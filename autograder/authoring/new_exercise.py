@@ -39,7 +39,7 @@ def new_exercise(root: Path, exercise_id: str, recipe: str, *, chapter: str | No
 
     Args:
         root: The top folder of the course.
-        exercise_id: Such as ``"lab_9_1.battery"``: the lab, a dot, the exercise.
+        exercise_id: Such as ``"lab_8_1.battery"``: the lab, a dot, the exercise.
         recipe: The kind of subject, one of :func:`recipes`.
         chapter: The folder of its chapter in ``solutions/``, made where it is not there; the last chapter where None.
 
@@ -81,7 +81,7 @@ def _lab_of(exercise_id: str) -> str:
     if not _ID.fullmatch(exercise_id):
         raise CannotMake(
             f"{exercise_id!r} is no id: it is the lab, a dot, and the exercise, in small letters, digits and _, "
-            "such as lab_9_1.battery"
+            "such as lab_8_1.battery"
         )
     return exercise_id.partition(".")[0]
 

@@ -66,7 +66,7 @@ def new_exercise(exercise: str, recipe: str, chapter: str | None) -> None:
     """Make the folder of a new lab with one EXERCISE that works, for you to change.
 
     \b
-    ./course new-exercise lab_9_1.battery --recipe publisher
+    ./course new-exercise lab_8_1.battery --recipe publisher
     """  # noqa: D301 (to click, the backspace keeps the lines below it apart)
     from autograder import course
     from autograder.authoring import new_exercise as making

@@ -61,7 +61,7 @@ class Draft(Generic[View]):
     """Collects an exercise.
 
     Args:
-        exercise_id: Such as ``"lab_9_1.battery"``: the lab's folder and the file's name.
+        exercise_id: Such as ``"lab_8_1.battery"``: the lab's folder and the file's name.
         title: For the card: the lab and what the subject is.
         task: One sentence: what is asked for.
         recipe: For the kind of subject.
