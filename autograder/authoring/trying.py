@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import textwrap
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import exercises, recording
 from autograder.authoring.answers import Answer, answers, folder_of
-from autograder.authoring.judging import Turn, judge_all, warm_up
+from autograder.authoring.judging import Turn, checked, judge_all, warm_up
 from autograder.authoring.readiness import still_to_do
 from autograder.cards.text import card_text
+from autograder.verdict import to_json
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
+    from autograder.kit.evidence import Evidence
     from autograder.verdict import Verdict
 
 JOBS = 4
@@ -40,8 +43,44 @@ class Surprise:
     card: str
 
 
+@dataclass(frozen=True)
+class Transcribed(Answer):
+    """An answer of which all that was seen is written into a file.
+
+    Attributes:
+        folder: Gets a file for each answer, such as ``wrong/topic_name.py.txt``, with a line for each event.
+    """
+
+    folder: Path = Path()
+
+    def verdict(self, seed: str, *, warm: bool) -> bytes:
+        """Judge it in this very process; the verdict as JSON."""
+        verdict, found = checked(self, seed, warm=warm)
+        if found is not None:
+            file = self.folder / f"{self.short_name}.txt"
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text("".join(_transcript(found.evidence)), encoding="utf-8")
+        return to_json(verdict)
+
+
+def _transcript(evidence: Evidence) -> Iterator[str]:
+    if evidence.before is not None:
+        yield from _transcript(evidence.before)
+        yield "\n"
+    for part in evidence:
+        yield f"== {part.name} {'in real time ' * evidence.real_time}{dict(part.inputs)}\n"
+        for event in part.events:
+            stepped = f" sim {event.sim:.2f}" if event.sim is not None else ""
+            yield f"{event.t:8.3f}{stepped}  {event.kind} {event.name} {dict(event.data)}\n"
+
+
 def try_exercise(
-    exercise_id: str, *, only: Sequence[str] = (), jobs: int = JOBS, tell: Callable[[str], object]
+    exercise_id: str,
+    *,
+    only: Sequence[str] = (),
+    jobs: int = JOBS,
+    transcript: Path | None = None,
+    tell: Callable[[str], object],
 ) -> bool:
     """Record or compare the reference output, judge the answers and tell what does not fit, and what is still to do.
 
@@ -52,6 +91,7 @@ def try_exercise(
         exercise_id: Such as ``"lab_1_2.talker"``.
         only: Parts of the names of answers; all answers where empty. The reference output is not compared then.
         jobs: Answers that are judged at once.
+        transcript: A folder that gets what was seen of each answer; None where nobody wants it.
         tell: Called with each line, or card, for the author.
 
     Returns:
@@ -65,9 +105,11 @@ def try_exercise(
         NothingToTry: There is no such answer.
     """
     exercises.get(exercise_id)
-    wanted = chosen(exercise_id, only)
+    wanted: Sequence[Answer] = chosen(exercise_id, only)
     if not (only and exercises.reference_path(exercise_id).exists()) and not _is_in_step(exercise_id, tell):
         return False
+    if transcript is not None:
+        wanted = [Transcribed(**vars(answer), folder=transcript) for answer in wanted]
     surprises = judged(wanted, jobs=jobs, tell=tell)
     for surprise in surprises:
         tell(f"\n{surprise.name}: {surprise.objection}\n{textwrap.indent(surprise.card, '    ')}")

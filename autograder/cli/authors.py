@@ -87,7 +87,12 @@ def new_exercise(exercise: str, recipe: str, chapter: str | None) -> None:
     "--only", multiple=True, help="Only answers with this in their names; may be given several times."
 )
 @click.option("--jobs", type=click.IntRange(min=1), default=4, show_default=True, help="Answers at once.")
-def try_exercise(exercise: str, only: tuple[str, ...], jobs: int) -> None:
+@click.option(
+    "--transcript",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Write all that was seen of each answer into this folder.",
+)
+def try_exercise(exercise: str, only: tuple[str, ...], jobs: int, transcript: Path | None) -> None:
     """Record EXERCISE where it is new, judge its right and wrong answers, and show what is not as expected."""
     from autograder import exercises, recording
     from autograder.authoring import trying
@@ -95,7 +100,9 @@ def try_exercise(exercise: str, only: tuple[str, ...], jobs: int) -> None:
     from autograder.masters.errors import MasterError
 
     try:
-        fits = trying.try_exercise(exercise, only=only, jobs=jobs, tell=click.echo)
+        fits = trying.try_exercise(
+            exercise, only=only, jobs=jobs, transcript=transcript and transcript.absolute(), tell=click.echo
+        )
     except (
         BadTable,
         exercises.BrokenExercise,

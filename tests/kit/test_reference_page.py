@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -12,10 +13,13 @@ from autograder.kit.recipes.own_scenario import OwnScenario
 from autograder.kit.recipes.publisher import Hears
 from autograder.kit.recipes.service_server import Asks
 
+if TYPE_CHECKING:
+    from autograder.kit.draft import Recipe
+
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs/exercise-reference.md").read_text(encoding="utf-8")
 WRITTEN = re.compile(r"""\b(?:_?record|_note|end|ended)\(\s*"(\w+)",""")
-RECIPES = {
+RECIPES: dict[str, Recipe[Any]] = {
     "OwnScenario": OwnScenario(
         lambda _: None,
         "publisher",
