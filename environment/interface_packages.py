@@ -7,11 +7,20 @@ nothing that they are handed may be the answer.
 from __future__ import annotations
 
 import shutil
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
+
+ONLY_PYTHON = (
+    "-G",
+    "Ninja",
+    f"-DCMAKE_PROJECT_INCLUDE={Path(__file__).with_name('only_python.cmake')}",
+    "-DCMAKE_C_FLAGS_RELEASE=-O0 -DNDEBUG",
+    "-DCMAKE_CXX_FLAGS_RELEASE=-O0 -DNDEBUG",
+)
+"""For CMake: interfaces for Python nodes alone."""
 
 # Where chapters are written, and where they are in what students are handed.
 _CHAPTERS = ("solutions", "exercises")
@@ -57,8 +66,13 @@ def interface_packages(root: Path) -> tuple[Path, ...]:
     )
 
 
+def only_python_needs(packages: Sequence[Path]) -> bool:
+    """Return whether no package holds a message, of which others make interfaces, for C++ too in a full build."""
+    return not any(True for package in packages for _ in package.glob("msg/*.msg"))
+
+
 def build_command(
-    colcon: Path, python: Path, packages: Sequence[Path], prefix: Path, scratch: Path
+    colcon: Path, python: Path, packages: Sequence[Path], prefix: Path, scratch: Path, *, light: bool = False
 ) -> list[str | Path]:
     """Make the packages, and return the command that builds them into a prefix.
 
@@ -68,6 +82,7 @@ def build_command(
         packages: the folders of the definitions.
         prefix: where they are installed, all merged into one.
         scratch: a folder for what is made on the way.
+        light: for Python nodes alone.
 
     Raises:
         OSError: They cannot be written.
@@ -77,7 +92,8 @@ def build_command(
     for package in packages:
         _make_package(package, sources / package.name)
     # Release defines NDEBUG. With asserts, a field of a wrong type would end a student's process.
-    cmake = ["-G", "Ninja", f"-DPython3_EXECUTABLE={python}", "-DCMAKE_BUILD_TYPE=Release"]
+    generated = ONLY_PYTHON if light else ("-G", "Ninja")
+    cmake = [*generated, f"-DPython3_EXECUTABLE={python}", "-DCMAKE_BUILD_TYPE=Release"]
     command: list[str | Path] = [colcon, "--log-base", scratch / "colcon-log", "build"]
     command += ["--base-paths", sources, "--build-base", scratch / "build"]
     command += ["--merge-install", "--install-base", prefix, "--event-handlers", "console_direct+"]

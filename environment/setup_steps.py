@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from typing import IO, TYPE_CHECKING
 
 from environment import course_process, ros_flavour
-from environment.interface_packages import build_command
+from environment.interface_packages import build_command, only_python_needs
 from environment.jupyter_files import kernel_install_options, write_jupyter_files
 from environment.lighter_imports import make_lighter
 from environment.lock import EXTRAS, split_blocks
@@ -68,6 +68,7 @@ class Setup:
         interfaces = (
             place.environment / "repair_wheels.py",
             place.environment / "interface_packages.py",
+            place.environment / "only_python.cmake",
             *(file for package in place.interfaces for file in files_below(package)),
         )
         lighter = (place.environment / "lighter_imports.py",)
@@ -220,8 +221,11 @@ class Setup:
         # The cache of an interrupted build can name compilers that are gone.
         shutil.rmtree(place.notes / "build", ignore_errors=True)
         # Merged into the environment itself: its lib folder and its site-packages are searched already.
+        # With a ROS that was sourced, programs in C++ may use them.
+        light = not self.ros.is_sourced and only_python_needs(place.interfaces)
+        colcon = place.prefix / "bin/colcon"
         command = build_command(
-            place.prefix / "bin/colcon", place.python, place.interfaces, place.prefix, place.notes
+            colcon, place.python, place.interfaces, place.prefix, place.notes, light=light
         )
         self._run(f"building {self._interfaces()}", command)
 

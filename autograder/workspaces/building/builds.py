@@ -18,8 +18,10 @@ from autograder.workspaces.building import artefacts, cache
 from autograder.workspaces.building.colcon import choose, command, failed, moved
 from autograder.workspaces.jobs import BuildOrder
 from autograder.workspaces.sources.finding import WORKSPACE
+from autograder.workspaces.sources.interface_packages import holds_only_interfaces
 from autograder.workspaces.sources.packages import key, sources_of
 from autograder.workspaces.sources.tree import BadSources
+from environment.interface_packages import ONLY_PYTHON
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -112,7 +114,8 @@ class Builds:
         src = found.workspace / "src"
         try:
             tree, packages = sources_of(src, chosen), moved(chosen, src, Path("src"))
-            order = BuildOrder(name, tree, packages, cancelled, variables=NO_DEFAULTS)
+            cmake = ONLY_PYTHON if _are_light(chosen) else ()
+            order = BuildOrder(name, tree, packages, cancelled, cmake, NO_DEFAULTS)
             made = self._find_or_make(found, chosen, order)
         except BadSources as error:
             return replace(found, trouble="bad_package", line=str(error))
@@ -175,6 +178,12 @@ class Builds:
         Raises:
             BadArtefacts: It cannot be taken.
         """
+
+
+def _are_light(packages: Sequence[Package]) -> bool:
+    return any(holds_only_interfaces(package) for package in packages) and all(
+        holds_only_interfaces(package) or package.build_type == "ament_python" for package in packages
+    )
 
 
 def _log(built: Built, place: Path) -> str:

@@ -9,7 +9,6 @@ the same meaning a normalised copy without comments is built, so that equal defi
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.workspaces.building import artefacts, cache
@@ -20,6 +19,7 @@ from autograder.workspaces.sources.packages import state
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
     from autograder.workspaces.building.colcon import Build
     from autograder.workspaces.jobs import Builder, BuildOrder, Built
@@ -27,15 +27,6 @@ if TYPE_CHECKING:
 
 ROOM = 16_000_000
 """Bytes for all builds of one notebook together; an interface package has 1.3 million, a Python package far less."""
-ONLY_PYTHON = (
-    "-G",
-    "Ninja",
-    f"-DCMAKE_PROJECT_INCLUDE={Path(__file__).with_name('only_python.cmake')}",
-    "-DCMAKE_C_FLAGS_RELEASE=-O0 -DNDEBUG",
-    "-DCMAKE_CXX_FLAGS_RELEASE=-O0 -DNDEBUG",
-)
-"""For interface packages: 6 instead of 10 s of processor time, and what a Python node loads is all there."""
-ONLY_FAST_DDS = {"STATIC_ROSIDL_TYPESUPPORT_C": "rosidl_typesupport_fastrtps_c"}
 
 
 class TrustedBuilds(Builds):
@@ -56,12 +47,9 @@ class TrustedBuilds(Builds):
         return self._builder.place(name, entry)
 
     def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:
-        cmake, variables = (ONLY_PYTHON, ONLY_FAST_DDS) if _are_light(chosen) else ((), {})
         hidden = _hidden_from(chosen)
         others = [f"{path} {state(str(path))}" for path in course_interfaces() if path not in hidden]
-        order = self._keyed(
-            replace(order, cmake=cmake, variables={**order.variables, **variables}, hidden=hidden), *others
-        )
+        order = self._keyed(replace(order, hidden=hidden), *others)
         if not all(map(holds_only_interfaces, chosen)):
             return self._entry(found, order)
         return self._shared(found, order, self._keyed(replace(order, tree=simplified(order.tree)), *others))
@@ -93,12 +81,6 @@ class TrustedBuilds(Builds):
         if built.archive is None:
             raise artefacts.BadArtefacts("what the build made could not be packed")
         self._room -= artefacts.unpack(built.archive, install, self._room)
-
-
-def _are_light(packages: Sequence[Package]) -> bool:
-    return any(holds_only_interfaces(package) for package in packages) and all(
-        holds_only_interfaces(package) or package.build_type == "ament_python" for package in packages
-    )
 
 
 def _hidden_from(packages: Sequence[Package]) -> Sequence[Path]:

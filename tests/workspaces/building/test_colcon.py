@@ -16,7 +16,7 @@ from autograder.workspaces.building.placing import CannotPlace, place
 from autograder.workspaces.running.prefixes import with_prefixes
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from made_workspaces import python_package
+from made_workspaces import interface_package, python_package
 
 if TYPE_CHECKING:
     from autograder.workspaces.building.colcon import Build, Targets
@@ -157,6 +157,29 @@ def test_a_package_is_built_with_what_it_depends_on(workspace: Path) -> None:
     file.write_text(file.read_text().replace("<license>", "<depend>other_pkg</depend>\n  <license>"))
     made = build(workspace, only_tiny)
     assert [prefix.name for prefix in made.prefixes] == ["other_pkg", "tiny_pkg"]
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+def test_of_interfaces_all_is_built_that_a_node_needs(tmp_path: Path) -> None:
+    package = interface_package(tmp_path / "src" / "note_interfaces")
+    (package / "msg").mkdir()
+    (package / "msg" / "Note.msg").write_text("string[] lines\n")
+    for name in ("CMakeLists.txt", "package.xml"):
+        text = (package / name).read_text().replace("my_robot_interfaces", "note_interfaces")
+        (package / name).write_text(text.replace('"srv/', '"msg/Note.msg" "srv/'))
+    made = build(tmp_path)
+    assert made.ok, made.log
+    # A topic needs more than a service: Fast DDS describes its type to others.
+    node = """
+import rclpy, note_interfaces.msg, note_interfaces.srv
+rclpy.init()
+node = rclpy.create_node("node")
+node.create_publisher(note_interfaces.msg.Note, "notes", 1)
+node.create_subscription(note_interfaces.msg.Note, "notes", print, 1)
+node.create_service(note_interfaces.srv.AddTwoInts, "add", print)
+"""
+    subprocess.run([sys.executable, "-c", node], env=with_prefixes(os.environ, made.prefixes), check=True)
 
 
 def test_what_a_package_depends_on_may_fail_where_it_is_not_asked_for(workspace: Path) -> None:
