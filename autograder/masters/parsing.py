@@ -29,12 +29,14 @@ kernelspec:
 
 
 class CellRole(StrEnum):
-    """The role of a cell. The values but the first are tags; of code, an author types two."""
+    """The role of a cell. The values but the first are tags; of code, an author types three."""
 
     TEXT = "text"
     """Markdown; students may write into it."""
     GIVEN = "given"
     """Code that is part of the explanation: locked and tracked. Code without a tag is this."""
+    DEMONSTRATION = "demonstration"
+    """Given code that shows something and makes nothing: left out while a class is graded."""
     SOLUTION = "solution"
     """Code in which a region is the student's to write."""
     MANUAL = "manual"
@@ -43,7 +45,7 @@ class CellRole(StrEnum):
     """The one line that asks for a verdict: locked, graded, carries the exercise's points."""
 
 
-TAGS = {kind.value: kind for kind in (CellRole.GIVEN, CellRole.SOLUTION, CellRole.CHECK)}
+TAGS = {kind.value: kind for kind in CellRole if kind not in (CellRole.TEXT, CellRole.MANUAL)}
 OPTIONS = {"tags", "grade_id"}
 MANUAL_FORM = '+++ {"tags": ["manual"], "points": 5, "grade_id": "some_name"}'
 """The line above a question that a person grades."""

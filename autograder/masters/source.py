@@ -125,7 +125,7 @@ def _name_all(master: Path, cells: list[Cell], points: Points) -> Iterator[Named
         elif cell.kind is CellRole.SOLUTION:
             yield NamedCell(cell, cell.grade_id or _defined_name(master, cell))
         else:
-            yield NamedCell(cell, cell.grade_id or numbering.name(f"{cell.kind}-{naming.slug(section)}"))
+            yield NamedCell(cell, cell.grade_id or numbering.name(f"{CellRole.GIVEN}-{naming.slug(section)}"))
 
 
 def _region_where_it_belongs(master: Path, cell: Cell) -> None:
@@ -232,7 +232,9 @@ def _node(named: NamedCell) -> NotebookNode:
     if cell.kind is CellRole.TEXT:
         figures = {"attachments": from_dict(cell.attachments)} if cell.attachments else {}
         return new_markdown_cell(cell.source, id=named.name, **figures)
-    metadata = {"nbgrader": _nbgrader(named)}
+    metadata: dict[str, Any] = {"nbgrader": _nbgrader(named)}
+    if cell.kind is CellRole.DEMONSTRATION:
+        metadata["tags"] = [CellRole.DEMONSTRATION.value]
     if cell.kind is CellRole.MANUAL:
         figures = {"attachments": from_dict(cell.attachments)} if cell.attachments else {}
         return new_markdown_cell(cell.source, id=named.name, metadata=from_dict(metadata), **figures)

@@ -199,7 +199,7 @@ def test_the_command_fails_with_2_when_a_master_cannot_be_used(course: Path, sai
     )
     code, text = said(course)
     assert code == 2
-    assert "lab_9_2/lab.md:1: Unknown tag 'wrong'. Known are: given, solution, check." in text
+    assert "lab_9_2/lab.md:1: Unknown tag 'wrong'. Known are: given, demonstration, solution, check." in text
 
 
 def test_the_command_fails_with_2_outside_a_course(tmp_path: Path, said: Said) -> None:
