@@ -85,7 +85,7 @@ def classes(text: str) -> Iterator[ast.ClassDef]:
 
 def asked_for() -> dict[str, Endpoints]:
     """What the solution of each exercise about a class puts on the graph."""
-    asked = {}
+    asked: dict[str, Endpoints] = {}
     for master in masters(ROOT):
         cells = CODE.findall(master.read_text(encoding="utf-8"))
         wanted = dict(reversed(pair) for cell in cells for pair in CHECK.findall(cell))

@@ -11,8 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import course, exercises
-from autograder.authoring.answers import folder_of
-from autograder.authoring.as_edit import nearest, whole_right_answers, worth
 from autograder.authoring.house_rules import broken_rules
 
 if TYPE_CHECKING:
@@ -40,7 +38,7 @@ def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
         autograder.exercises.BrokenExercise: Its file is none.
         autograder.masters.errors.MasterError: Its master cannot be used.
     """
-    yield from _of_answers(exercise_id, listed)
+    yield from _of_answers(listed)
     yield from _of_mistakes(exercise_id, listed)
     if not exercises.get(exercise_id).text:
         yield "text: the exercise does not say which words of the task are behind which criterion"
@@ -49,7 +47,7 @@ def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
     yield from _of_linters(lab)
 
 
-def _of_answers(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
+def _of_answers(listed: Sequence[Answer]) -> Iterator[str]:
     there = Counter(answer.file.parent.name for answer in listed)
     few = [f"{there[kind]} {kind}" for kind, enough in ENOUGH.items() if there[kind] < enough]
     if few:
@@ -60,12 +58,6 @@ def _of_answers(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
     for answer in listed:
         if answer.diagnoses and not answer.file.name.startswith(answer.diagnoses[0]):
             yield f"answers: {answer.short_name} is named after its diagnosis, {answer.diagnoses[0]}"
-    bases = whole_right_answers(folder_of(exercise_id))
-    for answer in listed:
-        if answer.edit is None and answer.diagnoses and answer.file.suffix == ".py":
-            near = nearest(answer.text, bases)
-            if near and worth(answer.text, near):
-                yield f"answers: store {answer.short_name} as an edit: python -m autograder.authoring.as_edit FILE"
 
 
 def _of_mistakes(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:

@@ -88,7 +88,6 @@ def test_the_interfaces_are_made_from_every_file_of_their_package() -> None:
         "WalkTo.action",
         "interface_packages.py",
         "repair_wheels.py",
-        "interface_packages.py",
         "only_python.cmake",
     } == names
 

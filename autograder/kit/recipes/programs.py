@@ -207,7 +207,9 @@ class Programs:
         if absent:
             return Finding(False, expected, f"it does not start {_and(absent)}")
         lost = self._lost(evidence)
-        return Finding(not lost, expected, f"setup.py has lost {_and(lost)}" if lost else "started")
+        if lost:
+            expected += f", and setup.py has an entry point for {_and(lost)}, too"
+        return Finding(not lost, expected, f"none for {_and(lost)}" if lost else "started")
 
     def _is_there(self, program: Program, evidence: Evidence) -> bool:
         view = program.view(evidence)

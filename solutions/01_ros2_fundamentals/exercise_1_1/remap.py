@@ -158,6 +158,6 @@ EXERCISE = remap.exercise(
     text={
         "Write a launch file that starts both programs": "talker listener",
         "let both use `/robot/status_updates` instead of `chatter`": "talker listener nothing_left",
-        "It also checks that the launch file renames the topic, not the code.": "launch",
+        "It also checks that the launch file starts one talker, and gives both programs the rule.": "launch",
     },
 )
