@@ -33,7 +33,7 @@ class Link:
 
     def __enter__(self) -> Self:
         self._log = tempfile.TemporaryFile()
-        self._courier = subprocess.Popen(
+        self._client = subprocess.Popen(
             [sys.executable, "-m", "autograder.grading.cluster.dask_client", self._address],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,

@@ -82,7 +82,7 @@ for name, module in list(sys.modules.items()):
 """
 
 
-def test_nothing_in_the_courier_has_kept_the_real_one() -> None:
+def test_nothing_in_the_client_process_has_kept_the_real_one() -> None:
     pytest.importorskip("distributed", reason="./course setup --with cluster installs it")
     done = subprocess.run([sys.executable, "-c", CLIENT], capture_output=True, text=True, check=True)
     assert done.stdout == ""

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from autograder import course
-from autograder.grading.cluster import offer, pool
+from autograder.grading.cluster import pool, start_worker
 from autograder.grading.rebuilding import fingerprints
 from autograder.grading.rebuilding.course_version import counted_files, course_version
 
@@ -102,4 +102,4 @@ def test_it_does_not_depend_on_where_the_course_lies(copy: Path, monkeypatch: py
 
 def test_results_grades_and_clusters_go_by_the_same_value() -> None:
     # What tasks go by stands still in these tests (conftest.py).
-    assert {vars(module)["course_version"] for module in (fingerprints, offer, pool)} == {course_version}
+    assert {vars(module)["course_version"] for module in (fingerprints, start_worker, pool)} == {course_version}
