@@ -204,19 +204,18 @@ def test_test_runs_every_check_and_the_tests_last(course: Course, tmp_path: Path
         "set-up --token --tests",
         "ruff [check] [.]",
         "ruff [format] [--check] [.]",
-        "autograder [build] [--check]",
         "pytest [--numprocesses] [auto] [-x]",
     ]
     assert done.stdout.splitlines()[-1].startswith(f"{course.root}|")
 
 
-@pytest.mark.parametrize("program", ["mypy", "ruff", "autograder", "pytest"])
+@pytest.mark.parametrize("program", ["mypy", "ruff", "pytest"])
 def test_a_failed_check_fails_the_whole_but_the_others_still_run(course: Course, program: str) -> None:
     course.program(program, code=3)
     done = course.run("test")
     assert done.returncode == 1
     assert f"not in order: {program}" in done.stderr
-    assert {line.split()[0] for line in course.ran()} == {"set-up", "ruff", "autograder", "pytest", "mypy"}
+    assert {line.split()[0] for line in course.ran()} == {"set-up", "ruff", "pytest", "mypy"}
 
 
 def test_an_old_python_is_told_to_the_user(course: Course, tmp_path: Path) -> None:

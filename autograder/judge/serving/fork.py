@@ -57,7 +57,8 @@ class Child:
         self.reading, writing = os.pipe()
         parent = os.getpid()
         # What a handler raises within Python's own hooks at a fork is lost, and a Ctrl-C with it.
-        mask = signal.pthread_sigmask(signal.SIG_BLOCK, _ENDINGS)
+        # What comes before the child has said what it does with a signal would end it.
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, {*_ENDINGS, SIGNAL})
         self.pid = os.fork()
         if self.pid == 0:
             signal.signal(SIGNAL, signal.SIG_IGN)

@@ -86,8 +86,8 @@ def test_a_file_that_comes_goes_or_is_renamed_moves_it(copy: Path) -> None:
 
 def test_what_is_made_from_them_and_the_masters_do_not_count(copy: Path) -> None:
     before = version()
-    for name in ("autograder/__pycache__/x.pyc", "environment/ros2_ws/build/x.o", "autograder/.editor.swp"):
-        (copy / name).parent.mkdir(exist_ok=True)
+    for name in ("autograder/__pycache__/x.pyc", "solutions/ros2_ws/build/x.o", "autograder/.editor.swp"):
+        (copy / name).parent.mkdir(parents=True, exist_ok=True)
         (copy / name).write_text("made")
     master = next((copy / "solutions").glob("*/*/lab.md"))
     master.write_text("another")
@@ -102,4 +102,5 @@ def test_it_does_not_depend_on_where_the_course_lies(copy: Path, monkeypatch: py
 
 def test_results_grades_and_clusters_go_by_the_same_value() -> None:
     # What tasks go by stands still in these tests (conftest.py).
-    assert {vars(module)["course_version"] for module in (fingerprints, start_worker, pool)} == {course_version}
+    modules = (fingerprints, start_worker, pool)
+    assert {vars(module)["course_version"] for module in modules} == {course_version}
