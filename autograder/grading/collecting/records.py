@@ -84,8 +84,8 @@ class CollectedRecords:
 
     @property
     def is_used(self) -> bool:
-        """True if anything was ever collected into this class."""
-        return self._folder.is_dir()
+        """True if anything was ever put at its place in this class, not only named as having none."""
+        return any(self._folder.glob("*/*.json"))
 
     def get(self, assignment: str, student: str) -> History | None:
         """The record of what was collected; None where nothing was, or where the file is damaged."""

@@ -46,7 +46,9 @@ def show(report: GradeReport, console: Console | None = None) -> None:
         console.print(*tables(report.rows, console, diagnoses=False))
         console.print(_diagnoses(report.rows))
     if report.would_change is not None:
-        _line(console, f"Nothing was entered. {len(report.would_change)} results would change:", "bold")
+        count = len(report.would_change)
+        found = f"{count} results would change:" if count else "No result would change."
+        _line(console, f"Nothing was entered. {found}", "bold")
         for change in report.would_change:
             _line(console, f"would change {printable(change.line())}")
     for words in _legend(report.rows):

@@ -18,6 +18,7 @@ from click.testing import CliRunner
 from downloads import ROSTER, write_zip, zipped
 
 from autograder.cli import cli
+from autograder.grading.classes.timestamps import is_not_believed, read_timestamp
 from autograder.grading.collecting import archives
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.outcomes import CollectReport, State
@@ -298,6 +299,15 @@ def test_only_the_collectors_time_counts(klass: TinyClass, fake_engine: FakeEngi
         assert book.find_submission("lab_1_2", "ada").timestamp == datetime(2025, 10, 3, 14)
         assert book.find_submission("lab_1_2", "ben").timestamp is None
     assert any("ben/lab_1_2" in notice and "timestamp.txt" in notice for notice in report.notices)
+
+
+def test_a_file_without_a_place_takes_no_time_from_an_exchange(klass: TinyClass, tmp_path: Path) -> None:
+    there = klass.submit("ben").with_name("timestamp.txt")
+    there.write_text("2025-10-03 14:00:00.000000 UTC")
+    stranger = write_zip(tmp_path / "c.zip", {"nobody_999_9001_lab_1_2.ipynb": work(klass, 3)})
+    assert [one.state for one in collect(klass.path, [stranger], zone=UTC).outcomes] == [State.NOT_PLACED]
+    assert read_timestamp(there.parent) == there.read_text()
+    assert not is_not_believed(there.parent)
 
 
 # -- hostile archives

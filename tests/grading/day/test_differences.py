@@ -53,6 +53,7 @@ def test_a_dry_run_enters_nothing_and_says_who_would_get_other_points(
     fake_engine.ran.clear()
     assert tiny.grade(feedback=True).would_change is None
     assert (fake_engine.ran, tiny.scores("ben")) == ([], {TALKER: 10, LISTENER: 7})
+    assert "Nothing was entered. No result would change." in shown(tiny.grade(dry_run=True))
 
 
 def test_a_dry_run_foresees_what_being_late_costs(tiny: TinyClass, fake_engine: FakeEngine) -> None:
