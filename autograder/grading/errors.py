@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import shlex
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
+
+
+def course_command(*words: object) -> str:
+    """A command of ``./course`` as messages print it: a shell takes each word, a path with blanks too, as one."""
+    return shlex.join(["./course", *map(str, words)])
 
 
 class GradingError(Exception):
@@ -21,7 +27,7 @@ class NotAClass(GradingError):
     def __init__(self, path: Path, missing: str) -> None:
         super().__init__(
             f"{path} is not a class directory: {missing}. "
-            f"Name the folder that `./course new-class` made, or make one: ./course new-class {path}"
+            f"Name the folder that `./course new-class` made, or make one: {course_command('new-class', path)}"
         )
 
 

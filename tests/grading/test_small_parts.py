@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import errno
+import re
+import shlex
 import subprocess
 import sys
 from dataclasses import replace
@@ -14,10 +16,11 @@ from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution
 from autograder.boxes.limits import Limits
 from autograder.cards.readable import printable
 from autograder.grading.classes.class_directory import reason_against_name
+from autograder.grading.classes.new_class import NewClass
 from autograder.grading.classes.seeds import create_secret, read_secret, seed_for
 from autograder.grading.entering.journal import Journal
 from autograder.grading.entering.points import points
-from autograder.grading.errors import DiskFull, is_disk_full
+from autograder.grading.errors import DiskFull, NotAClass, is_disk_full
 from autograder.grading.reporting.report import Row, write_csv
 from autograder.grading.task import Task, decode_execution, decode_task, encode
 from autograder.regular_files import write_whole
@@ -160,3 +163,19 @@ def test_a_class_without_new_work_waits_for_no_import_of_nbgrader() -> None:
     asked = "import sys, autograder.grading.batch; print(*{'nbgrader', 'jupytext', 'nbconvert'} & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True)
     assert done.stdout.split() == []
+
+
+def test_a_printed_command_can_be_typed_for_a_class_in_a_folder_with_blanks() -> None:
+    path = Path("/classes/Ada's robots 2026")
+    missing = str(NotAClass(path, "no gradebook")).rpartition(": ")[2]
+    assert shlex.split(missing) == ["./course", "new-class", str(path)]
+    made = NewClass(path, ()).summary().rpartition("Then ")[2]
+    assert shlex.split(made) == ["./course", "grade", str(path)]
+
+
+def test_no_message_puts_a_path_into_a_command_by_itself() -> None:
+    grading = Path(sys.modules[NotAClass.__module__].__file__ or "").parent
+    by_hand = [
+        file.name for file in grading.rglob("*.py") if re.search(r"\./course [a-z-]+ \{", file.read_text())
+    ]
+    assert not by_hand

@@ -10,7 +10,7 @@ from autograder.appeals.appeal_file import Appeal, Cell, dump
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
 from autograder.grading.entering.evidence import EvidenceFolder
 from autograder.grading.entering.records import Records
-from autograder.grading.errors import GradingError, clear_disk_errors
+from autograder.grading.errors import GradingError, clear_disk_errors, course_command
 from autograder.judge.verdicts import reference
 from autograder.judge.verdicts.keeping import NoEvidence, unpack
 from autograder.regular_files import write_whole
@@ -53,7 +53,7 @@ def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = N
 
 
 def _appeal(directory: ClassDirectory, student: str, exercise_id: str, task: str) -> Appeal:
-    again = f"./course grade {directory.path} --student {student}"
+    again = course_command("grade", directory.path, "--student", student)
     found = EvidenceFolder(directory).find(student, exercise_id)
     if found is None:
         raise GradingError(_why_nothing(directory, student, exercise_id, again))
@@ -113,5 +113,6 @@ def _why_nothing(directory: ClassDirectory, student: str, exercise_id: str, agai
                 )
     return (
         f"No check of {exercise_id} by {student!r} was graded here: the class has the assignments "
-        f"{', '.join(directory.assignments()) or 'none'}. `./course attempts {directory.path} STUDENT` says what was."
+        f"{', '.join(directory.assignments()) or 'none'}. `{course_command('attempts', directory.path, 'STUDENT')}` "
+        "says what was."
     )

@@ -17,7 +17,7 @@ from autograder.boxes.limits import Limits
 from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, ClassDirectory
 from autograder.grading.classes.seeds import create_secret
 from autograder.grading.entering.writer import quiet
-from autograder.grading.errors import ClassExists, GradingError, clear_disk_errors
+from autograder.grading.errors import ClassExists, GradingError, clear_disk_errors, course_command
 from autograder.grading.following.origins import remember
 from autograder.grading.rebuilding import nodes
 from autograder.masters.errors import MasterError
@@ -90,7 +90,7 @@ class NewClass:
                 f"{self.path} is a class with these assignments: {', '.join(self.assignments)}.",
                 "Hand out       what ./course hand-out FOLDER makes: the notebooks with all that they need",
                 f"Put work into  {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
-                f"Then           ./course grade {self.path}",
+                f"Then           {course_command('grade', self.path)}",
             )
         )
 
@@ -139,7 +139,7 @@ def _check_place(path: Path, course_root: Path) -> None:
         raise ClassExists(f"{path} is there already and is not a folder. Choose another name.")
     if path.is_dir() and any(path.iterdir()):
         raise ClassExists(
-            f"{path} is not empty. Choose another name, or grade the class there: ./course grade {path}"
+            f"{path} is not empty. Choose another name, or grade the class there: {course_command('grade', path)}"
         )
     repository = course_root.resolve()
     place = path.resolve()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections import Counter, defaultdict
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -17,7 +16,7 @@ from autograder.grading.collecting.placing import Candidate, Placing
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.collecting.which import NoTarget, Which, is_notebook, stem_of
 from autograder.grading.collecting.whose import Whose
-from autograder.grading.errors import GradingError
+from autograder.grading.errors import GradingError, course_command
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.grading.table.roster import Roster, Student, enter_roster, read_roster
 
@@ -303,8 +302,8 @@ class _Collecting:
         name = student.id if student else "STUDENT"
         if file.name.lower().endswith(_OTHER_ARCHIVES):
             reason = (
-                f"it is an archive that is not opened here: unpack it into a folder named {name}, and type ./course "
-                f"collect {shlex.quote(str(self._directory.path))} {shlex.quote(name)}"
+                f"it is an archive that is not opened here: unpack it into a folder named {name}, and type "
+                f"{course_command('collect', self._directory.path, name)}"
             )
             return self._outcome(file, State.NOT_PLACED, reason, who)
         place = self._directory.path / "submitted" / name / (self._assignment_of(file, who) or "ASSIGNMENT")

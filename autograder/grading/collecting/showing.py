@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import shlex
 from typing import TYPE_CHECKING
 
 from rich.console import Console
 
 from autograder.cards.readable import printable
 from autograder.grading.collecting.outcomes import State
+from autograder.grading.errors import course_command
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -63,7 +63,7 @@ def _lines(report: CollectReport) -> Iterator[str]:
     if counts[State.NOT_PLACED]:
         yield (
             "note         grade, report and export repeat what has no place, until it has one; where it needs none, "
-            f"type ./course collect {shlex.quote(str(report.path))} --settled NAME"
+            f"type {course_command('collect', report.path, '--settled', 'NAME')}"
         )
     if counts[State.PLACED]:
-        yield f"Then         ./course grade {shlex.quote(str(report.path))}"
+        yield f"Then         {course_command('grade', report.path)}"

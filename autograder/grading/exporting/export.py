@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import shlex
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
-from autograder.grading.errors import GradingError
+from autograder.grading.errors import GradingError, course_command
 from autograder.grading.exporting import feedback_zips, forms, sheets
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.grading.table.class_table import ClassTable, read_table
@@ -84,7 +83,7 @@ def export(
         notices.append(
             f"{len(table.stale)} submissions came or changed after the last grading, or could not be graded: "
             f"{', '.join(table.stale[:5])}{' …' if len(table.stale) > 5 else ''}. "
-            f"Grade first: ./course grade {shlex.quote(str(path))}"
+            f"Grade first: {course_command('grade', path)}"
         )
     return Exported(tuple(written), tuple(notices))
 

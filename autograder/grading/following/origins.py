@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from autograder.grading.errors import course_command
 from autograder.masters.errors import MasterError
 from autograder.regular_files import write_whole
 
@@ -71,7 +72,7 @@ def news(directory: ClassDirectory, assignments: Iterable[str]) -> list[str]:
             "This class was made before classes wrote down what their sources were made of, so nobody can tell whether "
             "the course asks for something else by now. The judge expects what the course says now. Compare a source "
             "with what the course has, or hand out and grade the new text; then it is written down: "
-            f"./course renew-class {directory.path}"
+            + course_command("renew-class", directory.path)
         ]
     return [warning(directory, name) for name in moved_on(directory, assignments)]
 
@@ -81,9 +82,9 @@ def warning(directory: ClassDirectory, assignment: str) -> str:
     return (
         f"{assignment}: its master in the course was changed since this class got its source. The judge expects what "
         "the course says now, so work that was written for the old text may fail. See first who would: "
-        f"./course grade {directory.path} --dry-run. To hand out and grade the new text: "
-        f"./course renew-class {directory.path} --assignment {assignment}. To grade the old one: use the version of "
-        "the course that it was handed out from."
+        f"{course_command('grade', directory.path, '--dry-run')}. To hand out and grade the new text: "
+        f"{course_command('renew-class', directory.path, '--assignment', assignment)}. "
+        "To grade the old one: use the version of the course that it was handed out from."
     )
 
 
