@@ -22,6 +22,10 @@ HEAD, BEFORE_A_TASK, SOLUTION = 150, 400, 8
 _MINUTES = re.compile(r"^\*\d+ minutes · for ", re.MULTILINE)
 _PICTURE = re.compile(r"!\[[^\]]*\]\([^)]*\)")
 """The text alternative of a figure is for those who do not see it."""
+_SELF_CHECK = re.compile(
+    r"\*\*Check yourself:\*\*.*?\n\n(?P<choices>(?:<details>.*?</details>\s*)*)", re.DOTALL
+)
+_REPLY = re.compile(r"</summary>\s*(\S)")
 
 
 def broken_rules(master: Path) -> list[str]:
@@ -41,6 +45,7 @@ def broken_rules(master: Path) -> list[str]:
         *_beginning(cells),
         *_solutions(one for one in cells if one.cell.line not in copying),
         *_introductions(cells),
+        *_self_checks(filter(_is_text, cells)),
         *_end(cells),
     ]
 
@@ -72,6 +77,17 @@ def _introductions(cells: list[NamedCell]) -> Iterator[str]:
         said = [line for line in before.cell.source.splitlines() if line.strip() and not line.startswith("#")]
         if not _is_text(one) and not (_is_text(before) and said):
             yield f"a cell of code is introduced: no word before line {one.cell.line}"
+
+
+def _self_checks(texts: Iterable[NamedCell]) -> Iterator[str]:
+    for one in texts:
+        for found in _SELF_CHECK.finditer(one.cell.source):
+            replies = _REPLY.findall(found["choices"])
+            if set(replies) != {"✓", "✗"} or replies.count("✓") > 1:
+                yield (
+                    f"a self-check is answered by a click: the one in the text at line {one.cell.line} needs a <details> "
+                    "for each choice, whose reply begins with ✓ for one choice, and with ✗ for the others"
+                )
 
 
 def _end(cells: list[NamedCell]) -> Iterator[str]:
