@@ -85,8 +85,8 @@ def _self_checks(texts: Iterable[NamedCell]) -> Iterator[str]:
             replies = _REPLY.findall(found["choices"])
             if set(replies) != {"✓", "✗"} or replies.count("✓") > 1:
                 yield (
-                    f"a self-check is answered by a click: the one in the text at line {one.cell.line} needs a <details> "
-                    "for each choice, whose reply begins with ✓ for one choice, and with ✗ for the others"
+                    f"a self-check is answered by a click: the one in the text at line {one.cell.line} needs a "
+                    "<details> for each choice, whose reply begins with ✓ for one choice, and with ✗ for the others"
                 )
 
 
