@@ -30,7 +30,8 @@ if not (programs / "python").exists():
 """
 PROGRAM = """\
 #!/bin/sh
-{{ printf '%s' "$(basename "$0")"; for word; do printf ' [%s]' "$word"; done; echo; }} >> '{root}/ran.txt'
+line="$(basename "$0")$(for word; do printf ' [%s]' "$word"; done)"
+echo "$line" >> '{root}/ran.txt'  # in one write, since mypy runs beside ruff
 echo "$PWD|${{LD_LIBRARY_PATH:-}}"
 exit {code}
 """
