@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import copy
 import shutil
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import re2
 from alembic.config import Config
 from alembic.script import ScriptDirectory
 from nbgrader import api, dbutil
@@ -14,7 +16,7 @@ from nbgrader.converters import GenerateAssignment
 from nbgrader.coursedir import CourseDirectory
 
 from autograder.boxes.limits import Limits
-from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, ClassDirectory
+from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, SUFFIX, ClassDirectory
 from autograder.grading.classes.seeds import create_secret
 from autograder.grading.entering.writer import quiet
 from autograder.grading.errors import ClassExists, GradingError, clear_disk_errors, course_command
@@ -25,7 +27,7 @@ from autograder.masters.layout import lab_name, masters
 from autograder.masters.source import source_notebook
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Container, Iterator, Sequence
     from pathlib import Path
 
     from nbformat import NotebookNode
@@ -190,11 +192,43 @@ def _fill(path: Path, sources: Sources, config: str) -> None:
     # Students' work, points and the secret belong in no repository.
     (path / ".gitignore").write_text("*\n", encoding="utf-8")
     for name, (_, notebook) in sources.items():
-        folder = path / "source" / name
-        folder.mkdir(parents=True)
-        (folder / f"{name}.ipynb").write_text(nodes.text(notebook), encoding="utf-8")
+        (path / "source" / name).mkdir(parents=True)
+        write_source(ClassDirectory(path), name, notebook, sources)
     release(ClassDirectory(path))
     remember(ClassDirectory(path), sources)
+
+
+_LINK = re2.compile(r"\[([^\[\]]+)\]\((\w+)\.ipynb\)")
+"""A link from one notebook of the chapter to another one beside it."""
+
+
+def write_source(
+    directory: ClassDirectory, name: str, notebook: NotebookNode, assignments: Container[str]
+) -> None:
+    """Write the source of an assignment, with links that lead to the other notebooks in a class.
+
+    In the chapter all notebooks are in one folder; in a class, as nbgrader has it, each is in a folder of its own.
+    What is no assignment of the class is named without a link.
+
+    Args:
+        directory: The class, in which the assignment's folder is there.
+        name: The assignment.
+        notebook: Its source, as the course has it.
+        assignments: The assignments of the class.
+
+    Raises:
+        OSError: It could not be written.
+    """
+
+    def in_a_class(link: Any) -> str:
+        title, other = link.groups()
+        return f"[{title}](../{other}/{other}.ipynb)" if other in assignments else title
+
+    linked = copy.deepcopy(notebook)
+    for cell in linked.cells:
+        if cell.cell_type == "markdown":
+            cell.source = _LINK.sub(in_a_class, cell.source)
+    (directory.path / "source" / name / f"{name}{SUFFIX}").write_text(nodes.text(linked), encoding="utf-8")
 
 
 def release(directory: ClassDirectory, assignments: Sequence[str] = ()) -> None:

@@ -6,11 +6,10 @@ import shutil
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
-from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory
-from autograder.grading.classes.new_class import release, sources_of
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.classes.new_class import release, sources_of, write_source
 from autograder.grading.errors import GradingError
 from autograder.grading.following.origins import remember
-from autograder.grading.rebuilding import nodes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -43,8 +42,7 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
             shutil.copytree(directory.path / "source" / name, kept / name)
         try:
             for name, (_, notebook) in made.items():
-                file = directory.path / "source" / name / f"{name}{SUFFIX}"
-                file.write_text(nodes.text(notebook), encoding="utf-8")
+                write_source(directory, name, notebook, there)
             release(directory, list(made))
         except GradingError:
             for name in made:

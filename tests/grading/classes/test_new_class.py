@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import re
 import sqlite3
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 from conftest import MASTER, TinyClass, write_master
 from nbgrader import api
 
+from autograder.course import root
 from autograder.grading.classes.new_class import new_class
 from autograder.grading.errors import ClassExists, DiskFull, GradingError
 
@@ -40,6 +42,19 @@ def test_only_notebooks_with_a_check_become_assignments(course: Path, tmp_path: 
     assert made.assignments == ("lab_1_2",)
     assert "./course grade" in made.summary()
     nbformat.validate(nbformat.read(made.path / "release" / "lab_1_2" / "lab_1_2.ipynb", as_version=4))
+
+
+def test_links_between_notebooks_lead_to_those_of_the_class_and_to_no_others(tmp_path: Path) -> None:
+    made = new_class(tmp_path / "class", root(), assignments=["lab_1_2", "lab_1_3"])
+    notebooks = sorted(made.path.glob("release/*/*.ipynb"))
+    links = [
+        notebook.parent / link
+        for notebook in notebooks
+        for cell in nbformat.read(notebook, as_version=4).cells
+        for link in re.findall(r"\]\(([^()]+\.ipynb)\)", cell.source)
+    ]
+    assert notebooks[0].resolve() in [link.resolve() for link in links]
+    assert [link for link in links if not link.exists()] == []
 
 
 def test_an_empty_folder_will_do(course: Path, tmp_path: Path) -> None:
