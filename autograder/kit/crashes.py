@@ -43,7 +43,7 @@ def _recogniser(crash: Crash) -> Mistake:
         if found is None:
             return None
         words = meaning(traceback)._asdict() | {name: said or "" for name, said in found.groupdict().items()}
-        return Advice(crash.text.format(**words), crash.next_step.format(**words), traceback)
+        return Advice(crash.text.format(**words).rstrip(), crash.next_step.format(**words), traceback)
 
     return Mistake(crash.key, recognise, certain=True)
 

@@ -29,7 +29,7 @@ class Crash:
 KNOWN = (
     Crash(
         "syntax_error",
-        r"^\s*(?:SyntaxError|IndentationError|TabError): (?P<what>.*)$",
+        r"^\s*(?:SyntaxError|IndentationError|TabError): (?P<what>.*?)[.?]*$",
         "Python could not read the program: {what}. {why}",
         "{next_step}",
     ),
@@ -309,9 +309,8 @@ KNOWN = (
     Crash(
         "module_not_found",
         r"^ImportError: cannot import name '(?P<name>\w+)' from '(?P<module>(?:\w+\.)*\w+)'",
-        "The module {module} has nothing called {name}.",
-        "Compare the import with the lab's text, letter by letter: is it .msg, .srv or .action, and are the capitals "
-        "the same?",
+        "The module {module} has nothing called {name}. {why}",
+        "{next_step}",
     ),
     Crash(
         "nested_spin",

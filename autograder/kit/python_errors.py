@@ -32,6 +32,17 @@ Row = tuple[str, str, str]
 _MARKS = r"\n(?:[ ~^]*\n)?"
 """From a line of code to what Python says of it: perhaps a line of marks below the code."""
 _OWN = r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute '(?P<name>\w+)'"
+_IMPORTED_FROM = {
+    "action_msgs.msg": "GoalStatus",
+    "geometry_msgs.msg": "Twist",
+    "rclpy.action": "ActionClient|ActionServer|CancelResponse|GoalResponse",
+    "rclpy.callback_groups": "MutuallyExclusiveCallbackGroup|ReentrantCallbackGroup",
+    "rclpy.executors": "ExternalShutdownException|MultiThreadedExecutor|SingleThreadedExecutor",
+    "rclpy.node": "Node",
+    "rclpy.qos": "DurabilityPolicy|QoSProfile|ReliabilityPolicy",
+    "std_msgs.msg": "String",
+}
+"""The module of each name that beginners import from another one, or forget to import."""
 _READS = r"^(?:SyntaxError|IndentationError|TabError): "
 
 READING: Sequence[Row] = (
@@ -110,6 +121,21 @@ READING: Sequence[Row] = (
 """Python's words about a text that it cannot read."""
 
 RUNNING: Sequence[Row] = (
+    *(
+        (
+            rf"^(?:NameError: name|ImportError: cannot import name) '(?P<name>{names})'",
+            f"{{name}} comes from the module {module}.",
+            f"Write `from {module} import {{name}}` at the top of the program. In a notebook, run the cell with the "
+            "imports.",
+        )
+        for module, names in _IMPORTED_FROM.items()
+    ),
+    (
+        r"^ImportError: cannot import name",
+        "",
+        "Compare the import with the lab's text, letter by letter: is it .msg, .srv or .action, and are the capitals "
+        "the same?",
+    ),
     (
         rf"^ +self\.(?P<name>\w+) == .*{_MARKS}AttributeError: '[A-Z]\w*' object has no attribute",
         "Two equals signs compare, so self.{name} gets no value.",
@@ -119,6 +145,12 @@ RUNNING: Sequence[Row] = (
         rf"^{_OWN}\. Did you mean: '(?P<meant>\w+)'",
         "{class} has nothing called {name}, and has {meant}.",
         "If that is what you mean, write {meant}. If {name} is a value of your own, set self.{name} in __init__.",
+    ),
+    (
+        r"AttributeError: '(?P<class>list|dict|tuple|set|str|bytes|bool|int|float|\w+GoalHandle|Publisher|Subscription"
+        r"|Timer|Client|Service|ActionClient|ActionServer|RcutilsLogger)' object has no attribute '(?P<name>\w+)'",
+        "What stands before .{name} is a {class} here, which has nothing called {name}.",
+        "Look where it gets its value: is it the thing that you mean? Then compare the name, letter by letter.",
     ),
     (
         r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>(?:create|declare|get)_\w+)'",
@@ -238,9 +270,14 @@ RUNNING: Sequence[Row] = (
         "Let ROS call a callback: hand it to a timer or a subscription, and do not call it inside itself.",
     ),
     (
-        r"^IndexError: list index out of range",
-        "The list is shorter than that: its first element has the number 0, and the last one len(...) - 1.",
+        r"^IndexError: (?P<kind>list|string|tuple) index out of range",
+        "The {kind} is shorter than that: its first element has the number 0, and the last one len(...) - 1.",
         "Look how many elements it has before you take one.",
+    ),
+    (
+        r"^IndexError: pop from (?:an )?empty (?P<kind>list|deque|set)",
+        "The {kind} has no element left to take.",
+        "A callback is called again and again: what it takes one by one is used up. Ask `if` there is one left.",
     ),
     (
         r"",
