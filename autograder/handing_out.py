@@ -7,10 +7,11 @@ with the same ``./course``: its exercises and reference outputs are in ``exercis
 
 from __future__ import annotations
 
+import re  # noqa: TID251  (the course's own notebooks)
 import shutil
 import stat
 import zipfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,7 +21,7 @@ from autograder.exercises import REFERENCE
 from autograder.masters.work import holds_work
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterator, Sequence
 
 WHOLE = ("course", "pyproject.toml", "LICENSE", "environment", "autograder", ".devcontainer", ".dockerignore")
 """Files and folders that are handed out as they are, but for what follows."""
@@ -38,6 +39,8 @@ PAGES = ("students-guide.md", "mistakes.md", "fairness.md", "ros2-command.md", "
 _MADE = frozenset({"__pycache__", ".ipynb_checkpoints"})
 _MADE_BY_COLCON = frozenset({"build", "install", "log"})
 """Folders of what is made from other files; colcon's are beside the folder ``src`` of a workspace."""
+_LINK = re.compile(rb"\[([^][]+)\]\(([\w-]+)\.ipynb(?:#[^)]*)?\)")
+"""A link in the Markdown of a notebook to another one."""
 README = """\
 # {title}
 
@@ -84,27 +87,36 @@ class HandOut:
     size: int
 
 
-def hand_out(place: Path, root: Path, *, as_zip: bool = False, with_solutions: bool = False) -> HandOut:
+def hand_out(
+    place: Path,
+    root: Path,
+    *,
+    assignments: Collection[str] = (),
+    as_zip: bool = False,
+    with_solutions: bool = False,
+) -> HandOut:
     """Make what a class is handed.
 
     Args:
         place: A folder that is not there yet or is empty; with ``as_zip``, the zip file.
         root: The whole course.
+        assignments: The names of the notebooks that are handed out, graded or not; all where empty.
         as_zip: Pack it.
         with_solutions: Also what a card offers with full marks: the reference solutions, and why they are so. Whoever
             looks into the folder ``exercises`` can read them earlier.
 
     Raises:
-        CannotHandOut: There is something in that place, somebody has worked in a notebook of the chapters, or this
-            course was handed out itself.
+        CannotHandOut: There is something in that place, no notebook has such a name, somebody has worked in a notebook
+            of the chapters, or this course was handed out itself.
         OSError: It cannot be written.
     """
     if not (root / course.SOLUTIONS).is_dir():
         raise CannotHandOut(f"{root} was handed out itself: make a hand-out from the course with its masters")
     if place.is_file() or (place.is_dir() and (as_zip or any(place.iterdir()))):
         raise CannotHandOut(f"{place} is there already, and nothing is overwritten: name another place")
-    files = dict(_files(root, with_solutions=with_solutions))
-    files["README.md"] = README.format(title=course.chapters(root)[0].title).encode()
+    chapters = _wanted(course.chapters(root), assignments)
+    files = dict(_files(root, chapters, with_solutions=with_solutions))
+    files["README.md"] = README.format(title=chapters[0].title).encode()
     write = _pack if as_zip else _copy
     write(place, files)
     sizes = [
@@ -113,21 +125,39 @@ def hand_out(place: Path, root: Path, *, as_zip: bool = False, with_solutions: b
     return HandOut(place, len(files), sum(sizes))
 
 
-def _files(root: Path, *, with_solutions: bool) -> Iterator[tuple[str, Path | bytes]]:
+def _wanted(chapters: Sequence[course.Chapter], names: Collection[str]) -> list[course.Chapter]:
+    """The chapters with the named labs alone; all of them where no name is given."""
+    known = [lab.name for chapter in chapters for lab in chapter.labs]
+    for name in names:
+        if name not in known:
+            raise CannotHandOut(f"there is no notebook named {name}. There is: {', '.join(known)}")
+    found = [
+        replace(chapter, labs=tuple(lab for lab in chapter.labs if not names or lab.name in names))
+        for chapter in chapters
+    ]
+    return [chapter for chapter in found if chapter.labs]
+
+
+def _files(
+    root: Path, chapters: Sequence[course.Chapter], *, with_solutions: bool
+) -> Iterator[tuple[str, Path | bytes]]:
     """The files by the names that they get."""
     for name in WHOLE:
         yield from ((path.relative_to(root).as_posix(), path) for path in _below(root / name, root))
     yield from ((f"docs/{name}", root / "docs" / name) for name in PAGES if (root / "docs" / name).is_file())
     yield from ((path.relative_to(root).as_posix(), path) for path in _below(root / "docs" / "images", root))
-    for chapter in course.chapters(root):
+    names = {lab.name for chapter in chapters for lab in chapter.labs}
+    for chapter in chapters:
         for path in [chapter.folder / course.CHAPTER, *_judges_part(chapter, with_solutions=with_solutions)]:
             if path.is_file():
                 yield f"{HANDED_OUT}/{path.relative_to(chapter.folder.parent).as_posix()}", path
         for lab in chapter.labs:
-            yield from _notebook(root, chapter, lab)
+            yield from _notebook(root, chapter, lab, names)
 
 
-def _notebook(root: Path, chapter: course.Chapter, lab: Path) -> Iterator[tuple[str, Path]]:
+def _notebook(
+    root: Path, chapter: course.Chapter, lab: Path, names: Collection[str]
+) -> Iterator[tuple[str, bytes]]:
     """A lab's notebook twice: where students work in it, and as what `./course reset` puts back."""
     notebook = root / course.CHAPTERS / chapter.folder.name / f"{lab.name}.ipynb"
     if not notebook.is_file():
@@ -136,8 +166,10 @@ def _notebook(root: Path, chapter: course.Chapter, lab: Path) -> Iterator[tuple[
         raise CannotHandOut(
             f"somebody has worked in {notebook}, and would be handed out: ./course reset {lab.name}"
         )
-    yield notebook.relative_to(root).as_posix(), notebook
-    yield f"{HANDED_OUT}/{course.released(lab).relative_to(chapter.folder.parent).as_posix()}", notebook
+    # A link to a notebook that is not handed out would lead nowhere: its words stay.
+    content = _LINK.sub(lambda link: link[0] if link[2].decode() in names else link[1], notebook.read_bytes())
+    yield notebook.relative_to(root).as_posix(), content
+    yield f"{HANDED_OUT}/{course.released(lab).relative_to(chapter.folder.parent).as_posix()}", content
 
 
 def _judges_part(chapter: course.Chapter, *, with_solutions: bool) -> Iterator[Path]:

@@ -185,6 +185,22 @@ def test_nothing_that_somebody_has_written_in_the_chapters_is_in_it(tmp_path: Pa
     assert not (tmp_path / "again").exists()
 
 
+def test_a_course_of_three_labs_has_no_link_that_leads_nowhere(tmp_path: Path) -> None:
+    labs = ("00_nervous_system", "lab_1_2", "lab_1_4")
+    hand_out(tmp_path / "course", ROOT, assignments=labs)
+    notebooks = sorted((tmp_path / "course").rglob("*.ipynb"))
+    assert [path.stem for path in notebooks] == [*labs, *labs]
+    text = "".join(path.read_text() for path in notebooks)
+    assert set(re.findall(r"\]\(([\w]+)\.ipynb", text)) == set(labs)
+    assert "← Previous: Lab 1.1: A workspace and your first node" in text
+    listed = run(tmp_path / "course", "check")
+    assert {line.split(".")[0] for line in listed.stdout.splitlines()} == set(labs)
+    said = run(tmp_path / "course", "progress")
+    assert (said.returncode, "Lab 1.3" in said.stdout, "Lab 1.4" in said.stdout) == (0, False, True)
+    with pytest.raises(CannotHandOut, match="no notebook named lab_9"):
+        hand_out(tmp_path / "other", ROOT, assignments=["lab_9"])
+
+
 def test_nothing_is_overwritten(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("work")
     with pytest.raises(CannotHandOut, match="is there already"):

@@ -10,6 +10,7 @@ import click
 
 from autograder.cards.readable import printable
 from autograder.cli.ending import INTERRUPTED, fail, grading_errors
+from autograder.kit.in_words import counted
 
 _only_assignments = click.option(
     "--assignment", "assignments", multiple=True, help="Only this assignment; may be given several times."
@@ -18,18 +19,21 @@ _only_assignments = click.option(
 
 @click.command("hand-out")
 @click.argument("place", type=click.Path(path_type=Path))
+@_only_assignments
 @click.option("--zip", "as_zip", is_flag=True, help="Make PLACE a zip file.")
 @click.option(
     "--with-solutions",
     is_flag=True,
     help="Cards with full marks offer the reference solution. Students can find it earlier, in the folder exercises.",
 )
-def hand_out(place: Path, as_zip: bool, with_solutions: bool) -> None:
+def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solutions: bool) -> None:
     """Make in PLACE what a class is handed: notebooks and judge, no solution, no answer, no grader."""
     from autograder import course, handing_out
 
     try:
-        made = handing_out.hand_out(place, course.root(), as_zip=as_zip, with_solutions=with_solutions)
+        made = handing_out.hand_out(
+            place, course.root(), assignments=assignments, as_zip=as_zip, with_solutions=with_solutions
+        )
     except (handing_out.CannotHandOut, OSError) as error:
         fail(str(error))
     click.echo(
@@ -321,7 +325,7 @@ def compare(folder: Path, before: str, after: str) -> None:
 
     with grading_errors():
         old, new, found = differences.compare(ClassDirectory(folder).state, before, after)
-    click.echo(f"{old} → {new}: {len(found)} results differ")
+    click.echo(f"{old} → {new}: {counted(len(found), 'difference')}")
     for difference in found:
         click.echo(printable(difference.line()))
 

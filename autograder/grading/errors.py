@@ -7,14 +7,23 @@ import errno
 import shlex
 from typing import TYPE_CHECKING
 
+from autograder import course
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
 
-def course_command(*words: object) -> str:
-    """A command of ``./course`` as messages print it: a shell takes each word, a path with blanks too, as one."""
-    return shlex.join(["./course", *map(str, words)])
+def course_command(*words: object, inside: Path | None = None) -> str:
+    """A command of ``./course`` as messages print it: a shell takes each word, a path with blanks too, as one.
+
+    Args:
+        words: What is typed behind ``./course``.
+        inside: The folder in which it has to be typed, as nbgrader's own commands ask for; any where not given.
+    """
+    program = course.root() / "course" if inside else "./course"
+    command = shlex.join(map(str, (program, *words)))
+    return f"{shlex.join(['cd', str(inside)])} && {command}" if inside else command
 
 
 class GradingError(Exception):

@@ -131,8 +131,9 @@ class _Collecting:
             if history is not None and history.when is None:
                 untimed[assignment].append(student)
         assignments = sorted({one.assignment for one in self._candidates})
+        not_missing = work | self._roster.excused
         missing = {
-            name: tuple(sorted(id_ for id_ in self._roster.students if (id_, name) not in work))
+            name: tuple(sorted(id_ for id_ in self._roster.students if (id_, name) not in not_missing))
             for name in assignments
         }
         return CollectReport(

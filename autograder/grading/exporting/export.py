@@ -11,6 +11,7 @@ from autograder.grading.errors import GradingError, course_command
 from autograder.grading.exporting import feedback_zips, forms, sheets
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.grading.table.class_table import ClassTable, read_table
+from autograder.kit.in_words import counted
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
@@ -78,10 +79,12 @@ def export(
         for one in table.unplaced
     ]
     if table.waiting:
-        notices.append(f"{len(table.waiting)} results wait for a person and are exported as they are now")
+        waiting = counted(len(table.waiting), "result")
+        notices.append(f"{waiting} still to be graded by a person, exported with the points of now")
     if table.stale:
         notices.append(
-            f"{len(table.stale)} submissions came or changed after the last grading, or could not be graded: "
+            f"{counted(len(table.stale), 'submission')} without points, or with points of earlier work or of another "
+            "version of the course: "
             f"{', '.join(table.stale[:5])}{' …' if len(table.stale) > 5 else ''}. "
             f"Grade first: {course_command('grade', path)}"
         )
@@ -120,7 +123,7 @@ def _files(
         )
         for assignment in assignments:
             text, unknown = forms.moodle_worksheet(table, records, assignment)
-            if len(unknown) < len(table.students):
+            if text:
                 purpose = f"Moodle: the assignment {assignment}, Upload grading worksheet"
                 yield f"moodle-{assignment}.csv", text.encode(), purpose
             if unknown:

@@ -96,9 +96,13 @@ def gradescope(table: ClassTable, assignments: Sequence[str]) -> str:
 
 
 def moodle_worksheet(table: ClassTable, records: CollectedRecords, assignment: str) -> tuple[str, list[str]]:
-    """The grading worksheet of one assignment, and the students whose number there is not known."""
+    """The grading worksheet of one assignment, and the students whose number there is not known.
+
+    The worksheet is empty where it would give points to nobody.
+    """
     rows: list[list[str | float]] = [list(MOODLE_WORKSHEET)]
     unknown = []
+    is_empty = True
     for student in map(table.roster.students.__getitem__, table.students):
         there = known_there(records, assignment, student.id, "moodle")
         number = there.number if there else student.lms.get("moodle", "")
@@ -106,10 +110,12 @@ def moodle_worksheet(table: ClassTable, records: CollectedRecords, assignment: s
             unknown.append(student.id)
             continue
         submitted = "Submitted for grading" if there else "No submission"
-        points = [blank(table.score(student.id, assignment)), table.max_score(assignment)]
+        score = table.score(student.id, assignment)
+        is_empty = is_empty and score is None
+        points = [blank(score), table.max_score(assignment)]
         who = [f"Participant {number}", student.name or student.id, student.email]
         rows.append([*who, submitted, *points, "Yes", "", "", ""])
-    return csv_text(rows), unknown
+    return ("" if is_empty else csv_text(rows)), unknown
 
 
 def filled_in(

@@ -5,15 +5,13 @@ Reading a source means running nbgrader's steps on it, which takes a second for 
 
 from __future__ import annotations
 
-import shlex
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder import course
 from autograder.grading.entering import gradebook
-from autograder.grading.errors import ClassIncomplete, MasterUnusable
+from autograder.grading.errors import ClassIncomplete, MasterUnusable, course_command
 from autograder.grading.reporting.report import LATE
 from autograder.regular_files import write_whole
 
@@ -96,13 +94,14 @@ def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, 
         entered = gradebook.worth(directory.gradebook_url, assignment)
         for cell in wanted:
             if entered.get(cell.notebook, {}).get(cell.name) != cell.worth:
+                command = ("nbgrader", "generate_assignment", assignment, "--force")
                 raise ClassIncomplete(
                     f"The gradebook does not know {cell.notebook} as it is in "
-                    f"{directory.path / 'source' / assignment}. Enter it: "
-                    f"cd {shlex.quote(str(directory.path))} && {shlex.quote(str(course.root() / 'course'))} nbgrader "
-                    f"generate_assignment {assignment} --force. Where nbgrader refuses that, because somebody has "
-                    f"points already: put the source back as it was, and say in {directory.path / 'class.toml'} what "
-                    "is left out or gets other points, which works at any time"
+                    f"{directory.path / 'source' / assignment}. "
+                    f"Enter it: {course_command(*command, inside=directory.path)}. "
+                    "Where nbgrader refuses that, because somebody has points already: put the source back as it was, "
+                    f"and say in {directory.path / 'class.toml'} what is left out or gets other points, which works at "
+                    "any time"
                 )
 
 

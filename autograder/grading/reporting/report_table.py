@@ -13,6 +13,7 @@ from rich.text import Text
 from autograder.cards.readable import printable
 from autograder.grading.reporting.report import EXCUSED, LATE, NOT_SUBMITTED, WAITS, columns, total
 from autograder.grading.task import UNREADABLE
+from autograder.kit.in_words import counted
 from autograder.verdict import State
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ def show(report: GradeReport, console: Console | None = None) -> None:
         console.print(_diagnoses(report.rows))
     if report.would_change is not None:
         count = len(report.would_change)
-        found = f"{count} results would change:" if count else "No result would change."
+        found = f"{counted(count, 'result')} would change:" if count else "No result would change."
         _line(console, f"Nothing was entered. {found}", "bold")
         for change in report.would_change:
             _line(console, f"would change {printable(change.line())}")
@@ -63,10 +64,8 @@ def show(report: GradeReport, console: Console | None = None) -> None:
         _line(console, f"problem      {printable(problem)}", "red")
     if report.note:
         _line(console, f"unsafe       {report.note}", "red")
-    counts = (
-        f"{report.executed} notebooks run, {report.reused} unchanged, {report.written} submissions entered"
-    )
-    _line(console, f"{counts}, {report.seconds:.1f} s")
+    ran, entered = counted(report.executed, "notebook"), counted(report.written, "submission")
+    _line(console, f"{ran} run, {report.reused} unchanged, {entered} entered, {report.seconds:.1f} s")
     for name, path in (
         ("gradebook", report.gradebook),
         ("grades", report.csv),

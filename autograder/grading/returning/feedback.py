@@ -60,6 +60,7 @@ class FeedbackPages:
         entry = entries.get(key, SubmissionEntry())
         names = {
             "student": submission.student,
+            "name": entry.name,
             "assignment": submission.assignment,
             "notebook": path.stem,
             "score": score - state.late_penalty,

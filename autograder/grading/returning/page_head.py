@@ -1,4 +1,7 @@
-"""The head of a feedback page: each exercise with its points, where nbgrader's calls each of them "Test cell"."""
+"""The head of a feedback page: the student, then each exercise with its points.
+
+nbgrader's own head names nobody, and calls each exercise "Test cell".
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import re2
 
 from autograder import exercises
+from autograder.cards.readable import printable
 from autograder.grading.rebuilding.master import exercise_of
 from autograder.grading.rebuilding.rebuild import grade_id, is_check
 from autograder.grading.returning.sanitize import is_the_masters
@@ -29,7 +33,7 @@ _CELL = "padding: 4px 14px 4px 0; vertical-align: top; text-align: left"
 
 
 def with_summary(body: str, notebook: NotebookNode, names: Mapping[str, Any]) -> str:
-    """A page with a table of its exercises at the top, in the place of nbgrader's list.
+    """A page with the student and a table of the exercises at the top, in the place of nbgrader's list.
 
     Args:
         body: The page; nothing that a student wrote is before the list.
@@ -45,7 +49,11 @@ def with_summary(body: str, notebook: NotebookNode, names: Mapping[str, Any]) ->
         f'<td style="{_CELL}">{words}</td></tr>'
         for name, points, words in _lines(notebook, names)
     )
-    return f"{before}{begin}<table>{lines}</table>{end}{after}"
+    student, name = str(names.get("student", "")), str(names.get("name", ""))
+    whose = f"{name} ({student})" if name else student
+    return (
+        f"{before}{begin}<p><strong>{escape(printable(whose))}</strong></p><table>{lines}</table>{end}{after}"
+    )
 
 
 def mark_waiting(notebook: NotebookNode, cells: Mapping[str, CellEntry]) -> None:

@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from datetime import datetime  # noqa: TC003
+from typing import Any
 
 import msgspec
 import sqlalchemy
@@ -48,12 +49,14 @@ class SubmissionEntry:
         due: Until when it was due for this student, in UTC; None without a due date.
         penalty: Points that are taken off for being late.
         cells: By notebook and grade_id.
+        name: The student's name, empty where the gradebook has none.
     """
 
     handed_in: datetime | None = None
     due: datetime | None = None
     penalty: float = 0.0
     cells: Mapping[str, Mapping[str, CellEntry]] = field(default_factory=dict)
+    name: str = ""
 
     @property
     def is_late(self) -> bool:
@@ -106,10 +109,10 @@ _COMMENTS = f"""
 """
 _SUBMISSIONS = f"""
     SELECT s.student_id AS student, a.name AS assignment, s.timestamp AS timestamp, a.duedate AS duedate,
-        s.extension AS extension,
+        s.extension AS extension, st.first_name, st.last_name,
         (SELECT COALESCE(SUM(sn.late_submission_penalty), 0) FROM submitted_notebook sn
             WHERE sn.assignment_id = s.id) AS penalty
-    FROM {_FROM}
+    FROM {_FROM} JOIN student st ON st.id = s.student_id
 """
 
 
@@ -149,7 +152,8 @@ def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entrie
             if due is not None and row.extension is not None:
                 due = due + row.extension
             key = (row.student, row.assignment)
-            found[key] = SubmissionEntry(row.timestamp, due, float(row.penalty or 0.0), cells.get(key, {}))
+            penalty = float(row.penalty or 0.0)
+            found[key] = SubmissionEntry(row.timestamp, due, penalty, cells.get(key, {}), _full_name(row))
     return found
 
 
@@ -168,4 +172,8 @@ def read_students(url: str) -> dict[str, str]:
         if not has_tables(book):
             return {}
         rows = book.execute(sql("SELECT id, first_name, last_name FROM student")).all()
-    return {row.id: " ".join(part for part in (row.first_name, row.last_name) if part) for row in rows}
+    return {row.id: _full_name(row) for row in rows}
+
+
+def _full_name(row: Any) -> str:
+    return " ".join(part for part in (row.first_name, row.last_name) if part)

@@ -92,7 +92,7 @@ def test_two_runs_can_be_compared_at_any_time(tiny: TinyClass, fake_engine: Fake
     by_person(tiny, "ada", LISTENER, 9)
     tiny.grade()
     last = CliRunner().invoke(cli, ["compare", str(tiny.path)]).output
-    assert "1 results differ" in last
+    assert "1 difference" in last
     assert "ada  lab_1_2.listener  7 → 9" in last
     names = sorted(path.stem for path in (tiny.path / ".autograder" / "runs").iterdir())
     assert len(names) == 3, "a run that changes nothing is not kept"

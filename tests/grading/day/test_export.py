@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import shutil
 import zipfile
 from typing import TYPE_CHECKING
 
@@ -95,6 +96,7 @@ def test_canvas_takes_the_pages_under_the_names_of_its_files(graded: TinyClass) 
         ]
         page = archive.read("lovelaceada_101_9001_lab_1_2-2.html").decode()
     assert "Score: 18.5 / 20.0" in page
+    assert page.index("Ada Lovelace (ada)") < page.index("<table>")
     assert any("ben, eve" in notice for notice in done.notices)
     for name in ("lovelaceada_101_9001_lab_1_2-2.html", "nunezjose_LATE_103_9002_lab_1_2.html"):
         found = read_path((name,), "canvas", lambda _: False)
@@ -125,6 +127,13 @@ def test_moodle_takes_points_and_pages(graded: TinyClass) -> None:
     with zipfile.ZipFile(graded.path / "export" / "feedback-moodle-lab_1_2.zip") as archive:
         assert archive.namelist() == ["Eve O'Neill_555_assignsubmission_file/lab_1_2.html"]
     assert any("ada, ben, jose, zoe" in notice for notice in done.notices)
+
+
+def test_what_would_give_points_to_nobody_is_not_offered(graded: TinyClass) -> None:
+    (graded.path / "students.csv").write_text("id,moodle\nzoe,105\n")
+    shutil.rmtree(graded.path / ".autograder" / "collected")
+    export(graded.path, "moodle")
+    assert [path.name for path in (graded.path / "export").iterdir()] == ["moodle.csv"]
 
 
 def test_a_list_of_the_lms_is_filled_in_and_else_left_as_it_is(graded: TinyClass, tmp_path: Path) -> None:
@@ -185,7 +194,7 @@ def test_what_waits_and_what_is_not_graded_is_said(graded: TinyClass) -> None:
     assert any("ada/lab_1_2" in notice and "./course grade" in notice for notice in done.notices)
     graded.grade()
     done = export(graded.path, "csv")
-    assert any("1 results wait for a person" in notice for notice in done.notices)
+    assert any("1 result still to be graded by a person" in notice for notice in done.notices)
 
 
 def test_the_command_names_the_files(graded: TinyClass, tmp_path: Path) -> None:
