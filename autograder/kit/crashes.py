@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.known_crashes import KNOWN
-from autograder.kit.meant_errors import meant
 from autograder.kit.model import Advice, Mistake
 from autograder.kit.python_errors import meaning
 
@@ -142,3 +141,17 @@ OTHER_CRASHES = (
 """Any other traceback; to be asked after what the graph shows."""
 OTHER_SLIPS = tuple(map(_only_slips, OTHER_CRASHES))
 """Tracebacks that nobody meant; what a program raises on purpose is asked after what else is wrong with it."""
+
+
+SLIPS = ("AttributeError", "TypeError", "NameError", "UnboundLocalError", "KeyError", "IndexError")
+"""Exceptions that nobody raises in order to say something."""
+_FRAME_WITH_CODE = re2.compile(r'(?m)^ {2}File "(?P<file>[^"]*)", line \d+.*\n {4,}(?P<code>\S.*)$')
+_INSTALLED = re2.compile(r"/(site|dist)-packages/|/lib/python3\.\d+/|/opt/ros/")
+
+
+def meant(traceback: str) -> bool:
+    """True if the innermost line of a traceback is one of the program's own that says ``raise`` or ``assert``."""
+    frames = list(_FRAME_WITH_CODE.finditer(traceback))
+    if not frames or _INSTALLED.search(frames[-1]["file"]):
+        return False
+    return re2.search(r"(?:^|[:;] *)(?:raise|assert)\b", frames[-1]["code"]) is not None

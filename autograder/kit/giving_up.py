@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.meant_errors import SLIPS, meant
+from autograder.kit.crashes import SLIPS, meant
 from autograder.kit.model import Advice
 
 if TYPE_CHECKING:

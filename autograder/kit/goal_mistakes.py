@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.kit.crashes import what_and_where
+from autograder.kit.crashes import meant, what_and_where
 from autograder.kit.giving_up import gave_up, patience_not_kept
 from autograder.kit.goal_reports import (
     ABORTED,
@@ -30,9 +30,8 @@ from autograder.kit.goal_reports import (
     said_of_result,
     unshown_feedback,
 )
-from autograder.kit.meant_errors import meant
 from autograder.kit.model import Advice
-from autograder.kit.numbers_said import mentions
+from autograder.kit.texts_said import mentions
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence

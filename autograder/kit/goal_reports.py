@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit import outcome_words as words
+from autograder.kit.crashes import SLIPS
 from autograder.kit.evidence import INTERRUPTED
 from autograder.kit.giving_up import objection, other_names, remark
-from autograder.kit.meant_errors import SLIPS
 from autograder.kit.model import Finding
-from autograder.kit.numbers_said import mentions
+from autograder.kit.texts_said import mentions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

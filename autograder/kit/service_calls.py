@@ -12,7 +12,7 @@ from autograder.kit import giving_up
 from autograder.kit.hangs import stacks
 from autograder.kit.in_words import counted
 from autograder.kit.model import Advice, Finding
-from autograder.kit.numbers_said import mentions
+from autograder.kit.texts_said import mentions
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part, Reference

@@ -1,4 +1,4 @@
-"""A listener's lines: the texts that it heard, made up, or said more than once."""
+"""Lines that a subject said: numbers in them, and a listener's texts, heard, made up, or said more than once."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from autograder.kit.evidence import Event, Part
+
 
 _QUOTED = re2.compile(r"[\"“«].*[\pL\pN_].*[\"”»]")
 _OPENING, _CLOSING = tuple("\"'“‘«`"), tuple("\"'”’»`")
@@ -194,3 +195,22 @@ def _frame(line: str, text: str) -> Frame | None:
 def _forms(text: str) -> tuple[str, ...]:
     """A text as it is, with its letters escaped as JSON and YAML may do it, and as its bytes are shown."""
     return (text,) if text.isascii() else (text, ascii(text)[1:-1], repr(text.encode())[2:-1])
+
+
+_DASH = r"[\d\-−][\-−]"
+"""A dash that is no sign: behind a digit, or one of a row of dashes."""
+_UNSIGNED = rf"(?:^|[^\d\-−]|{_DASH})"
+"""The characters before a number without a sign."""
+_UNSIGNED_ZERO = rf"(?:^|[^\d.\-−]|{_DASH}|(?:^|\D)\.)"
+"""The same before a 0: that of 0.5 and of 1.0 is none, one at the end of a row of dots is."""
+
+
+def mentions(lines: Sequence[str], number: int) -> bool:
+    """True if the number is in one of the lines, with or without separators between its digits."""
+    digits = r"[,_' .]?".join(str(abs(number)))
+    before, after = _UNSIGNED, r"(?:\D|$)"
+    if number < 0:
+        before = r"(?:^|\D)[-−]\s?"
+    elif number == 0:
+        before, after = _UNSIGNED_ZERO, r"(?:[^\d.,]|[.,]\D|[.,]?$)"
+    return any(re2.search(f"{before}{digits}{after}", line) for line in lines)

@@ -13,7 +13,6 @@ from lab_1_3 import client as lab_1_3_client
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.model import Pace
-from autograder.kit.numbers_said import mentions
 from autograder.kit.recipes import service_client
 from autograder.kit.recipes.service_client import Run, answering, has_spoken, is_done
 from autograder.kit.service_calls import (
@@ -26,6 +25,7 @@ from autograder.kit.service_calls import (
     gives_up_in_time,
     reports,
 )
+from autograder.kit.texts_said import mentions
 
 SEEDS = range(60)
 RETURNED = Event(0.4, "subject", "returned", {"value": "-987654321"})

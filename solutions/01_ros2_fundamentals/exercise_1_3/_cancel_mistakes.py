@@ -23,8 +23,8 @@ from exercise_1_3._cancel_words import false_claim, says_canceled
 
 from autograder.kit import goal_mistakes
 from autograder.kit.common_mistakes import only_if_ended
+from autograder.kit.crashes import meant
 from autograder.kit.hangs import HANGS
-from autograder.kit.meant_errors import meant
 from autograder.kit.model import Advice, Mistake
 
 if TYPE_CHECKING:

@@ -13,11 +13,10 @@ import re2
 
 from autograder.kit import common_mistakes as common
 from autograder.kit import giving_up
-from autograder.kit.crashes import OTHER_SLIPS
+from autograder.kit.crashes import OTHER_SLIPS, meant
 from autograder.kit.draft import OWN, OWN_LATE, Draft
 from autograder.kit.giving_up import LATENESS, PATIENCES
 from autograder.kit.lateness import SOON, was_patient
-from autograder.kit.meant_errors import meant
 from autograder.kit.model import Advice, Bench, Finding, Pace
 from autograder.kit.recipes.own_scenario import OwnLadder
 

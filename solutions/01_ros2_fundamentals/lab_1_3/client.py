@@ -12,7 +12,6 @@ import re2
 from autograder.kit import service_calls
 from autograder.kit.draft import Draft
 from autograder.kit.model import Advice, Finding
-from autograder.kit.numbers_said import mentions
 from autograder.kit.recipes.service_client import Calls, Run, hidden
 from autograder.kit.service_calls import (
     BIASED,
@@ -24,6 +23,7 @@ from autograder.kit.service_calls import (
     reports,
     requests,
 )
+from autograder.kit.texts_said import mentions
 
 if TYPE_CHECKING:
     from random import Random
