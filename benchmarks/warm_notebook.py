@@ -47,9 +47,9 @@ def main() -> None:
     from autograder.cards import bundle
 
     bundle.prepare()
-    from autograder.judge.serving import preimport
+    from autograder.judge.serving import attached
 
-    preimport.imports()
+    attached.imports()
     for line in sys.stdin.buffer:
         answers.write(msgspec.json.encode(_floor(decode_task(line))) + b"\n")
         answers.flush()

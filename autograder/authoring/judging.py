@@ -142,6 +142,6 @@ def warm_up() -> None:
     from autograder.judge import settings
 
     settings.prepare_judge()
-    from autograder.judge.serving import preimport
+    from autograder.judge.serving import attached
 
-    preimport.imports()
+    attached.imports()

@@ -6,7 +6,7 @@ import contextlib
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from autograder.judge.bench import graph, node_clock, own_endpoints, type_hashes
+from autograder.judge.bench import clock, graph, type_hashes
 from autograder.judge.bench.action_client import RecordedActionClient
 from autograder.judge.bench.action_server import ScriptedActionServer
 from autograder.judge.bench.announcements import Announcements, process_of
@@ -74,8 +74,8 @@ class TestBench:
         self._open = contextlib.ExitStack()
         self._on_graph: Presence | None = None
         self._time_of_part: SubjectTime | None = None
-        self._there: set[own_endpoints.Endpoint] = set()
-        self._gone: set[own_endpoints.Endpoint] = set()
+        self._there: set[graph.Endpoint] = set()
+        self._gone: set[graph.Endpoint] = set()
         self._clean = True
         self._in_part = False
 
@@ -324,7 +324,7 @@ class TestBench:
 
     def _announce(self, services: Iterable[str]) -> None:
         # The judge's own participant, too, may still see what was taken away.
-        self._there |= own_endpoints.endpoints(self.wire.node, services) - self._gone
+        self._there |= graph.server_endpoints(self.wire.node, services) - self._gone
 
     # --- time ----------------------------------------------------------------------------------------------
 
@@ -361,7 +361,7 @@ class TestBench:
             # A program that has destroyed its nodes is on its way out: how it ends says more than their silence.
             self.await_end(MATCH)
         for node in nodes:
-            if not self._subject.ended and not node_clock.answers(self.wire, self._recorder, node):
+            if not self._subject.ended and not clock.answers(self.wire, self._recorder, node):
                 self._recorder.record("unanswered", node.full)
                 self.note_where_it_hangs()
 

@@ -5,7 +5,7 @@ rclpy has no event for changes of the graph, so these queries are polled; one co
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from rclpy.action.graph import (
@@ -186,3 +186,35 @@ def _is_own_work(role: str, name: str) -> bool:
 def _add(found: dict[str, str], name: str, types: list[str]) -> None:
     known = set(filter(None, found.get(name, "").split(",")))
     found[name] = ",".join(sorted(known | set(types)))
+
+
+Endpoint = tuple[str, str]
+"""A topic of the middleware, and the identifier (DDSI-RTPS, 8.2.4.1) of a reader or writer on it, as hexadecimal."""
+
+
+def server_endpoints(node: Node, services: Iterable[str]) -> set[Endpoint]:
+    """The endpoints of a node's servers, by the identifiers under which every participant of the domain knows them.
+
+    Names do not tell one server from the next: the one of an earlier run is taken away, and its name comes again.
+
+    A service is a reader of requests and a writer of replies (rmw_fastrtps_shared_cpp, namespace_prefix.cpp), and a
+    client takes it for ready when it knows both.
+
+    Args:
+        node: Whose servers.
+        services: Their full names.
+    """
+    found: set[Endpoint] = set()
+    for name in services:
+        requests, replies = f"rq{name}Request", f"rr{name}Reply"
+        known = (
+            (requests, node.get_subscriptions_info_by_topic(requests, no_mangle=True)),
+            (replies, node.get_publishers_info_by_topic(replies, no_mangle=True)),
+        )
+        found |= {
+            (topic, bytes(info.endpoint_gid).hex())
+            for topic, infos in known
+            for info in infos
+            if info.node_name == node.get_name()
+        }
+    return found

@@ -5,11 +5,10 @@ A program that ends takes its endpoints along, so what was seen is written down 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from autograder.judge.bench import graph
 from autograder.judge.bench.patience import Patience
-from autograder.judge.bench.settling import Settling
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -21,6 +20,28 @@ if TYPE_CHECKING:
     from autograder.judge.subjects.subject import Subject
 
     Counterparts = Mapping[str, RecordedSubscription | RecordedPublisher]
+
+
+class Settling:
+    """Tells when a command's graph has not changed for a while, once there is anything on it.
+
+    Args:
+        seconds: As :mod:`autograder.judge.bench.patience` counts them: on a crowded machine a program may have made its
+            node, and wait for a processor before it makes what the node is for.
+    """
+
+    def __init__(self, seconds: float) -> None:
+        self._last: Any = None
+        self._patience = Patience(seconds)
+
+    def unchanged(self, interface: graph.Interface, nodes: int) -> bool:
+        """True if the graph is as it was ``seconds`` ago, and has nodes at all."""
+        state = (nodes, interface)
+        if state != self._last:
+            self._last = state
+            self._patience.restart()
+        return nodes > 0 and self._patience.left <= 0
+
 
 APPEAR = 12.0
 """Seconds of patience in which a subject that runs must show up on the graph at all. Generous: starting slowly is

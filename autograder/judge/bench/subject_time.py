@@ -6,9 +6,8 @@ import contextlib
 import time
 from typing import TYPE_CHECKING
 
-from autograder.judge.bench import graph, node_clock
-from autograder.judge.bench.borrowed_time import BorrowedTime
-from autograder.judge.bench.clock import SimulatedClock
+from autograder.judge.bench import clock, graph
+from autograder.judge.bench.clock import BorrowedTime, SimulatedClock
 from autograder.judge.bench.presence import MATCH, Presence
 from autograder.kit.giving_up import spared, willing
 from autograder.kit.model import Pace
@@ -95,11 +94,11 @@ class SubjectTime:
 
     def settle(self) -> None:
         """Ask each node of the subject's twice; a node that did not answer once is not asked again in this part."""
-        limit = node_clock.ANSWER_LIMIT if self._pace is Pace.FAST else node_clock.PATIENT_ANSWER
+        limit = clock.ANSWER_LIMIT if self._pace is Pace.FAST else clock.PATIENT_ANSWER
         for node in self._presence.counterparts():
             if node.full in self._deaf or self._subject.ended:
                 continue
-            if not all(node_clock.answers(self._wire, self._recorder, node, limit) for _ in range(2)):
+            if not all(clock.answers(self._wire, self._recorder, node, limit) for _ in range(2)):
                 self._deaf.add(node.full)
 
     def await_attention(self) -> None:
@@ -110,7 +109,7 @@ class SubjectTime:
         """
         for node in self._presence.counterparts():
             if not self._subject.ended:
-                node_clock.answers(self._wire, self._recorder, node, MATCH)
+                clock.answers(self._wire, self._recorder, node, MATCH)
 
     def _follow_clock(self) -> bool:
         """True if the subject follows a clock of the judge's; tried once, as soon as the judge has an endpoint."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import os
 import socket
@@ -17,10 +18,10 @@ if TYPE_CHECKING:
 
 
 def prepare() -> None:
-    """Import ROS, the judge, every exercise and the interfaces. Makes no node and no thread."""
+    """Make this process a judge's, with all imports made."""
     settings.prepare_judge()
     importlib.import_module("autograder.judge.serving.server")
-    importlib.import_module("autograder.judge.serving.preimport").imports()
+    imports()
 
 
 def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
@@ -60,3 +61,35 @@ def readable() -> list[Path]:
     """The files that a judge must be able to read beside the package: the reference outputs alone."""
     files = [exercises.reference_path(exercise_id) for exercise_id in exercises.all_ids()]
     return [file for file in files if file.is_file()]
+
+
+_INTERFACES = (
+    "std_msgs.msg",
+    "rcl_interfaces.msg",
+    "rcl_interfaces.srv",
+    "rosgraph_msgs.msg",
+    "action_msgs.msg",
+    "action_msgs.srv",
+    # Every node has a service of it; 5 ms of processor time in each check that had to load it.
+    "type_description_interfaces.msg",
+    "type_description_interfaces.srv",
+)
+
+
+def imports() -> None:
+    """Import the judge, every exercise, the interfaces of the course and their compiled type supports.
+
+    No check pays for them afterwards. Makes no node and no thread.
+    """
+    for name in ("subjects.command_subject", "subjects.remote_subject", "verdicts.trial"):
+        importlib.import_module(f"autograder.judge.{name}")
+
+    # One that is broken, while somebody writes it, keeps nobody from being judged by another one.
+    exercises.unbroken()
+    for name in (*_INTERFACES, *course.interface_modules()):
+        with contextlib.suppress(ImportError):
+            module = importlib.import_module(name)
+            for kind in vars(module).values():
+                load = getattr(type(kind), "__import_type_support__", None)
+                if load is not None:
+                    load()

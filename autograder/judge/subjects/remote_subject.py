@@ -20,7 +20,7 @@ from autograder.messages.workspaces import Source
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from autograder.judge.bench.own_endpoints import Endpoint
+    from autograder.judge.bench.graph import Endpoint
     from autograder.judge.bench.recorder import Recorder
 
 MAX_TEXT = 4_000

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
-    from autograder.judge.bench.own_endpoints import Endpoint
+    from autograder.judge.bench.graph import Endpoint
     from autograder.judge.bench.recorder import Recorder
 
 
