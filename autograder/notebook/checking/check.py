@@ -11,12 +11,10 @@ from autograder.notebook.cells.failed_cells import raise_if_stale
 from autograder.notebook.checking.captured_output import CapturedOutput
 from autograder.notebook.checking.card_display import CardDisplay, is_live, is_validating
 from autograder.notebook.checking.check_context import CheckContext
-from autograder.notebook.checking.graph_questions import GraphQuestions
 from autograder.notebook.checking.judge_link import JudgeLink, JudgeUnreachable
 from autograder.notebook.checking.kept_checks import keep
 from autograder.notebook.checking.path_run import PathRun, is_path, send_sources
-from autograder.notebook.checking.score import Score
-from autograder.notebook.checking.shorter_waits import ShorterWaits
+from autograder.notebook.checking.shorter_waits import GraphQuestions, ShorterWaits
 from autograder.notebook.checking.subject_run import SubjectRun, Tell
 from autograder.notebook.checking.validating import raise_unless_full
 from autograder.notebook.nodes.ros_session import prepare_environment
@@ -26,6 +24,16 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from autograder.messages.lines import Message
+
+
+class Score(float):
+    """Points. In a notebook the card has said them, so that no bare number is shown below it.
+
+    Stock nbgrader takes the points from the plain text of the cell's value, which is the number.
+    """
+
+    def _repr_html_(self) -> str:
+        return '<span class="agc-cell-value" hidden="hidden"></span>'
 
 
 class Place(Protocol):

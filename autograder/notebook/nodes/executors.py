@@ -9,7 +9,7 @@ from __future__ import annotations
 import atexit
 from typing import TYPE_CHECKING, Any
 
-from autograder.notebook.cells.raising_lines import point_at_raising_lines
+from autograder.notebook.cells.student_tracebacks import point_at_raising_lines
 from autograder.notebook.nodes.background import Background, end_everything, replace_named
 from autograder.notebook.nodes.callback_errors import CallbackFailedError
 from autograder.notebook.nodes.node_ends import node_label

@@ -13,19 +13,59 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import rclpy
-from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
-
-from autograder.notebook.nodes.goal_errors import report_goal_errors
+from rclpy.action.server import ActionServer
+from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor, await_or_execute
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Awaitable, Callable
     from types import FrameType
 
     from rclpy.context import Context
     from rclpy.node import Node
     from rclpy.task import Task
 
-    from autograder.notebook.nodes.goal_errors import GoalErrorReport
+    GoalErrorReport = Callable[[BaseException, ActionServer], None]
+
+
+def report_goal_errors(task: Any, arguments: tuple[Any, ...], report: GoalErrorReport) -> tuple[Any, ...]:
+    """The arguments for a task of an executor, changed where it is an action server's that executes a goal.
+
+    rclpy catches an error of the execute callback itself and prints the traceback on standard error, among lines of
+    its own (``ActionServer._execute_goal`` in ``rclpy/action/server.py``). Here it takes the way of all other
+    callbacks' errors, and the goal still ends as it does there: aborted, with an empty result.
+
+    Args:
+        task: The function that the executor is to run.
+        arguments: What it is to be given.
+        report: Called with an error of the execute callback, and the server.
+    """
+    server = getattr(task, "__self__", None)
+    if not isinstance(server, ActionServer) or getattr(task, "__name__", "") != "_execute_goal":
+        return arguments
+    execute_callback, *rest = arguments
+    return (_guarded(execute_callback, server, report), *rest)
+
+
+def _guarded(
+    execute_callback: Any, server: ActionServer, report: GoalErrorReport
+) -> Callable[[Any], Awaitable[Any]]:
+    result_type = server._action_type.Result
+
+    async def execute(goal_handle: Any) -> Any:
+        try:
+            result = await await_or_execute(execute_callback, goal_handle)
+            if not isinstance(result, result_type):
+                raise TypeError(
+                    "the execute callback must return a result of the action: "
+                    f"end it with `return result`, not with {result!r}"
+                )
+        except Exception as error:
+            report(error, server)
+            return result_type()
+        return result
+
+    return execute
+
 
 _RCLPY_SPINS = frozenset({"spin", "spin_once", "spin_until_future_complete"})
 _LOANS = "_nodes_to_return"

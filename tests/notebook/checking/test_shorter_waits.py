@@ -14,8 +14,7 @@ from rclpy.client import Client
 from rclpy.node import Node
 
 from autograder.notebook.checking.captured_output import CapturedOutput
-from autograder.notebook.checking.graph_questions import ENOUGH, GraphQuestions
-from autograder.notebook.checking.shorter_waits import ShorterWaits
+from autograder.notebook.checking.shorter_waits import LOOKS_TOLD, GraphQuestions, ShorterWaits
 
 
 def client(*, ready: threading.Event) -> Any:
@@ -118,10 +117,10 @@ def test_looks_at_the_graph_are_told_up_to_a_number(monkeypatch: pytest.MonkeyPa
     told: list[int] = []
     subject = True
     with GraphQuestions(lambda: told.append(1), lambda: subject) as questions:
-        for _ in range(ENOUGH + 5):
+        for _ in range(LOOKS_TOLD + 5):
             assert Node.get_service_names_and_types(None) == ["the answer"]  # type: ignore[arg-type, comparison-overlap]
-        assert len(told) == ENOUGH
+        assert len(told) == LOOKS_TOLD
         questions.begin_run()
         subject = False
         Node.get_service_names_and_types(None)  # type: ignore[arg-type]
-        assert len(told) == ENOUGH
+        assert len(told) == LOOKS_TOLD
