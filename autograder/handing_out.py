@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from autograder import course
 from autograder.course import HANDED_OUT
 from autograder.exercises import REFERENCE
-from autograder.masters.work import holds_work
+from autograder.masters.chapters import holds_work
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence

@@ -24,7 +24,7 @@ table is named after the file of its answer::
     '''
 
 ``shows`` is the first line of its program (it can be left out where that is ``Wrong: `` and ``why``), ``change`` has
-the form of ``autograder.authoring.edits``, or of ``autograder.authoring.workspace_answers``.
+the form of ``autograder.authoring.edits``.
 """
 
 from __future__ import annotations

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 from autograder import exercises
 from autograder.authoring.answer_tables import WORKSPACE, Listed, listed, settings
+from autograder.authoring.edits import unpack
 from autograder.authoring.judging import checked
-from autograder.authoring.workspace_answers import unpack
 from autograder.verdict import to_json
 
 if TYPE_CHECKING:

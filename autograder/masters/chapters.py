@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import nbformat
+from nbgrader.utils import compute_checksum
 from rich.console import Console
 
 from autograder.course import SOLUTION
@@ -14,11 +16,11 @@ from autograder.masters.layout import chapter_notebooks, chapter_path, masters
 from autograder.masters.release import release_text
 from autograder.masters.solutions import solution_files
 from autograder.masters.source import Points, named_cells, notebook_of
-from autograder.masters.work import holds_work
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from pathlib import Path
+
 
 NOTEBOOK = ".ipynb"
 
@@ -115,3 +117,29 @@ def _lines(report: BuildReport) -> list[tuple[str, tuple[Path, ...], str]]:
         ("edited", report.edited, "— somebody's work is in it: move it away, then build again"),
         ("orphan", report.orphans, "— no master stands for it: write one, or delete it"),
     ]
+
+
+def holds_work(path: Path) -> bool:
+    """True if the notebook has work of a person in it, beyond what a build once wrote.
+
+    A release carries the checksum of each code cell, and of each question, in its metadata: a cell that no longer
+    matches was edited, code without one was added. The output of cells is no work. A file that is no notebook counts
+    as work: better to ask than to overwrite it.
+    """
+    if not path.exists():
+        return False
+    try:
+        notebook = nbformat.read(path, as_version=4)
+    except Exception:
+        # nbformat raises whatever its JSON and schema libraries do.
+        return True
+    return any(
+        _edited(cell) for cell in notebook.cells if cell.cell_type == "code" or "nbgrader" in cell.metadata
+    )
+
+
+def _edited(cell: Any) -> bool:
+    tracked = cell.metadata.get("nbgrader", {})
+    if "checksum" in tracked:
+        return bool(tracked["checksum"] != compute_checksum(cell))
+    return bool(cell.source.strip())

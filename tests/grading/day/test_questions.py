@@ -81,7 +81,7 @@ def test_a_person_sees_what_earns_points_and_gives_them(asked: TinyClass) -> Non
 
 
 def test_a_question_that_somebody_has_answered_is_not_built_over(asked: TinyClass) -> None:
-    from autograder.masters.work import holds_work
+    from autograder.masters.chapters import holds_work
 
     released = asked.path / "release" / "lab_1_2" / "lab_1_2.ipynb"
     assert not holds_work(released)
