@@ -1,13 +1,15 @@
-"""One goal of an action such as Fibonacci, as the judge's action client has seen it: an order, then numbers."""
+"""The goals of an action server, of whatever type, as the judge's action client has seen them."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from autograder.kit.evidence import Part
 
 ERROR_GOAL_TERMINATED = 3
@@ -30,24 +32,24 @@ class Goal:
     """One goal, as far as it is known.
 
     Attributes:
-        order: What was asked for; None where the goal was not sent.
+        request: The fields of the goal; None where it was not sent.
         accepted: The server's answer; None where there is none.
-        feedback: The partial sequences, in order; without those that were sent when the result had been heard.
+        feedback: The fields of each message, in order; without those that were sent when the result had been heard.
         sent: When each of them was sent, by their publisher's clock, in seconds of the epoch.
         answered_at: When the server's answer to the goal was heard, by the judge's clock; None where it is not known.
         cancel_answered_at: The same of the answer to the cancel request.
         cancel_accepted: The answer to the cancel request; None where there is none.
         cancelled_too_late: The answer to the cancel request was that the goal had ended.
-        before_cancel: How many numbers the last feedback before the cancel request had.
+        before_cancel: The number of feedback messages before the cancel request.
         unread: How many feedback messages came between the cancel request and its answer.
         seconds: Wall time from the acceptance to the result; None where one of them is missing.
         status: The status that came with the result; None where none came.
-        sequence: The result.
+        result: The fields of the result; empty where none came.
     """
 
-    order: int | None
+    request: Mapping[str, Any] | None
     accepted: bool | None
-    feedback: list[list[int]]
+    feedback: list[Mapping[str, Any]]
     sent: tuple[float, ...]
     answered_at: float | None
     cancel_answered_at: float | None
@@ -57,7 +59,7 @@ class Goal:
     unread: int
     seconds: float | None
     status: int | None
-    sequence: list[int]
+    result: Mapping[str, Any]
 
     @property
     def over(self) -> bool:
@@ -73,11 +75,6 @@ class Goal:
         """The number of feedback messages surely sent after a moment; 0 where the moment is not known."""
         return 0 if moment is None else sum(sent > moment for sent in self.sent)
 
-    @property
-    def was_computed(self) -> bool:
-        """The server came to the end of its work; one that hangs or raises on its way did not."""
-        return self.status == SUCCEEDED or (self.status is not None and bool(self.sequence))
-
 
 def goal(part: Part, number: int) -> Goal:
     """The goal of that number."""
@@ -90,21 +87,20 @@ def goal(part: Part, number: int) -> Goal:
     cancel = by_kind.get("cancel_sent")
     split = events.index(cancel) if cancel else len(events)
     answered = events.index(by_kind["cancel_answer"]) if "cancel_answer" in by_kind else len(events)
-    before = [event for event in heard if events.index(event) < split]
     return Goal(
-        order=data.get("goal_sent", {}).get("fields", {}).get("order"),
+        request=data.get("goal_sent", {}).get("fields"),
         accepted=data.get("goal_answer", {}).get("accepted"),
-        feedback=[list(event.data["fields"]["partial_sequence"]) for event in heard],
+        feedback=[event.data["fields"] for event in heard],
         sent=tuple(float(event.data["sent"]) for event in heard if "sent" in event.data),
         answered_at=data.get("goal_answer", {}).get("arrived"),
         cancel_answered_at=data.get("cancel_answer", {}).get("arrived"),
         cancel_accepted=data.get("cancel_answer", {}).get("accepted"),
         cancelled_too_late=data.get("cancel_answer", {}).get("return_code") == ERROR_GOAL_TERMINATED,
-        before_cancel=len(before[-1].data["fields"]["partial_sequence"]) if before else 0,
+        before_cancel=sum(events.index(event) < split for event in heard),
         unread=sum(split < events.index(event) < answered for event in heard),
         seconds=by_kind["result_heard"].t - by_kind["goal_answer"].t if "result_heard" in by_kind else None,
         status=result.get("status"),
-        sequence=list(result.get("fields", {}).get("sequence", [])),
+        result=result.get("fields", {}),
     )
 
 

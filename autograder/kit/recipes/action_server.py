@@ -14,7 +14,7 @@ from autograder.kit.hangs import HANGS
 from autograder.kit.model import Advice, Mistake
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from autograder.kit.evidence import Evidence
     from autograder.kit.goals_seen import Goal
@@ -41,7 +41,7 @@ class SendsGoals:
         self,
         scenario: Callable[[Bench], None],
         *,
-        good: Callable[[Evidence], list[Goal]],
+        good: Callable[[Evidence], Sequence[Goal]],
         canceled: Callable[[Evidence], Goal],
     ) -> None:
         self.scenario, self._good, self.canceled = scenario, good, canceled
@@ -152,15 +152,21 @@ def _two_servers(evidence: Evidence) -> Advice | None:
 
 def _result_missing(evidence: Evidence) -> Advice | None:
     """The execute callback returned no result."""
+    _, kind = evidence.reference.only("action_server")
+    fields = next(
+        (list(seen.result) for part in evidence.reference.parts for seen in all_goals(part) if seen.result),
+        [],
+    )
     # What rclpy says when it sends the result, and what autograder/notebook says in its place.
-    said = r"'NoneType' object has no attribute '_?sequence'|must return a result of the action"
+    absent = rf"'NoneType' object has no attribute '_?(?:{'|'.join(fields)})'|" if fields else ""
+    said = f"{absent}must return a result of the action"
     traceback = traceback_of(evidence)
     if not re2.search(said, traceback):
         return None
     return Advice(
         "The execute callback returned nothing, so there is no result to send.",
-        "End it with `return result`, where result is a Fibonacci.Result() whose sequence you have filled. Do so on "
-        "every way out, after a cancel too.",
+        f"End it with `return result`, where result is a {kind.rpartition('/')[2]}.Result() whose "
+        f"{' and '.join(fields) or 'fields'} you have filled. Do so on every way out, after a cancel too.",
         traceback,
     )
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from autograder.kit.goals_seen import ABORTED, CANCELED, SUCCEEDED, Goal, goal, status_text
+from autograder.kit import goals_seen
+from autograder.kit.goals_seen import ABORTED, CANCELED, SUCCEEDED, Goal, status_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -49,7 +51,47 @@ PACED = (ALONE, BESIDE, AGAIN)
 """The goals that take time and are to succeed."""
 
 
-def ended_by_a_younger(part: Part) -> Goal | None:
+@dataclass(frozen=True)
+class FibonacciGoal(Goal):
+    """A goal, with the fields of its action by name."""
+
+    @property
+    def order(self) -> int | None:
+        """The order that was asked for; None where the goal was not sent."""
+        return None if self.request is None else int(self.request["order"])
+
+    @property
+    def partials(self) -> list[list[int]]:
+        """The partial sequences of the feedback, in order."""
+        return [list(fields["partial_sequence"]) for fields in self.feedback]
+
+    @property
+    def sequence(self) -> list[int]:
+        """The numbers of the result."""
+        return list(self.result.get("sequence", []))
+
+    @property
+    def told_before(self) -> int:
+        """The numbers in the last feedback before the cancel request."""
+        return len(self.partials[self.before_cancel - 1]) if self.before_cancel else 0
+
+    @property
+    def was_computed(self) -> bool:
+        """True if the server came to the end of its work; one that hangs or raises on its way did not."""
+        return self.status == SUCCEEDED or (self.status is not None and bool(self.sequence))
+
+
+def goal(part: Part, number: int) -> FibonacciGoal:
+    """The goal of that number."""
+    return FibonacciGoal(**vars(goals_seen.goal(part, number)))
+
+
+def all_goals(part: Part) -> list[FibonacciGoal]:
+    """All goals that were sent."""
+    return [FibonacciGoal(**vars(one)) for one in goals_seen.all_goals(part)]
+
+
+def ended_by_a_younger(part: Part) -> FibonacciGoal | None:
     """The goal that the server ended when a younger one came, before anybody asked to cancel it; None for none.
 
     A server may hold that this is right, as the official example of a single goal does.
@@ -63,7 +105,7 @@ def ended_by_a_younger(part: Part) -> Goal | None:
     return older if before.count("goal_sent") == 2 and "cancel_sent" not in before else None
 
 
-def to_be_canceled(evidence: Evidence) -> Goal:
+def to_be_canceled(evidence: Evidence) -> FibonacciGoal:
     """The goal that is canceled: beside a younger one, or alone where the server ended it for that one."""
     part = evidence.part(GOALS)
     return goal(part, LONG_ALONE if ended_by_a_younger(part) else LONG)
@@ -91,7 +133,7 @@ def tells_at_the_end(part: Part) -> bool:
     return all(_silence(goal(part, number)) >= LONG_SILENCE for number in (ALONE, BESIDE))
 
 
-def _silence(seen: Goal) -> float:
+def _silence(seen: FibonacciGoal) -> float:
     """Seconds from the answer to a goal to its feedback, where that came all at once; else 0."""
     if not seen.pauses or seen.answered_at is None:
         return 0.0
@@ -99,17 +141,17 @@ def _silence(seen: Goal) -> float:
     return silent if sum(seen.pauses) < BURST * silent else 0.0
 
 
-def paced_goals(evidence: Evidence) -> list[Goal]:
+def paced_goals(evidence: Evidence) -> list[FibonacciGoal]:
     """The goals that take time and are to succeed, as far as they were sent."""
     return _sent(evidence, PACED)
 
 
-def good_goals(evidence: Evidence) -> list[Goal]:
+def good_goals(evidence: Evidence) -> list[FibonacciGoal]:
     """All goals that are to succeed, as far as they were sent."""
     return _sent(evidence, (*PACED, *TINY))
 
 
-def _sent(evidence: Evidence, numbers: Sequence[int]) -> list[Goal]:
+def _sent(evidence: Evidence, numbers: Sequence[int]) -> list[FibonacciGoal]:
     part = evidence.part(GOALS)
     older, beside = goal(part, LONG), goal(part, BESIDE)
     one_at_a_time = older.accepted and (
@@ -132,7 +174,7 @@ def expected_sequence(evidence: Evidence, order: int) -> list[int]:
     return longest[: order + extra]
 
 
-def objection(evidence: Evidence, seen: Goal) -> str:
+def objection(evidence: Evidence, seen: FibonacciGoal) -> str:
     """What is wrong about how a good goal ended, in words; empty where it is right."""
     order = int(seen.order or 0)
     wanted = [expected_sequence(evidence, order)]
@@ -150,31 +192,31 @@ def objection(evidence: Evidence, seen: Goal) -> str:
     return "" if seen.sequence in wanted else f"{where}{seen.sequence}"
 
 
-def feedback_objection(evidence: Evidence, seen: Goal) -> str:
+def feedback_objection(evidence: Evidence, seen: FibonacciGoal) -> str:
     """What is wrong about the feedback of a good goal; empty where it grows by one number each time."""
     wanted = expected_sequence(evidence, int(seen.order or 0))
     where = f"order {seen.order}: "
-    if not seen.feedback:
+    if not seen.partials:
         return f"{where}no feedback"
     if text := feedback_slip(evidence, seen):
         return text
     # It may begin before or with the first new number, and need not tell the last one, which the result does.
-    whole = len(seen.feedback[0]) <= 3 and len(seen.feedback[-1]) >= len(wanted) - 1
+    whole = len(seen.partials[0]) <= 3 and len(seen.partials[-1]) >= len(wanted) - 1
     if whole and not seen.was_computed:
         return f"{where}the goal did not come to its end"
     return "" if whole else where + _first_messages(seen)
 
 
-def feedback_slip(evidence: Evidence, seen: Goal) -> str:
+def feedback_slip(evidence: Evidence, seen: FibonacciGoal) -> str:
     """What is wrong about the feedback messages that came, however many are missing before or after them."""
     wanted = expected_sequence(evidence, int(seen.order or 0))
-    grows = all(len(after) == len(before) + 1 for before, after in pairwise(seen.feedback))
-    right = all(partial == wanted[: len(partial)] for partial in seen.feedback)
+    grows = all(len(after) == len(before) + 1 for before, after in pairwise(seen.partials))
+    right = all(partial == wanted[: len(partial)] for partial in seen.partials)
     return "" if grows and right else f"order {seen.order}: {_first_messages(seen)}"
 
 
-def _first_messages(seen: Goal) -> str:
-    return ", ".join(map(str, seen.feedback[:4]))
+def _first_messages(seen: FibonacciGoal) -> str:
+    return ", ".join(map(str, seen.partials[:4]))
 
 
 def is_beginning(numbers: Sequence[int], start: Sequence[int]) -> bool:

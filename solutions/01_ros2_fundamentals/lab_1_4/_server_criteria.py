@@ -16,10 +16,13 @@ from lab_1_4._goals import (
     ORDERS,
     ROUNDS_LEFT,
     TWINS,
+    FibonacciGoal,
+    all_goals,
     ended_by_a_younger,
     expected_sequence,
     feedback_objection,
     first_two,
+    goal,
     good_goals,
     is_beginning,
     objection,
@@ -29,7 +32,7 @@ from lab_1_4._goals import (
     to_be_canceled,
 )
 
-from autograder.kit.goals_seen import CANCELED, Goal, all_goals, goal, servers, status_text
+from autograder.kit.goals_seen import CANCELED, servers, status_text
 from autograder.kit.model import Finding
 
 if TYPE_CHECKING:
@@ -117,7 +120,7 @@ def lets_cancel(evidence: Evidence) -> Finding:
     return Finding(not seen, expected, seen or f"CANCELED with {len(long.sequence)} numbers")
 
 
-def _cancel_objection(evidence: Evidence, long: Goal) -> str:
+def _cancel_objection(evidence: Evidence, long: FibonacciGoal) -> str:
     if long.order is None:
         return "not reached"
     if not long.accepted:
@@ -140,17 +143,15 @@ def _cancel_objection(evidence: Evidence, long: Goal) -> str:
     )
 
 
-def is_the_part(evidence: Evidence, long: Goal) -> bool:
+def is_the_part(evidence: Evidence, long: FibonacciGoal) -> bool:
     """Whether a canceled goal came back with what had been computed."""
-    return len(long.sequence) >= max(2, long.before_cancel) and is_beginning(
-        long.sequence, first_two(evidence)
-    )
+    return len(long.sequence) >= max(2, long.told_before) and is_beginning(long.sequence, first_two(evidence))
 
 
-def worked_on(evidence: Evidence, long: Goal) -> bool:
+def worked_on(evidence: Evidence, long: FibonacciGoal) -> bool:
     """Whether the server went on with a goal for more than a round after it had agreed to cancel it."""
     extra = len(expected_sequence(evidence, min(ORDERS))) - min(ORDERS)
-    told = max(map(len, long.feedback), default=0)
+    told = max(map(len, long.partials), default=0)
     tells = told > 0 and gives_feedback(evidence).passed
     return (
         long.sent_after(long.cancel_answered_at) > ROUNDS_LEFT

@@ -19,10 +19,11 @@ from lab_1_4._goals import (
     ROUNDS_LEFT,
     SMALLEST,
     TWINS,
+    FibonacciGoal,
     ended_by_a_younger,
+    goal,
 )
 
-from autograder.kit.goals_seen import Goal, goal
 from autograder.kit.model import Bench, Pace
 
 if TYPE_CHECKING:
@@ -141,7 +142,7 @@ def _await_feedback(bench: Bench, number: int, messages: int) -> None:
     bench.wait_until(has_told, GOAL_LIMIT, quiet=QUIET[bench.pace])
 
 
-def _tells_all(seen: Goal) -> bool:
+def _tells_all(seen: FibonacciGoal) -> bool:
     """Whether there is feedback for each number but the first two and the last."""
     return len(seen.feedback) >= int(seen.order or 0) - 2
 
@@ -156,7 +157,7 @@ def _await_cancel(bench: Bench, number: int = LONG) -> bool:
     return False
 
 
-def _cancel_is_over(seen: Goal) -> bool:
+def _cancel_is_over(seen: FibonacciGoal) -> bool:
     return seen.cancel_accepted is False or (seen.over and seen.cancel_accepted is not None)
 
 

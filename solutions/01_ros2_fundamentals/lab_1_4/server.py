@@ -22,10 +22,12 @@ from lab_1_4._goals import (
     LAST_ORDER,
     ROUNDS_LEFT,
     TWINS,
+    all_goals,
     ended_by_a_younger,
     expected_sequence,
     feedback_objection,
     feedback_slip,
+    goal,
     good_goals,
     objection,
     paced_goals,
@@ -37,7 +39,7 @@ from lab_1_4._server_run import scenario
 
 from autograder.kit.crashes import traceback_of
 from autograder.kit.draft import Draft
-from autograder.kit.goals_seen import CANCELED, SUCCEEDED, all_goals, goal, status_text
+from autograder.kit.goals_seen import CANCELED, SUCCEEDED, status_text
 from autograder.kit.model import Advice
 from autograder.kit.recipes.action_server import SendsGoals, is_quick
 
@@ -70,7 +72,7 @@ def goal_rejected(seen: Evidence, _: Evidence) -> Advice | None:
     """A good goal is refused."""
     last = [one for one in all_goals(seen.part(BAD_ORDERS)) if one.order == LAST_ORDER]
     beside = [goal(seen.part(GOALS), number) for number in (*TWINS, BESIDE)]
-    good = (*good_goals(seen), sends.canceled(seen), *beside, *last)
+    good = (*good_goals(seen), to_be_canceled(seen), *beside, *last)
     refused = [one for one in good if one.accepted is False]
     if not refused or traceback_of(seen):
         return None
@@ -130,8 +132,8 @@ def goals_mixed_up(seen: Evidence, _: Evidence) -> Advice | None:
     again_right = again in ended and not (objection(seen, again) or feedback_slip(seen, again))
     if again_right and beside.status == SUCCEEDED:
         return None  # two at once are right, and large numbers are not
-    canceled_at = sends.canceled(seen).cancel_answered_at
-    if sends.canceled(seen).cancel_accepted and beside.sent_after(canceled_at) <= ROUNDS_LEFT:
+    canceled_at = to_be_canceled(seen).cancel_answered_at
+    if to_be_canceled(seen).cancel_accepted and beside.sent_after(canceled_at) <= ROUNDS_LEFT:
         return Advice(
             f"When one goal was canceled, another one did not come to its end ({wrong[0]}).",
             "Ask the goal handle of each goal: goal_handle.is_cancel_requested is True only for the goal that is to "
@@ -195,7 +197,7 @@ def wrong_feedback(seen: Evidence, _: Evidence) -> Advice | None:
 @server.mistake("done_at_once", before="cancel_not_accepted")
 def done_at_once(seen: Evidence, _: Evidence) -> Advice | None:
     """The long goal was over before anybody could cancel it, or nearly so."""
-    long = sends.canceled(seen)
+    long = to_be_canceled(seen)
     quick = long.status == SUCCEEDED and not long.cancel_accepted and is_quick(long)
     # Whether the cancel got in between, and whether the result was seen, is then up to the machine.
     ended = long.cancelled_too_late or long.status is not None
@@ -210,12 +212,12 @@ def done_at_once(seen: Evidence, _: Evidence) -> Advice | None:
 @server.mistake("cancel_ignored", late=True)
 def worked_on(seen: Evidence, _: Evidence) -> Advice | None:
     """Canceled, but only after more rounds."""
-    long = sends.canceled(seen)
+    long = to_be_canceled(seen)
     if long.status != CANCELED or not criteria.worked_on(seen, long):
         return None
     return Advice(
         "Your server accepted the cancel request and went on counting: the canceled goal came back with "
-        f"{len(long.sequence)} numbers, and {long.before_cancel} had been found when the client asked to cancel it.",
+        f"{len(long.sequence)} numbers, and {long.told_before} had been found when the client asked to cancel it.",
         "Look at goal_handle.is_cancel_requested in each turn of the loop, leave the loop as soon as it is True, and "
         "append nothing after that.",
     )
@@ -224,11 +226,11 @@ def worked_on(seen: Evidence, _: Evidence) -> Advice | None:
 @server.mistake("partial_result_missing", certain=True, late=True)
 def partial_result_missing(seen: Evidence, _: Evidence) -> Advice | None:
     """Canceled, and the part that was computed does not come back."""
-    long = sends.canceled(seen)
+    long = to_be_canceled(seen)
     if long.status != CANCELED or criteria.is_the_part(seen, long):
         return None
     return Advice(
-        f"The canceled goal ended with {long.sequence or 'an empty result'}, although {long.before_cancel} numbers had "
+        f"The canceled goal ended with {long.sequence or 'an empty result'}, although {long.told_before} numbers had "
         "been found.",
         "After goal_handle.canceled(), return a result whose sequence holds the numbers found so far.",
     )
