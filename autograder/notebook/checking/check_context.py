@@ -6,7 +6,6 @@ this one, so that nodes of the notebook's demonstrations are neither heard nor d
 
 from __future__ import annotations
 
-import gc
 import os
 import time
 from typing import TYPE_CHECKING, Self
@@ -17,7 +16,7 @@ from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-from autograder.notebook.nodes.node_ends import destroy_node
+from autograder.notebook.nodes.background import destroy_nodes_on
 from autograder.ros_domain import DOMAIN_VARIABLE
 from autograder.ros_participant import receivers_wait
 
@@ -141,9 +140,7 @@ class CheckContext:
         """
         keeper, self._keeper = self._keeper, None
         if keeper is not None:
-            for node in gc.get_objects():
-                if issubclass(type(node), Node) and getattr(node, "context", None) is self.context:
-                    destroy_node(node)
+            destroy_nodes_on(self.context)
         self.context.try_shutdown()
 
     @staticmethod

@@ -15,6 +15,7 @@ from autograder.notebook.nodes.spin_threads import GRACE, Ending, SpinThreads
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
+    from rclpy.context import Context
     from rclpy.node import Node
 
     from autograder.notebook.nodes.lending_executors import Taken
@@ -224,6 +225,12 @@ def _is_named(node: Node) -> bool:
 
 def _is_in(node: Node, nodes: Sequence[Any]) -> bool:
     return any(node is other for other in nodes)
+
+
+def destroy_nodes_on(context: Context) -> None:
+    """Destroy every node of a context, before it is shut down."""
+    for node in _made.on(context):
+        destroy_node(node)
 
 
 _running: list[Background] = []

@@ -104,6 +104,12 @@ class MadeNodes:
             if node is not None and _has_begun(node)
         ]
 
+    def on(self, context: Context) -> list[Node]:
+        """The nodes that were made on a context and are still in memory, also those that are destroyed or failed."""
+        with self._lock:
+            entries = [(reference(), identity) for reference, identity, _ in self._made]
+        return [node for node, identity in entries if node is not None and identity.context is context]
+
 
 def _identity_to_be(node_name: str, options: dict[str, Any]) -> NodeIdentity:
     """The name that a node made with these options of ``Node.__init__`` will have."""
