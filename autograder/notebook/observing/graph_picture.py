@@ -1,8 +1,9 @@
 """A picture of the running graph: nodes, and the topics, services and actions between them.
 
-It is SVG, with the same in words beside it for those who cannot see it. It has a ground of its own, so that it
-is readable on a dark page as well, and is an ``img`` with data in it: JupyterLab takes SVG elements out of what
-it does not trust yet, and leaves their letters.
+It is SVG, with the same in words beside it for those who cannot see it, and is an ``img`` with data in it:
+JupyterLab takes SVG elements out of what it does not trust yet, and leaves their letters. JupyterLab's theme does not
+reach into it, so its dark form is the light one with the brightness turned round. It has a ground of its own, so that
+it is readable where the style is taken out as well.
 """
 
 from __future__ import annotations
@@ -19,10 +20,13 @@ from autograder.notebook.observing.ros_graph import Channel, ChannelKind, RosGra
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+_DARK = '<style>[data-jp-theme-light="false"] .ros-graph { filter: invert(0.93) hue-rotate(180deg); }</style>'
+"""The hues stay what they are."""
+
 # Pixels.
 _LETTER = 7.3
 _PADDING = 14
-_HEIGHT = 42
+_HEIGHT = 46
 _GAP_ALONG = 52
 _GAP_ALONG_DOWN = 34
 _MARGIN = 12
@@ -32,7 +36,7 @@ _PAGE = 860
 _STYLE = """
 .ground { fill: #fff; }
 text { font: 13px/1 monospace; fill: #212121; text-anchor: middle; dominant-baseline: central; }
-text.type { font-size: 10.5px; fill: #555; }
+text.type { font-size: 12px; fill: #3a3a3a; }
 .box rect { fill: #fff; stroke: #212121; }
 .node rect { fill: #e8eef7; stroke-width: 2; }
 .service rect { stroke-dasharray: 5 3; }
@@ -76,7 +80,7 @@ class GraphPicture:
         data = base64.b64encode(self.svg().encode()).decode()
         words = "".join(f"<li>{escape(sentence)}</li>" for sentence in sentences)
         return (
-            f'<img alt="The running graph. {escape(" ".join(sentences))}" src="data:image/svg+xml;base64,{data}">'
+            f'{_DARK}<img class="ros-graph" alt="The running graph. {escape(" ".join(sentences))}" src="data:image/svg+xml;base64,{data}">'
             f"<details><summary>The graph in words</summary><ul>{words}</ul></details>"
         )
 
@@ -116,7 +120,7 @@ class _Label:
     @property
     def width(self) -> float:
         """Of the box, in pixels."""
-        return max(len(self.name) * 1.1, len(self.small_print) * 0.9) * _LETTER + 2 * _PADDING
+        return max(len(self.name) * 1.1, len(self.small_print)) * _LETTER + 2 * _PADDING
 
 
 def _node_key(node: str) -> str:
@@ -190,7 +194,7 @@ class _Drawing:
             f'<rect x="{x - label.width / 2:.1f}" y="{y - _HEIGHT / 2:.1f}" width="{label.width:.1f}" '
             f'height="{_HEIGHT}" rx="{round_corners}"/>'
         )
-        above = 8 if label.type else 0
+        above = 9 if label.type else 0
         texts = f'<text x="{x:.1f}" y="{y - above:.1f}">{escape(label.name)}</text>'
         if label.type:
             texts += f'<text class="type" x="{x:.1f}" y="{y + 10:.1f}">{escape(label.small_print)}</text>'

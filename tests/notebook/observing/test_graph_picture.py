@@ -108,8 +108,15 @@ def test_the_picture_has_a_text_alternative() -> None:
     assert svg.get("role") == "img"
     assert svg.findtext(f"{SVG}title") == "The running graph"
     assert "/<talker> publishes on /chatter (std_msgs/msg/String)." in str(svg.findtext(f"{SVG}desc"))
-    (alternative,) = re.findall(r'<img alt="([^"]*)"', GraphPicture(GRAPH)._repr_html_())
+    (alternative,) = re.findall(r'<img [^>]*alt="([^"]*)"', GraphPicture(GRAPH)._repr_html_())
     assert "/&lt;talker&gt; publishes on /chatter" in alternative
+
+
+def test_a_dark_theme_turns_its_brightness_round_and_a_light_one_does_not() -> None:
+    html = GraphPicture(GRAPH)._repr_html_()
+    (rule,) = re.findall(r"<style>(.*?)</style>", html)
+    assert rule.startswith('[data-jp-theme-light="false"] .ros-graph ')
+    assert '<img class="ros-graph"' in html
 
 
 def test_every_box_is_named_and_inside_the_picture() -> None:
