@@ -24,6 +24,8 @@ MAX_LINE = 3_900
 """Bytes of a report: the judge reads lines of at most 4,000."""
 _LIMITS = (2_500, 1_200, 600, 200, 50)
 """Characters of each text of a report, tried in turn until its line is short enough."""
+AMENT_PACKAGE = "ament_package()"
+"""What a report says is missing where a package was built that ROS does not find."""
 _FEW = 10
 """Packages beside the needed ones that are named where there is no room for all."""
 

@@ -1,10 +1,13 @@
-"""No point and no diagnosis hangs on the moment in which a program that ends was looked at."""
+"""No point and no diagnosis hangs on the moment in which a program that ends was looked at, or on a lucky guess."""
 
 from __future__ import annotations
+
+from random import Random
 
 import pytest
 from exercise_1_3._cancel_evidence import HONOURED
 from exercise_1_3._cancel_scenario import asked_a_moment_late
+from inspecting_topics import mismatch
 from lab_1_2 import listener, talker
 from lab_1_4 import client as action_client
 
@@ -54,6 +57,13 @@ TALKER = Reference(
 def test_a_talker_that_dies_at_once_earns_the_same_whatever_was_seen_of_it(seen: list[Event]) -> None:
     evidence = Evidence([Part("talking", {}, [*seen, *_printed(TRACEBACK), EXITED])], TALKER)
     assert _points(talker, evidence) == 0
+
+
+def test_one_answer_is_right_in_one_case_at_most() -> None:
+    for seed in range(300):
+        planted = [case for _, case in mismatch.mismatches(Random(seed))]
+        for key in mismatch.KEYS:
+            assert len({case[key] for case in planted}) == len(planted)
 
 
 def test_a_notebook_s_class_is_held_until_it_is_known() -> None:

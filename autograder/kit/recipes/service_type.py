@@ -11,7 +11,7 @@ from autograder.kit import workspace_mistakes as workspace
 from autograder.kit.draft import OWN
 from autograder.kit.model import Advice, Bench, Finding, Mistake
 from autograder.kit.runners import ServesInterface
-from autograder.kit.workspace_report import Interface, PackageReport, report_of
+from autograder.kit.workspace_report import AMENT_PACKAGE, Interface, PackageReport, report_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -221,7 +221,7 @@ class ServiceType:
         """The package builds, and the file is not among what it generates."""
         report = report_of(evidence.main)
         holders = self._holders(evidence)
-        if report is None or not report.built or not report.missing or not holders:
+        if report is None or not report.built or report.missing in ("", AMENT_PACKAGE) or not holders:
             return None
         package, file = holders[0]
         return Advice(
@@ -229,6 +229,18 @@ class ServiceType:
             + ("." if file.listed else ": CMakeLists.txt does not name it."),
             f'In CMakeLists.txt: rosidl_generate_interfaces(${{PROJECT_NAME}} "srv/{self._file}"), above '
             "ament_package().",
+        )
+
+    def _package_not_entered(self, evidence: Evidence) -> Advice | None:
+        """The package builds, and nothing enters it into the index in which ROS looks for packages."""
+        report = report_of(evidence.main)
+        if report is None or report.missing != AMENT_PACKAGE:
+            return None
+        return Advice(
+            f"{self._holders(evidence)[0][0].name} builds, but ROS does not find it: CMakeLists.txt does not call "
+            f"{AMENT_PACKAGE}.",
+            f"Write {AMENT_PACKAGE} as the last line of CMakeLists.txt. It enters the package into the index in which "
+            "ros2 and other packages look.",
         )
 
     def _dependency_missing(self, evidence: Evidence) -> Advice | None:
@@ -262,6 +274,7 @@ class ServiceType:
             Mistake("member_of_group", self._member_of_group, certain=True),
             Mistake("generators_missing", _generators_missing, certain=True),
             Mistake("interface_not_listed", self._interface_not_listed, certain=True),
+            Mistake("package_not_entered", self._package_not_entered, certain=True),
             *workspace.BUILD,
             *common.CRASHES,
             *common.OTHER_CRASHES,

@@ -14,6 +14,7 @@ import re2
 
 from autograder import course
 from autograder.kit.runners import RunsProgram, RunsPrograms, ServesInterface
+from autograder.kit.workspace_report import AMENT_PACKAGE
 from autograder.workspaces.sources.finding import WORKSPACE
 
 if TYPE_CHECKING:
@@ -91,13 +92,22 @@ def _interface_plan(runner: ServesInterface) -> Plan:
             if prefix.name == package.name and any(prefix.rglob(f"{package.name}/srv/{module}"))
         ]
 
+    def missing(made: Build) -> str:
+        entered = [
+            package
+            for package in generated(made)
+            for prefix in made.prefixes
+            if (prefix / "share/ament_index/resource_index/packages" / package.name).is_file()
+        ]
+        return "" if entered else AMENT_PACKAGE if generated(made) else runner.file
+
     def probe(made: Build) -> Sequence[str]:
         service_type = f"{generated(made)[0].name}/srv/{interface}"
         return [sys.executable, "-m", "autograder.workspaces.running.probe", service_type, runner.service]
 
     return Plan(
         targets=lambda found: [package.name for package in holders(found)],
-        missing=lambda made: "" if generated(made) else runner.file,
+        missing=missing,
         command=probe,
         definition=runner.file,
     )

@@ -52,8 +52,7 @@ _OTHER_TYPES = (
 
 def scenario(bench: Bench) -> None:
     """Plant three pairs, one after the other, and ask about each."""
-    for case in CASES:
-        planted = mismatch(bench.random, case)
+    for case, planted in mismatches(bench.random):
         bench.part(case, **planted)
         # Made first, it comes first among the ends of a topic: who looks at one of them only finds the wrong node.
         bench.plant(planted["bystander"], **bystander(planted))
@@ -93,12 +92,31 @@ def bystander(planted: Mapping[str, Any]) -> dict[str, dict[str, str]]:
     }
 
 
-def mismatch(random: Random, case: str) -> dict[str, Any]:
-    """Names and types of two nodes that do not meet, and of a third that has nothing to do with it."""
-    thing, other = random.sample(_THINGS, 2)
+def mismatches(random: Random) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Each case with its names and types. No two share one: an answer that is made up fits one case at most."""
+    things, qualities = random.sample(_THINGS, 2 * len(CASES)), random.sample(_QUALITIES, 2 * len(CASES))
+    kinds = zip(random.sample(_TYPES, len(CASES)), random.sample(_OTHER_TYPES, len(CASES)), strict=True)
+    for case, types in zip(CASES, kinds, strict=True):
+        yield (
+            case,
+            mismatch(random, case, (things.pop(), things.pop()), (qualities.pop(), qualities.pop()), types),
+        )
+
+
+def mismatch(
+    random: Random, case: str, things: tuple[str, str], qualities: tuple[str, str], types: tuple[str, str]
+) -> dict[str, Any]:
+    """Names and types of two nodes that do not meet, and of a third that has nothing to do with it.
+
+    Args:
+        random: Draws the rest.
+        case: What the two sides have different.
+        things: The one that the topics are about, and another one.
+        qualities: The same of what is said of it.
+        types: The talker's type, and the listener's where it has another one.
+    """
+    (thing, other), (quality, second), (kind, another) = things, qualities, types
     third, last = random.choice(_BYSTANDERS), random.choice(_OTHERS)
-    quality, second = random.sample(_QUALITIES, 2)
-    kind, another = random.choice(_TYPES), random.choice(_OTHER_TYPES)
     topic = f"/{thing}/{quality}"
     # The wrong names are of the kind that happens: an ending, a namespace, another word.
     wrong = random.choice(
