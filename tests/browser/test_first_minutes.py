@@ -33,8 +33,13 @@ def test_a_student_drives_the_robot_in_five_actions(page: Page, lab: str) -> Non
     expect(standing).to_have_attribute("alt", re.compile(r"x = 1\.00 m, .*It stands still\."))
     look(page, "robot-stands")
 
-    given = notebook.cell(r"^class Driver").locator(".cm-content").inner_text()
-    assert "# TODO" in given
+    task = notebook.cell(r"^class Driver")
+    assert "# TODO" in task.locator(".cm-content").inner_text()
+    expect(task.locator(".jp-InputArea-editor")).to_have_css("border-left-width", "4px")
+    editor = first.locator(".jp-InputArea-editor")
+    expect(editor).to_have_css("border-left-width", "1px")
+    first.locator(".cm-content").click()
+    assert "cannot be changed" in editor.evaluate("one => getComputedStyle(one, '::after').content")
     notebook.write(r"^class Driver", driver())
     notebook.run(r"^class Driver")
     driven = notebook.run(r"^driving = ").locator(ROBOT)

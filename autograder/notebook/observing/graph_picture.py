@@ -81,7 +81,8 @@ class GraphPicture:
         words = "".join(f"<li>{escape(sentence)}</li>" for sentence in sentences)
         alt = f"The running graph. {escape(' '.join(sentences))}"
         return (
-            f'{_DARK}<img class="ros-graph" alt="{alt}" src="data:image/svg+xml;base64,{data}">'
+            f'{_DARK}<img class="ros-graph" alt="The running graph. {escape(" ".join(sentences))}" '
+            f'src="data:image/svg+xml;base64,{data}">'
             f"<details><summary>The graph in words</summary><ul>{words}</ul></details>"
         )
 
