@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -199,3 +200,14 @@ def test_what_the_chapter_gives_is_rendered_once(pages: Pages, monkeypatch: pyte
     assert [cell.id for cell in rendered] == ["2"], "only the check: its card is this student's"
     pages.make(maker, change_count)
     assert [cell.id for cell in rendered[1:]] == ["2", "3"]
+
+
+def test_what_opens_at_a_click_keeps_its_mark() -> None:
+    """Bootstrap's rule for ``summary`` is in the page's head too; the last one holds."""
+    text = nodes.cell(CellType.MARKDOWN, "<details><summary>Yes</summary>\n\n✓ Because.\n</details>", "1")
+    names = {"notebook": "summary", "score": 0.0, "max_score": 0.0, "late_penalty": 0.0}
+    page = PageExporter().page(nodes.notebook([text], {}), names)
+    head, body = page.split("</head>")
+    displays = re.findall(r"(?<![\w.-])summary\s*\{\s*display:\s*([\w-]+)", head)
+    assert displays[-1:] == ["list-item"]
+    assert "<summary>Yes</summary>" in body
