@@ -7,6 +7,7 @@ import re
 import shutil
 import sys
 import tempfile
+import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,14 @@ EXAMPLES = Path(course.__file__).resolve().parents[1] / "docs" / "examples"
 LEFT_OUT = shutil.ignore_patterns("__pycache__", f"*{exercises.REFERENCE}")
 """Files that are made anew for the copy."""
 
+DEFINITIONS = {"msg": 0, "srv": 1, "action": 2}
+"""The kinds of interfaces, and the lines ``---`` between the parts of each."""
+
+_INTERFACE = re.compile(
+    r"(?P<package>[a-z][a-z0-9_]*)/(?P<kind>msg|srv|action)/(?P<name>[A-Z][A-Za-z0-9]*)", re.ASCII
+)
+_LISTED = re.compile(r"(?m)^interfaces\s*=\s*\[(?P<names>[^\]]*?),?\s*\]")
+_TABLE = re.compile(r"(?m)^\[|\Z")
 _ID = re.compile(r"[a-z][a-z0-9_]*\.[a-z][a-z0-9_]*", re.ASCII)
 _NUMBER = re.compile(r"_(\d+(?:_\d+)*)$")
 _TITLE = re.compile(r"^# .*?: ", re.MULTILINE)
@@ -34,7 +43,9 @@ def recipes() -> dict[str, Path]:
     return {lab.name: lab for chapter in course.chapters(EXAMPLES) for lab in chapter.labs}
 
 
-def new_exercise(root: Path, exercise_id: str, recipe: str, *, chapter: str | None = None) -> Sequence[Path]:
+def new_exercise(
+    root: Path, exercise_id: str, recipe: str, *, chapter: str | None = None, interfaces: Sequence[str] = ()
+) -> Sequence[Path]:
     """Make the folder of a lab with one exercise.
 
     Args:
@@ -42,22 +53,28 @@ def new_exercise(root: Path, exercise_id: str, recipe: str, *, chapter: str | No
         exercise_id: Such as ``"lab_8_1.battery"``: the lab, a dot, the exercise.
         recipe: The kind of subject, one of :func:`recipes`.
         chapter: The folder of its chapter in ``solutions/``, made where it is not there; the last chapter where None.
+        interfaces: Types of the chapter's own that its nodes need, such as ``"power_interfaces/srv/SetLevel"``.
 
     Returns:
         The files, in order.
 
     Raises:
-        CannotMake: The id or the chapter is no good name, the lab is there already, or there is no such recipe.
+        CannotMake: The id, the chapter or an interface is no good name, the lab is there already, or there is no such
+            recipe.
     """
     lab = _lab_of(exercise_id)
     example = _example(recipe)
     folder = _chapter(root, chapter) / lab
     _refuse_what_is_there(root, folder)
+    types = [_interface_of(root, folder.parent, interface) for interface in interfaces]
     with tempfile.TemporaryDirectory(prefix="new-exercise-") as scratch:
         made = Path(scratch) / lab
         shutil.copytree(example, made, ignore=LEFT_OUT)
         _rename(made, f"{example.name}.{_exercise_of(example)}", exercise_id)
-        written = _described(folder.parent)
+        written = [
+            *_described(folder.parent),
+            *(file for each in types for file in _defined(folder.parent, each)),
+        ]
         shutil.copytree(made, folder)
     return [*written, *sorted(path for path in folder.rglob("*") if path.is_file())]
 
@@ -75,6 +92,58 @@ def _described(chapter: Path) -> list[Path]:
         encoding="utf-8",
     )
     return [description]
+
+
+def _interface_of(root: Path, chapter: Path, interface: str) -> re.Match[str]:
+    found = _INTERFACE.fullmatch(interface)
+    if found is None:
+        raise CannotMake(
+            f"{interface!r} is no interface: it is the package, the kind (msg, srv or action) and the type, such as "
+            "power_interfaces/srv/SetLevel"
+        )
+    package = found["package"]
+    elsewhere = [
+        one.folder.name
+        for one in course.chapters(root)
+        if package in one.interfaces and one.folder != chapter
+    ]
+    own = (chapter / course.INTERFACES / package).is_dir()  # once it is built it is a module
+    taken = not own and (_is_a_module(package) or package in _listed(chapter))
+    if elsewhere or taken:
+        place = f"chapter {elsewhere[0]}" if elsewhere else "installation of ROS or of the course"
+        raise CannotMake(
+            f"the {place} has a package {package} already: use the types that it has, or choose another name"
+        )
+    return found
+
+
+def _listed(chapter: Path) -> list[str]:
+    """The packages of interfaces that a chapter's description names."""
+    description = chapter / course.CHAPTER
+    if not description.is_file():
+        return []
+    return list(tomllib.loads(description.read_text(encoding="utf-8")).get("interfaces", ()))
+
+
+def _defined(chapter: Path, interface: re.Match[str]) -> list[Path]:
+    """Write the definition of a type for its author to complete, where there is none, and name its package."""
+    package, kind, name = interface.group("package", "kind", "name")
+    definition = chapter / course.INTERFACES / package / kind / f"{name}.{kind}"
+    if definition.exists():
+        return []
+    definition.parent.mkdir(parents=True, exist_ok=True)
+    definition.write_text("# A field a line: float32 level\n" + "---\n" * DEFINITIONS[kind], encoding="utf-8")
+    if package not in _listed(chapter):
+        description = chapter / course.CHAPTER
+        text = description.read_text(encoding="utf-8") if description.is_file() else ""
+        if found := _LISTED.search(text):
+            before, after = text[: found.end("names")], text[found.end("names") :]
+            text = f"""{before}{", " if found["names"].strip() else ""}"{package}"{after}"""
+        else:
+            end = next(_TABLE.finditer(text)).start()
+            text = f'{text[:end]}interfaces = ["{package}"]\n{text[end:]}'
+        description.write_text(text, encoding="utf-8")
+    return [definition]
 
 
 def _lab_of(exercise_id: str) -> str:

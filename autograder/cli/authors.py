@@ -62,7 +62,14 @@ def record(exercises: tuple[str, ...], only_check: bool) -> None:
 @click.argument("exercise")
 @click.option("--recipe", default="publisher", show_default=True, help="The kind of subject that it judges.")
 @click.option("--chapter", help="The folder of its chapter in solutions/; the last one where not given.")
-def new_exercise(exercise: str, recipe: str, chapter: str | None) -> None:
+@click.option(
+    "--interface",
+    "interfaces",
+    multiple=True,
+    metavar="PACKAGE/KIND/TYPE",
+    help="A type of the chapter's own that the nodes need; may be given several times.",
+)
+def new_exercise(exercise: str, recipe: str, chapter: str | None, interfaces: tuple[str, ...]) -> None:
     """Make the folder of a new lab with one EXERCISE that works, for you to change.
 
     \b
@@ -73,7 +80,7 @@ def new_exercise(exercise: str, recipe: str, chapter: str | None) -> None:
 
     root = course.root()
     try:
-        made = making.new_exercise(root, exercise, recipe, chapter=chapter)
+        made = making.new_exercise(root, exercise, recipe, chapter=chapter, interfaces=interfaces)
     except (making.CannotMake, course.BrokenChapter) as error:
         fail(str(error))
     for file in made:
