@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from autograder import course, exercises
 from autograder.authoring.house_rules import broken_rules
+from autograder.masters.source import named_cells
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -40,9 +41,8 @@ def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
     """
     yield from _of_answers(listed)
     yield from _of_mistakes(exercise_id, listed)
-    if not exercises.get(exercise_id).text:
-        yield "text: the exercise does not say which words of the task are behind which criterion"
     lab = exercises.path(exercise_id).parent
+    yield from _of_text(exercise_id, lab / course.LAB)
     yield from (f"{course.LAB}: {rule}" for rule in broken_rules(lab / course.LAB))
     yield from _of_linters(lab)
 
@@ -67,6 +67,22 @@ def _of_mistakes(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
         used = {mistake.key for mistake in exercises.get(exercise_id).mistakes}
         used |= {key for answer in listed for key in answer.diagnoses}
         yield from (f"{MISTAKES}: no paragraph about `{key}` yet" for key in sorted(used - told))
+
+
+def _of_text(exercise_id: str, master: Path) -> Iterator[str]:
+    """What the exercise's table of sentences and criteria has in a wrong form, or not at all."""
+    exercise = exercises.get(exercise_id)
+    if not exercise.text:
+        yield "text: the exercise does not say which words of the task are behind which criterion"
+        return
+    whole = " ".join(" ".join(one.cell.source for one in named_cells(master)).split())
+    yield from (f"text: {course.LAB} does not say “{words}”" for words in exercise.text if words not in whole)
+    judged = {name for names in exercise.text.values() for name in names.split()}
+    known = {criterion.name for criterion in exercise.criteria}
+    yield from (
+        f"text: no words of the task are behind the criterion {name}" for name in sorted(known - judged)
+    )
+    yield from (f"text: there is no criterion {name}" for name in sorted(judged - known))
 
 
 def _of_linters(lab: Path) -> Iterator[str]:

@@ -32,6 +32,11 @@ class Event:
     data: Mapping[str, Any] = field(default_factory=dict)
     sim: float | None = None
 
+    @property
+    def moment(self) -> float:
+        """Seconds of the subject's time: simulated ones where the judge stepped its clock, else ``t``."""
+        return self.t if self.sim is None else self.sim
+
 
 @dataclass(frozen=True)
 class Part:

@@ -73,6 +73,30 @@ def test_an_example_keeps_every_rule(recipe: str, monkeypatch: pytest.MonkeyPatc
             "docs/mistakes.md: no paragraph about `counted_up`",
         ),
         (
+            "battery.py",
+            "battery.exercise()",
+            'battery.exercise(text={"Robots": "topic"})',
+            "text: no words of the task are",
+        ),
+        (
+            "battery.py",
+            "battery.exercise()",
+            'battery.exercise(text={"Robots": "volts"})',
+            "text: there is no criterion volts",
+        ),
+        (
+            "battery.py",
+            "battery.exercise()",
+            'battery.exercise(text={"topic": "Robots"})',
+            "text: there is no criterion Robots",
+        ),
+        (
+            "battery.py",
+            "battery.exercise()",
+            'battery.exercise(text={"Cows": "topic"})',
+            "text: lab.md does not say “Cows”",
+        ),
+        (
             "battery.answers/wrong/answers.toml",
             '["topic_name.py"]',
             '["odd.py"]',
