@@ -1,4 +1,4 @@
-"""How the labs of the course are written: rules that each master keeps, and that a new one is measured by."""
+"""The house rules: what each master of the course keeps, and a new one is measured by."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the tests and the linters will say of a new exercise, told while its author still works on it."""
+"""Objections of the tests and the linters to a new exercise, told while its author still works on it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _SETTINGS = _PACKAGE / "pyproject.toml"
 
 
 def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
-    """What an exercise still lacks before it is committed, a line for each.
+    """The things that an exercise still lacks before it is committed, a line for each.
 
     Args:
         exercise_id: Such as ``"lab_1_2.talker"``.
@@ -70,7 +70,7 @@ def _of_mistakes(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
 
 
 def _of_text(exercise_id: str, master: Path) -> Iterator[str]:
-    """What the exercise's table of sentences and criteria has in a wrong form, or not at all."""
+    """A line for each fault of the exercise's table of sentences and criteria."""
     exercise = exercises.get(exercise_id)
     if not exercise.text:
         yield "text: the exercise does not say which words of the task are behind which criterion"

@@ -1,4 +1,4 @@
-"""What a subject must make of what it was given, and the wrong rules that students take for that."""
+"""Rules from all that a subject was given to all that it must make of that, and the wrong ones that students follow."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Made = TypeVar("Made")
 
 @dataclass(frozen=True)
 class Rule(Generic[View, Given, Made]):
-    """What a subject must make of all that it was given.
+    """A rule from all that a subject was given to all that it must make of that.
 
     Attributes:
         given: What it was given, in order, from what was seen.

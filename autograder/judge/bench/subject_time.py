@@ -139,7 +139,7 @@ class SubjectTime:
         return None
 
     def _silence(self) -> Callable[[], bool]:
-        """Tells whether nothing was heard since it was made."""
+        """A function that is true as long as nothing more is heard."""
 
         def heard() -> int:
             seen = self._recorder.part()

@@ -36,7 +36,7 @@ _DISCOVERY_VARIABLES = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
 
 @dataclass(frozen=True, repr=False)
 class RosSession:
-    """That ROS is up in this kernel.
+    """The state of ROS in this kernel, once it is up.
 
     Attributes:
         domain: The ROS domain that the kernel's nodes are on.

@@ -41,7 +41,7 @@ def words(command: dict[str, float]) -> str:
 
 
 def same(command: dict[str, float], wanted: dict[str, float]) -> bool:
-    """Whether two commands mean one movement."""
+    """True if two commands mean one movement."""
     return all(abs(command[name] - value) < 1e-3 for name, value in wanted.items())
 
 

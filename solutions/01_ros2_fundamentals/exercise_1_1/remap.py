@@ -129,7 +129,7 @@ def someone_stayed(seen: Launched, _: Launched) -> Advice | None:
 
 
 def _speaks_in_its_place(seen: Launched) -> bool:
-    """Whether what speaks under the new name is no program of the package, and none of those has been renamed."""
+    """True if what speaks under the new name is no program of the package, and none of those has been renamed."""
     return bool(seen.heard) and not seen.has_a_talker_of_the_package and not seen.own_without_a_rule
 
 

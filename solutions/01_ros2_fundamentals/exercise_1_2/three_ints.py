@@ -105,7 +105,7 @@ def chain(seen: Client, expected: Client) -> Finding:
 
 
 def is_chained(part: Part, expected: Client) -> bool:
-    """Whether a run made the reference's calls."""
+    """True if a run made the reference's calls."""
     made = requests(part)
     if len(made) != expected.calls:
         return False

@@ -63,7 +63,7 @@ def request_of(part: Part) -> Request | None:
 
 
 def left_before_its_answer(part: Part) -> bool:
-    """Whether the client was about to end before its cancel request was answered, so that chance decides on both."""
+    """True if the client was about to end before its cancel request was answered, so that chance decides on both."""
     return part.first("cancel") is not None and left_at_once(part, "cancel_answered")
 
 
@@ -88,12 +88,12 @@ def aborted_run(evidence: Evidence) -> Part | None:
 
 
 def asks_again_when_refused(evidence: Evidence) -> bool:
-    """Whether it asks once where its cancel is honoured, and more than once where it is refused."""
+    """True if it asks once where its cancel is honoured, and more than once where it is refused."""
     return len(evidence.main.of("cancel")) == 1 and len(evidence.part(CANCEL_REFUSED).of("cancel")) > 1
 
 
 def cancels_every_goal(evidence: Evidence) -> bool:
-    """Whether its request has no goal's id: then it asks for every goal of the server (action_msgs/srv/CancelGoal)."""
+    """True if its request has no goal's id: then it asks for every goal of the server (action_msgs/srv/CancelGoal)."""
     cancel = evidence.main.first("cancel")
     return cancel is not None and bool(cancel.data.get("every"))
 

@@ -105,7 +105,7 @@ def cancel_is_refused(bench: Bench, honoured: Request) -> None:
 
 
 def caused_by_feedback(honoured: Request, refused: Request) -> bool:
-    """Whether a request is the answer to the same message in both runs, though the second one had a pause.
+    """True if a request is the answer to the same message in both runs, though the second one had a pause.
 
     A client that cancels by the clock may by chance ask just after a message; after a pause it asks at another one, or
     as early as without it.

@@ -37,7 +37,7 @@ _ENGLISH = "cancel+ed"
 
 
 def says_canceled(lines: Sequence[str], elsewhere: Sequence[str] = (), otherwise: Sequence[str] = ()) -> bool:
-    """Whether a line names the status CANCELED, by its name or by its number 5 (action_msgs/msg/GoalStatus).
+    """True if a line names the status CANCELED, by its name or by its number 5 (action_msgs/msg/GoalStatus).
 
     Args:
         lines: What was said.

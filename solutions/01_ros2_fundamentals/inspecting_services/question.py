@@ -193,7 +193,7 @@ def named_for_none(evidence: Evidence) -> list[str]:
 
 
 def _mentions(line: str, service: str) -> bool:
-    """Whether a line has the name in it, with or without the slash in front."""
+    """True if a line has the name in it, with or without the slash in front."""
     return (
         re2.search(rf"(?:^|[^\pL\pN_/])/?{re2.escape(service.lstrip('/'))}(?:[^\pL\pN_/]|$)", line)
         is not None
@@ -201,19 +201,19 @@ def _mentions(line: str, service: str) -> bool:
 
 
 def names_it(part: Part) -> bool:
-    """Whether the right service is named, and no other one with it."""
+    """True if the right service is named, and no other one with it."""
     return bool(part.inputs.get("right")) and named(part) == [part.inputs["right"]]
 
 
 def returns_it(part: Part) -> bool:
-    """Whether a notebook's function that named the right service has returned this name; a program returns nothing."""
+    """True if a notebook's function that named the right service has returned this name; a program returns nothing."""
     if part.returned is None:
         return True
     return part.returned.strip("'").lstrip("/") == part.inputs["right"].lstrip("/")
 
 
 def gave_up_at_once(part: Part) -> bool:
-    """Whether the subject ended without the late service, and much too early."""
+    """True if the subject ended without the late service, and much too early."""
     seen = part.first("interface")
     if part.ending is None or names_it(part):
         return False
@@ -221,7 +221,7 @@ def gave_up_at_once(part: Part) -> bool:
 
 
 def gave_up_with_nothing(part: Part) -> bool:
-    """Whether the subject ended without any service named."""
+    """True if the subject ended without any service named."""
     return part.ending is not None and bool(part.events) and not named(part)
 
 
@@ -350,7 +350,7 @@ def not_returned(seen: Evidence, _: Evidence) -> Advice | None:
 
 
 def _crashed(part: Part) -> bool:
-    """Whether it ended with an error; what it raises on purpose is an answer, and a TimeoutError above all."""
+    """True if it ended with an error; what it raises on purpose is an answer, and a TimeoutError above all."""
     return bool(part.traceback) and "TimeoutError" not in part.traceback and not meant(part.traceback)
 
 

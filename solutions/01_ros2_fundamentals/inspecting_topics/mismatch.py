@@ -160,7 +160,7 @@ def _dictionary(text: str) -> dict[str, Any] | None:
 
 
 def _same(key: str, given: Any, truth: str) -> bool:
-    """Whether an answer is the truth: a topic may lack its first slash, a type its `msg`, and both may be in a list."""
+    """True if an answer is the truth: a topic may lack its first slash, a type its `msg`, and both may be in a list."""
     if isinstance(given, (list, tuple, set)) and len(given) == 1:
         given = next(iter(given))
     text = str(given).strip()

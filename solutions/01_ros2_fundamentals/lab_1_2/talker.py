@@ -55,7 +55,7 @@ talker.asks("rate", 3, "Keeps the rate", heard.keeps_rate)
 
 
 def starts_right(seen: Publisher, expected: Publisher) -> bool:
-    """Whether it counted from the reference's first number."""
+    """True if it counted from the reference's first number."""
     return seen.first_number == expected.counters[0]
 
 

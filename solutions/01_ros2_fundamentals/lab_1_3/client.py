@@ -91,7 +91,7 @@ def call(seen: Client, expected: Client) -> Finding:
 
 
 def is_right(part: Part, expected: Client) -> bool:
-    """Whether a run made as many calls as the reference solution, with its numbers."""
+    """True if a run made as many calls as the reference solution, with its numbers."""
     made = requests(part)
     return len(made) == expected.calls and pair(made[0]) == sorted(part.inputs["numbers"])
 

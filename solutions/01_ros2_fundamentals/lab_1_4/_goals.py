@@ -112,7 +112,7 @@ def to_be_canceled(evidence: Evidence) -> FibonacciGoal:
 
 
 def takes_no_time(part: Part) -> bool:
-    """Whether the server counts without any pause between two numbers.
+    """True if the server counts without any pause between two numbers.
 
     Such a goal is over before anybody can cancel it, except where the machine happens to be so busy that the request
     gets in between. A busy machine makes intervals longer and never shorter, and no server that pauses between two
@@ -129,7 +129,7 @@ def _hurries(part: Part, share: float, numbers: Sequence[int]) -> bool:
 
 
 def tells_at_the_end(part: Part) -> bool:
-    """Whether the server works in silence, and sends all feedback at once when it is done."""
+    """True if the server works in silence, and sends all feedback at once when it is done."""
     return all(_silence(goal(part, number)) >= LONG_SILENCE for number in (ALONE, BESIDE))
 
 
@@ -220,7 +220,7 @@ def _first_messages(seen: FibonacciGoal) -> str:
 
 
 def is_beginning(numbers: Sequence[int], start: Sequence[int]) -> bool:
-    """Whether the numbers go on from ``start`` as the sequence does."""
+    """True if the numbers go on from ``start`` as the sequence does."""
     return list(numbers[:2]) == list(start[: len(numbers[:2])]) and all(
         c == a + b for a, b, c in zip(numbers, numbers[1:], numbers[2:], strict=False)
     )

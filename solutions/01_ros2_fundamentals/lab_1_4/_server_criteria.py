@@ -144,12 +144,12 @@ def _cancel_objection(evidence: Evidence, long: FibonacciGoal) -> str:
 
 
 def is_the_part(evidence: Evidence, long: FibonacciGoal) -> bool:
-    """Whether a canceled goal came back with what had been computed."""
+    """True if a canceled goal came back with what had been computed."""
     return len(long.sequence) >= max(2, long.told_before) and is_beginning(long.sequence, first_two(evidence))
 
 
 def worked_on(evidence: Evidence, long: FibonacciGoal) -> bool:
-    """Whether the server went on with a goal for more than a round after it had agreed to cancel it."""
+    """True if the server went on with a goal for more than a round after it had agreed to cancel it."""
     extra = len(expected_sequence(evidence, min(ORDERS))) - min(ORDERS)
     told = max(map(len, long.partials), default=0)
     tells = told > 0 and gives_feedback(evidence).passed

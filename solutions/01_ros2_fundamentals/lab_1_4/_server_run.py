@@ -143,7 +143,7 @@ def _await_feedback(bench: Bench, number: int, messages: int) -> None:
 
 
 def _tells_all(seen: FibonacciGoal) -> bool:
-    """Whether there is feedback for each number but the first two and the last."""
+    """True if there is feedback for each number but the first two and the last."""
     return len(seen.feedback) >= int(seen.order or 0) - 2
 
 
