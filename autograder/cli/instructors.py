@@ -15,6 +15,12 @@ from autograder.kit.in_words import counted
 _only_assignments = click.option(
     "--assignment", "assignments", multiple=True, help="Only this assignment; may be given several times."
 )
+_only_sections = click.option(
+    "--section",
+    "sections",
+    multiple=True,
+    help="Only students with this in the column section of students.csv.",
+)
 
 
 @click.command("hand-out")
@@ -143,6 +149,7 @@ def collect(
 @click.argument("folder", type=click.Path(path_type=Path))
 @_only_assignments
 @click.option("--student", "students", multiple=True, help="Only this student; may be given several times.")
+@_only_sections
 @click.option("--again", is_flag=True, help="Run unchanged submissions again.")
 @click.option(
     "--jobs",
@@ -167,6 +174,7 @@ def grade(
     folder: Path,
     assignments: tuple[str, ...],
     students: tuple[str, ...],
+    sections: tuple[str, ...],
     again: bool,
     jobs: int | None,
     as_json: bool,
@@ -188,6 +196,7 @@ def grade(
                 folder,
                 assignments=assignments,
                 students=students,
+                sections=sections,
                 again=again,
                 jobs=jobs,
                 scheduler=scheduler,
@@ -218,6 +227,7 @@ def grade(
     help="Whose form.",
 )
 @_only_assignments
+@_only_sections
 @click.option(
     "--into", type=click.Path(path_type=Path), help="Fill in this list, as Moodle or Canvas has exported it."
 )
@@ -241,6 +251,7 @@ def export(
     folder: Path,
     to: str,
     assignments: tuple[str, ...],
+    sections: tuple[str, ...],
     into: Path | None,
     columns: tuple[str, ...],
     absent: str,
@@ -262,6 +273,7 @@ def export(
             folder=output,
             absent_zero=absent == "zero",
             columns=named,
+            sections=sections,
         )
     for file, purpose in done.files:
         click.echo(f"{printable(str(file))}\n    {printable(purpose)}")
@@ -271,16 +283,17 @@ def export(
 
 @click.command()
 @click.argument("folder", type=click.Path(path_type=Path))
+@_only_sections
 @click.option("--without-names", is_flag=True, help="Call students by numbers, without links to their pages.")
 @click.option(
     "--output", type=click.Path(path_type=Path), help="The page; FOLDER/report.html where not given."
 )
-def report(folder: Path, without_names: bool, output: Path | None) -> None:
+def report(folder: Path, sections: tuple[str, ...], without_names: bool, output: Path | None) -> None:
     """Write one page about the class FOLDER: points, mistakes, exercises, who is where."""
     from autograder.grading.overview.page import write_report
 
     with grading_errors():
-        click.echo(write_report(folder, names=not without_names, to=output))
+        click.echo(write_report(folder, names=not without_names, to=output, sections=sections))
 
 
 @click.command()

@@ -39,7 +39,7 @@ from autograder.grading.running import places
 from autograder.grading.running.progress import BatchProgress
 from autograder.grading.running.timings import Timings
 from autograder.grading.table.differences import Difference, Runs
-from autograder.grading.table.entries import SubmissionEntry, read_entries, read_students
+from autograder.grading.table.entries import SubmissionEntry, read_entries
 from autograder.grading.table.roster import enter_roster, read_roster
 from autograder.grading.table.true_rows import true_rows
 from autograder.grading.table.what_counts import read_what_counts
@@ -63,6 +63,7 @@ def grade(
     *,
     assignments: Sequence[str] = (),
     students: Sequence[str] = (),
+    sections: Sequence[str] = (),
     jobs: int | None = None,
     again: bool = False,
     feedback: bool = True,
@@ -77,6 +78,7 @@ def grade(
         path: The class directory.
         assignments: Only these; all by default.
         students: Only these; all by default.
+        sections: Only the students of these, and those who are named.
         jobs: Notebooks executed at once; as many as processors and memory allow by default.
         again: Execute everything anew, also what is unchanged.
         feedback: Make the pages that go back to the students.
@@ -110,7 +112,8 @@ def grade(
         place = places.on_cluster(directory, scheduler, judge, tell)
     with directory.lock(), contextlib.ExitStack() as stack:
         places.remove_leftovers(directory)
-        asked = AskedFor(assignments, students)
+        in_sections = read_roster(directory).of_sections(sections) if sections else ()
+        asked = AskedFor(assignments, [*students, *in_sections])
         batch = _Batch(directory, console, asked, feedback=feedback, dry_run=dry_run)
         batch.collect()
         batch.plan(again)
@@ -186,7 +189,7 @@ class _Batch:
         there = {submission.student for submission in found}
         # Who asks for a folder that was refused is told why, further down.
         there |= {one.path.name for one in refused if one.path.parent == self._directory.path / "submitted"}
-        check_known(students, sorted(there | read_students(self._directory.gradebook_url).keys()), "student")
+        check_known(students, sorted(there | read_roster(self._directory).students.keys()), "student")
         self._refused = refused
         names = {assignment: self._directory.notebooks(assignment) for assignment in self._cells}
         for submission in found:
@@ -304,14 +307,14 @@ class _Batch:
                 self._notices.append(
                     f"{student}/{assignment} is not in submitted any more; its points stay in the gradebook"
                 )
-        excused = read_roster(self._directory).excused
+        roster = read_roster(self._directory)
         rows = true_rows(
-            read_students(url),
+            roster.names,
             self._cells,
             judged,
             entries,
             works,
-            excused=excused,
+            excused=roster.excused,
             what_counts=self._what_counts,
         )
         changes: list[Difference] = []

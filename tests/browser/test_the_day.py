@@ -278,8 +278,10 @@ def check_student(row: dict[str, Any], class_: list[Pupil], truth: Truth) -> Non
         "email": f"{pupil.id}@uni.example",
         **{name: row[name] for name in NUMBERS},
         "excused": row["excused"],
+        "dropped": row["dropped"],
     }
     assert not row["excused"]
+    assert not row["dropped"]
     waiting = sum(cell.waits for key, cell in truth.cells.items() if key[0] == pupil.id)
     assert [number(row[name]) for name in NUMBERS] == [
         truth.shown(pupil.id, LAB),

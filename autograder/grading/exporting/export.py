@@ -41,6 +41,7 @@ def export(
     folder: Path | None = None,
     absent_zero: bool = False,
     columns: Mapping[str, str] | None = None,
+    sections: Sequence[str] = (),
 ) -> Exported:
     """Write points and feedback in the form of an LMS.
 
@@ -52,6 +53,7 @@ def export(
         folder: Where to write; ``export`` in the class by default.
         absent_zero: Write zero for who has handed in nothing, where otherwise nothing is written.
         columns: What an assignment's column is called in ``into``, where that is not the assignment's name.
+        sections: Only the students of these; all where empty.
 
     Raises:
         GradingError: There is nothing to export, a run is at work, or the list cannot be filled in.
@@ -59,7 +61,7 @@ def export(
     directory = ClassDirectory(path)
     # While a run is at work, grades that were taken back look as if nobody had earned them.
     with directory.lock():
-        table = read_table(directory)
+        table = read_table(directory, sections)
         table = replace(table, absent=0.0) if absent_zero else table
         wanted = _assignments(table, assignments)
         folder = folder or directory.path / "export"

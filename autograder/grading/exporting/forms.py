@@ -68,7 +68,7 @@ def canvas(table: ClassTable, records: CollectedRecords, assignments: Sequence[s
             else blank(table.score(student.id, assignment))
             for assignment in assignments
         )
-        rows.append([name, number, "", student.id, "", *points])
+        rows.append([name, number, "", student.id, student.section, *points])
     return csv_text(rows)
 
 

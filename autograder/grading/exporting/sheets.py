@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import xlsxwriter
 
-from autograder.grading.reporting.report import COLUMNS, LATE, csv_cells, total
+from autograder.grading.reporting.report import COLUMNS, DROPPED, LATE, csv_cells, total
 from autograder.grading.reporting.spreadsheet import blank, csv_text
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ def student_rows(table: ClassTable, assignments: Sequence[str]) -> list[Cells]:
     """The columns' names, then a line for each student."""
     who = ["student", "first_name", "last_name", "email"]
     rows: list[Cells] = [
-        [*who, *assignments, "total", "max", "late_penalty", "waits_for_a_person", "excused"]
+        [*who, *assignments, "total", "max", "late_penalty", "waits_for_a_person", "excused", "dropped"]
     ]
     for student in map(table.roster.students.__getitem__, table.students):
         own = [row for row in table.of(student.id) if row.assignment in assignments]
@@ -38,6 +38,7 @@ def student_rows(table: ClassTable, assignments: Sequence[str]) -> list[Cells]:
                 -sum(row.score for row in own if row.exercise == LATE),
                 sum(row.waits for row in own),
                 " ".join(name for name in assignments if table.is_excused(student.id, name)),
+                " ".join(row.assignment for row in own if row.exercise == DROPPED),
             ]
         )
     return rows

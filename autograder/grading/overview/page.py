@@ -22,6 +22,7 @@ from autograder.page_templates import page_templates
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from autograder.grading.reporting.report import Row
@@ -42,13 +43,16 @@ class _Person:
     links: dict[str, str]
 
 
-def write_report(path: Path, *, names: bool = True, to: Path | None = None) -> Path:
+def write_report(
+    path: Path, *, names: bool = True, to: Path | None = None, sections: Sequence[str] = ()
+) -> Path:
     """Write the page about a class.
 
     Args:
         path: The class directory.
         names: Show who it is, with links to the pages of feedback.
         to: Where to write; ``report.html`` in the class by default.
+        sections: Only the students of these; all where empty.
 
     Returns:
         Where it is.
@@ -59,7 +63,7 @@ def write_report(path: Path, *, names: bool = True, to: Path | None = None) -> P
     directory = ClassDirectory(path)
     to = (to or directory.path / NAME).absolute()
     with clear_disk_errors(directory.path):
-        table = read_table(directory)
+        table = read_table(directory, sections)
         if not figures.handed_in(table):
             raise GradingError("Nothing was handed in yet, so there is nothing to report.")
         write_whole(to, _page(directory, table, names=names, folder=to.parent).encode())

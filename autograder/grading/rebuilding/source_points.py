@@ -12,7 +12,7 @@ import msgspec
 
 from autograder.grading.entering import gradebook
 from autograder.grading.errors import ClassIncomplete, MasterUnusable, course_command
-from autograder.grading.reporting.report import LATE
+from autograder.grading.reporting.report import NO_EXERCISE
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ def _read(directory: ClassDirectory, assignment: str) -> list[GradedCell]:
 
 def _check_names(directory: ClassDirectory, assignment: str, names: list[str]) -> None:
     """See that each line of the table will have a name of its own."""
-    twice = next((name for name in [*names, LATE] if [*names, LATE].count(name) > 1), "")
+    twice = next((name for name in names if [*names, *NO_EXERCISE].count(name) > 1), "")
     if twice:
         raise MasterUnusable(
             f"{directory.path / 'source' / assignment}: two of its lines in the table would be called {twice!r}. Give "

@@ -32,6 +32,9 @@ EXCUSED = "excused"
 """The student need not do the assignment, as students.csv says: it counts neither for nor against anybody."""
 LATE = "late"
 """Stands in place of the exercise in the row that has what being late costs."""
+DROPPED = "dropped"
+"""The same in the row that takes one of a student's lowest assignments out of the total, and out of it alone."""
+NO_EXERCISE = (LATE, DROPPED)
 COLUMNS = (
     "student",
     "assignment",
@@ -65,11 +68,11 @@ class Row:
     Attributes:
         student: The student's id.
         assignment: The assignment's name.
-        exercise: The exercise's id; the name of a cell that a person gives points for; or ``late``.
+        exercise: The exercise's id; the name of a cell that a person gives points for; ``late`` or ``dropped``.
         score: Points in the gradebook, those that a person gave included.
         max_score: Points that can be had.
         state: ``passed``, ``failed``, ``not_checked``, ``not_graded``, ``not_submitted``, ``excused``, ``waits``,
-            ``by_hand`` or ``late``.
+            ``by_hand``, ``late`` or ``dropped``.
         diagnosis: The key of the mistake, empty for none.
         reason: Its text, empty for none.
         judged: The judge's points in the gradebook; None where it has none.
@@ -168,7 +171,9 @@ def columns(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
 
     Cells of an instructor's own are often called alike in several assignments; then the assignment is in front.
     """
-    keys = list(dict.fromkeys((row.assignment, row.exercise) for row in rows if row.exercise != LATE))
+    keys = list(
+        dict.fromkeys((row.assignment, row.exercise) for row in rows if row.exercise not in NO_EXERCISE)
+    )
     often = Counter(exercise for _, exercise in keys)
     return {key: key[1] if often[key[1]] == 1 else ".".join(key) for key in keys}
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from autograder.grading.reporting.report import LATE, total
+from autograder.grading.reporting.report import DROPPED, LATE, NO_EXERCISE, total
 from autograder.verdict import State
 
 if TYPE_CHECKING:
@@ -49,7 +49,8 @@ def _submissions(rows: tuple[Row, ...]) -> list[dict[str, Any]]:
     """One object for each student and assignment, in the order of the rows."""
     found = []
     for (student, assignment), group in groupby(rows, key=lambda row: (row.student, row.assignment)):
-        exercises = list(group)
+        all_rows = list(group)
+        exercises = [row for row in all_rows if row.exercise != DROPPED]
         found.append(
             {
                 "student": student,
@@ -57,6 +58,7 @@ def _submissions(rows: tuple[Row, ...]) -> list[dict[str, Any]]:
                 "assignment": assignment,
                 "score": total(exercises),
                 "max_score": sum(row.max_score for row in exercises),
+                "is_dropped": exercises != all_rows,
                 "late_penalty": -sum(row.score for row in exercises if row.exercise == LATE),
                 "exercises": [
                     {
@@ -72,7 +74,7 @@ def _submissions(rows: tuple[Row, ...]) -> list[dict[str, Any]]:
                         "waits_for_a_person": row.waits,
                     }
                     for row in exercises
-                    if row.exercise != LATE
+                    if row.exercise not in NO_EXERCISE
                 ],
             }
         )

@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from autograder.cards.readable import printable
-from autograder.grading.reporting.report import EXCUSED, LATE, NOT_SUBMITTED, WAITS, columns, total
+from autograder.grading.reporting.report import DROPPED, EXCUSED, LATE, NOT_SUBMITTED, WAITS, columns, total
 from autograder.grading.task import UNREADABLE
 from autograder.kit.in_words import counted
 from autograder.verdict import State
@@ -131,8 +131,9 @@ class _Grid:
         return cls(columns(rows), students, results, diagnoses)
 
     def table(self, keys: Sequence[tuple[str, str]], *, is_last: bool = False) -> Table:
-        """A table of these columns; the last one has what being late costs and the total, too."""
-        late = is_last and any(exercise == LATE for _, _, exercise in self.results)
+        """A table of these columns; the last one has what being late costs, what is dropped and the total, too."""
+        there = {exercise for _, _, exercise in self.results} if is_last else set()
+        late, dropped = LATE in there, DROPPED in there
         shown = Table(header_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
         shown.add_column("student", overflow="fold", max_width=_NAME)
         for key in keys:
@@ -140,12 +141,17 @@ class _Grid:
             shown.add_column(self.names[key].replace(".", "\n."), no_wrap=True)
         if late:
             shown.add_column("late", justify="right", no_wrap=True)
+        if dropped:
+            shown.add_column("dropped", overflow="fold", max_width=_NAME)
         if is_last:
             shown.add_column("total", justify="right", no_wrap=True)
         for student, own in self.students.items():
             cells = [_cell(self.results.get((student, *key)), self.diagnoses) for key in keys]
             if late:
                 cells.append(_taken_off(own))
+            if dropped:
+                names = [row.assignment for row in own if row.exercise == DROPPED]
+                cells.append(Text("\n".join(names), style="dim"))
             if is_last:
                 points, most = total(own), sum(row.max_score for row in own)
                 cells.append(Text("–" if points is None else f"{points:g}/{most:g}"))

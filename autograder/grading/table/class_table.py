@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
@@ -10,14 +10,14 @@ from autograder.grading.collecting.outcomes import Waiting, WaitingList
 from autograder.grading.entering.records import Records
 from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import read_released
-from autograder.grading.reporting.report import EXCUSED, LATE, NOT_SUBMITTED, Row, total
+from autograder.grading.reporting.report import DROPPED, EXCUSED, NO_EXERCISE, NOT_SUBMITTED, Row, total
 from autograder.grading.table.entries import Entries, read_entries
 from autograder.grading.table.roster import Roster, Student, read_roster
 from autograder.grading.table.true_rows import true_rows
 from autograder.grading.table.what_counts import read_what_counts
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Sequence
 
 
 @dataclass(frozen=True)
@@ -51,12 +51,21 @@ class ClassTable:
         return list(dict.fromkeys(row.assignment for row in self.rows))
 
     def of(self, student: str, assignment: str = "") -> list[Row]:
-        """A student's rows, of one assignment or of all."""
+        """A student's rows, of all assignments or of one, whose points are the same where the total leaves them out."""
+        own = [row for row in self.rows if row.student == student]
         return [
-            row
-            for row in self.rows
-            if row.student == student and (not assignment or row.assignment == assignment)
+            row for row in own if not assignment or (row.assignment == assignment and row.exercise != DROPPED)
         ]
+
+    def only(self, students: Collection[str]) -> ClassTable:
+        """The same with these students alone."""
+        return replace(
+            self,
+            rows=tuple(row for row in self.rows if row.student in students),
+            entries={key: entry for key, entry in self.entries.items() if key[0] in students},
+            stale=tuple(key for key in self.stale if key.partition("/")[0] in students),
+            unplaced=tuple(one for one in self.unplaced if not one.student or one.student in students),
+        )
 
     def score(self, student: str, assignment: str = "") -> float | None:
         """A student's points as the gradebook has them, less what being late costs; None where there are none."""
@@ -80,11 +89,15 @@ class ClassTable:
         return [row for row in self.rows if row.waits]
 
 
-def read_table(directory: ClassDirectory) -> ClassTable:
+def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> ClassTable:
     """Read the table of a class.
 
+    Args:
+        directory: The class.
+        sections: Only the students of these; all where empty.
+
     Raises:
-        GradingError: The class, its sources or its list of students cannot be used.
+        GradingError: The class, its sources or its list of students cannot be used, or nobody is in such a section.
     """
     fingerprints, records = Fingerprints(directory), Records(directory)
     entries = read_entries(directory.gradebook_url)
@@ -99,17 +112,18 @@ def read_table(directory: ClassDirectory) -> ClassTable:
         if submission is not None and (record is None or record.fingerprint != fingerprints.of(submission)):
             stale.append("/".join(key))
     roster = read_roster(directory)
-    names: Mapping[str, str] = {id_: student.name for id_, student in roster.students.items()}
     cells = read_released(directory, fingerprints).cells
     what_counts = read_what_counts(directory, cells)
-    rows = true_rows(names, cells, judged, entries, found, excused=roster.excused, what_counts=what_counts)
+    rows = true_rows(
+        roster.names, cells, judged, entries, found, excused=roster.excused, what_counts=what_counts
+    )
     unplaced = tuple(WaitingList(directory).read())
     others = [Student(row.student) for row in rows if row.student not in roster.students]
-    return ClassTable(
-        tuple(rows), Roster([*roster.students.values(), *others]), entries, tuple(stale), unplaced
-    )
+    whole = Roster([*roster.students.values(), *others])
+    table = ClassTable(tuple(rows), whole, entries, tuple(stale), unplaced)
+    return table.only(roster.of_sections(sections)) if sections else table
 
 
 def by_exercise(rows: list[Row]) -> dict[tuple[str, str], Row]:
-    """A student's rows by assignment and exercise, without what being late costs."""
-    return {(row.assignment, row.exercise): row for row in rows if row.exercise != LATE}
+    """A student's rows by assignment and exercise, without what being late costs and what is dropped."""
+    return {(row.assignment, row.exercise): row for row in rows if row.exercise not in NO_EXERCISE}

@@ -6,7 +6,6 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from datetime import datetime  # noqa: TC003
-from typing import Any
 
 import msgspec
 import sqlalchemy
@@ -153,7 +152,8 @@ def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entrie
                 due = due + row.extension
             key = (row.student, row.assignment)
             penalty = float(row.penalty or 0.0)
-            found[key] = SubmissionEntry(row.timestamp, due, penalty, cells.get(key, {}), _full_name(row))
+            name = " ".join(part for part in (row.first_name, row.last_name) if part)
+            found[key] = SubmissionEntry(row.timestamp, due, penalty, cells.get(key, {}), name)
     return found
 
 
@@ -164,16 +164,3 @@ def read_due_dates(url: str) -> dict[str, datetime]:
             return {}
         dates = sqlalchemy.text("SELECT name, duedate FROM assignment WHERE duedate IS NOT NULL")
         return {row.name: row.duedate for row in book.execute(dates.columns(duedate=sqlalchemy.DateTime()))}
-
-
-def read_students(url: str) -> dict[str, str]:
-    """The students that the gradebook knows: their names, empty where it has none, by id."""
-    with opened(url) as book:
-        if not has_tables(book):
-            return {}
-        rows = book.execute(sql("SELECT id, first_name, last_name FROM student")).all()
-    return {row.id: _full_name(row) for row in rows}
-
-
-def _full_name(row: Any) -> str:
-    return " ".join(part for part in (row.first_name, row.last_name) if part)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 NAME = "students.csv"
 LMS = ("canvas", "moodle", "blackboard", "brightspace", "google", "github", "gradescope")
 """Columns of the roster in which a student's id or user name in that system may stand."""
-_OWN = ("id", "first_name", "last_name", "email", "excused")
+_OWN = ("id", "first_name", "last_name", "email", "section", "excused")
 
 
 _EXPORTED = (
@@ -66,6 +66,7 @@ class Student:
         email: The same.
         lms: Ids and user names in learning management systems, by the names of :data:`LMS`.
         excused: Assignments that the student need not do.
+        section: The group whose work one teaching assistant grades; empty for none.
     """
 
     id: str
@@ -74,6 +75,7 @@ class Student:
     email: str = ""
     lms: Mapping[str, str] = field(default_factory=dict)
     excused: tuple[str, ...] = ()
+    section: str = ""
 
     @property
     def name(self) -> str:
@@ -112,9 +114,29 @@ class Roster:
         self.students = {student.id: student for student in students}
 
     @property
+    def names(self) -> dict[str, str]:
+        """The students' names, empty where they are not known, by id."""
+        return {student.id: student.name for student in self.students.values()}
+
+    @property
     def excused(self) -> set[tuple[str, str]]:
         """The students who need not do an assignment, by assignment."""
         return {(one.id, assignment) for one in self.students.values() for assignment in one.excused}
+
+    def of_sections(self, sections: Iterable[str]) -> list[str]:
+        """The ids of the students in these sections.
+
+        Raises:
+            RosterError: Nobody is in one of them.
+        """
+        known = {one.section for one in self.students.values()} - {""}
+        for section in sections:
+            if section not in known:
+                raise RosterError(
+                    f"Nobody is in a section named {section}. The column section of {NAME} has: "
+                    f"{', '.join(sorted(known)) or 'nothing'}."
+                )
+        return [one.id for one in self.students.values() if one.section and one.section in set(sections)]
 
     def find(self, identity: Identity) -> tuple[Student, ...]:
         """The students who may be meant: one where that is certain, several where it is not.
@@ -215,7 +237,7 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
         lms = {system: values[system] for system in LMS if values.get(system)}
         first, last, email = (values.get(column, "") for column in ("first_name", "last_name", "email"))
         excused = values.get("excused", "").replace(",", " ").replace(";", " ").split()
-        found[name] = Student(name, first, last, email, lms, tuple(excused))
+        found[name] = Student(name, first, last, email, lms, tuple(excused), values.get("section", ""))
     return list(found.values())
 
 
@@ -229,7 +251,7 @@ def _as_ours(line: Mapping[str, str], form: Mapping[str, tuple[str, ...]]) -> di
         last, comma, first = full.partition(",")
         first, last = (first, last) if comma else full.rpartition(" ")[::2]
         values |= {"first_name": first.strip(), "last_name": last.strip()}
-    own = {name: line[name] for name in (*LMS, "excused") if line.get(name)}
+    own = {name: line[name] for name in (*LMS, "section", "excused") if line.get(name)}
     return {**values, **own}
 
 

@@ -54,6 +54,7 @@ def true_rows(
     assignments = [name for name in sorted(cells) if any(name == other for _, other in [*there, *entries])]
     found = []
     for student in known:
+        rows: list[Row] = []
         for assignment in assignments:
             key, name = (student, assignment), students.get(student, "")
             if key in excused:
@@ -62,7 +63,8 @@ def true_rows(
                 blank = Row(*key, "", 0.0, 0.0, "", name=name)
                 said, entry = judged.get(key, ()), entries.get(key)
                 own = _rows_of(blank, cells[assignment], said, entry, is_there=key in there)
-            found += what_counts.applied(own)
+            rows += what_counts.applied(own)
+        found += what_counts.without_lowest(rows)
     return found
 
 

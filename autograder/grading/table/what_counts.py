@@ -1,15 +1,15 @@
-"""An instructor's weights of a class and the exercises that are left out: ``class.toml``."""
+"""An instructor's weights of a class, and the exercises and assignments that are left out: ``class.toml``."""
 
 from __future__ import annotations
 
 import tomllib
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import msgspec
 
 from autograder.grading.errors import GradingError
-from autograder.grading.reporting.report import LATE, Row
+from autograder.grading.reporting.report import DROPPED, LATE, NOT_SUBMITTED, Row, total
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -24,6 +24,7 @@ class _File(msgspec.Struct, forbid_unknown_fields=True):
     leave_out: list[str] = []
     points: dict[str, float] = {}
     weights: dict[str, float] = {}
+    drop_lowest: Annotated[int, msgspec.Meta(ge=0)] = 0
 
 
 @dataclass(frozen=True)
@@ -32,9 +33,11 @@ class WhatCounts:
 
     Attributes:
         factors: What points are multiplied by, by assignment and exercise; 0 leaves an exercise out.
+        drop_lowest: How many of a student's assignments are left out of the total.
     """
 
     factors: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    drop_lowest: int = 0
 
     def applied(self, rows: Sequence[Row]) -> list[Row]:
         """The rows of one submission as they count.
@@ -48,6 +51,32 @@ class WhatCounts:
         late = counted / earned if earned else 0.0
         found = [_scaled(row, factor) for row, factor in zip(plain, factors, strict=True) if factor]
         return found + [_scaled(row, late) for row in rows if row.exercise == LATE and found]
+
+    def without_lowest(self, rows: Sequence[Row]) -> list[Row]:
+        """The rows of one student, with one more for each assignment that is left out of the total.
+
+        Left out are those that were not handed in, then those with the smallest share of their points. One always
+        counts, and all do while the points of one are still to come.
+        """
+        by_assignment: dict[str, list[Row]] = {}
+        for row in rows:
+            by_assignment.setdefault(row.assignment, []).append(row)
+        most = {name: sum(row.max_score for row in own) for name, own in by_assignment.items()}
+        points = {name: total(own) for name, own in by_assignment.items() if most[name]}
+        to_come = any(row.is_blank and row.max_score and row.state != NOT_SUBMITTED for row in rows)
+        if to_come or total(rows) is None:
+            return list(rows)
+        lowest = sorted(
+            points, key=lambda name: -1.0 if points[name] is None else (points[name] or 0.0) / most[name]
+        )
+        for name in lowest[: min(self.drop_lowest, len(lowest) - 1)]:
+            reason = f"among the {self.drop_lowest} lowest of {len(lowest)} assignments"
+            score, named = 0.0 - (points[name] or 0.0), rows[0].name
+            dropped = Row(
+                rows[0].student, name, DROPPED, score, -most[name], DROPPED, reason=reason, name=named
+            )
+            by_assignment[name].append(dropped)
+        return [row for own in by_assignment.values() for row in own]
 
 
 def _scaled(row: Row, factor: float) -> Row:
@@ -81,8 +110,8 @@ def read_what_counts(directory: ClassDirectory, cells: Mapping[str, Sequence[Gra
         said = msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8-sig")), type=_File)
     except (OSError, ValueError) as error:
         raise GradingError(
-            f'{path} cannot be used: {error}. It may hold leave_out = ["EXERCISE"], and tables named points and '
-            "weights."
+            f'{path} cannot be used: {error}. It may hold leave_out = ["EXERCISE"], drop_lowest = 1, and tables named '
+            "points and weights."
         ) from error
     exercises = {cell.exercise for of_assignment in cells.values() for cell in of_assignment}
     for name, known in (
@@ -102,4 +131,4 @@ def read_what_counts(directory: ClassDirectory, cells: Mapping[str, Sequence[Gra
         for cell in of_assignment:
             points = 0.0 if cell.exercise in said.leave_out else said.points.get(cell.exercise, cell.worth)
             factors[assignment, cell.exercise] = weight * points / cell.worth if cell.worth else weight
-    return WhatCounts(factors)
+    return WhatCounts(factors, said.drop_lowest)

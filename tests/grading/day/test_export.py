@@ -13,6 +13,8 @@ from click.testing import CliRunner
 from downloads import ROSTER, write_zip
 from instructor import by_person, due, penalty
 from nbgrader.api import Gradebook
+from own_assignment import EngineWithAsserts, write_assignment
+from own_assignment import hand_in as put_own_work
 from test_true_table import DUE, nbgraders_total
 
 from autograder.cli import cli
@@ -20,6 +22,7 @@ from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.forms import read_path
 from autograder.grading.errors import GradingError
 from autograder.grading.exporting.export import export
+from autograder.grading.running import engine
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -275,6 +278,73 @@ def test_what_counts_can_be_said_at_any_time_and_changed_again(graded: TinyClass
         said.write_text(text)
         with pytest.raises(GradingError, match=words):
             export(graded.path, "csv")
+
+
+def test_the_lowest_assignments_leave_the_total_and_nothing_else(
+    graded: TinyClass, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(engine, "execute_all", EngineWithAsserts().execute_all)
+    write_assignment(graded)
+    for student in ("ada", "jose"):
+        put_own_work(graded, student, "def add(a, b):\n    return abs(a) - abs(b)")
+    (graded.path / "class.toml").write_text("drop_lowest = 1")
+    report = graded.grade()
+    found = {
+        row.student: (row.assignment, row.score, row.max_score)
+        for row in report.rows
+        if row.exercise == "dropped"
+    }
+    # Ada and José have less of their own assignment; the others have not handed it in; Zoë nothing at all.
+    assert found == {
+        "ada": ("own", -3.5, -10),
+        "jose": ("own", -3.5, -10),
+        "ben": ("own", 0, -10),
+        "eve": ("own", 0, -10),
+    }
+    export(graded.path, "csv")
+    header, *lines = rows(graded.path / "export" / "students.csv")
+    ada = dict(zip(header, next(line for line in lines if line[0] == "ada"), strict=True))
+    assert [ada[name] for name in ("lab_1_2", "own", "total", "max", "dropped")] == [
+        "18.5",
+        "3.5",
+        "18.5",
+        "20",
+        "own",
+    ]
+    export(graded.path, "canvas")
+    header, *lines = rows(graded.path / "export" / "canvas.csv")
+    assert next(line[5:] for line in lines if line[3] == "ada") == ["18.5", "3.5"]
+    (graded.path / "class.toml").write_text("drop_lowest = 5")
+    assert {row.student for row in graded.grade().rows if row.exercise == "dropped"} == {
+        "ada",
+        "ben",
+        "eve",
+        "jose",
+    }
+    (graded.path / "class.toml").write_text("drop_lowest = -1")
+    with pytest.raises(GradingError, match="cannot be used"):
+        export(graded.path, "csv")
+
+
+def test_an_assistant_sees_the_students_of_their_section(graded: TinyClass) -> None:
+    monday = ("ada", "zoe")
+    (graded.path / "students.csv").write_text(
+        "id,section\n" + "".join(f"{one},{'Monday' if one in monday else 'Tuesday'}\n" for one in STUDENTS)
+    )
+    for command in (["grade"], ["export", "--to", "csv"], ["report"]):
+        said = CliRunner().invoke(cli, [command[0], str(graded.path), *command[1:], "--section", "Monday"])
+        assert said.exit_code == 0, said.output
+        if command == ["grade"]:
+            assert ("Ada" in said.output, "Tuesday" in said.output, "ben" in said.output) == (
+                True,
+                False,
+                False,
+            )
+    assert [line[0] for line in rows(graded.path / "export" / "students.csv")[1:]] == list(monday)
+    page = (graded.path / "report.html").read_text()
+    assert ("(ada)" in page, "(jose)" in page) == (True, False)
+    said = CliRunner().invoke(cli, ["grade", str(graded.path), "--section", "Wednesday"])
+    assert (said.exit_code, "has: Monday, Tuesday" in said.output) == (2, True)
 
 
 def test_a_column_of_another_name_is_named(graded: TinyClass, tmp_path: Path) -> None:
