@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import ClassDirectory, reason_against_name
 from autograder.grading.collecting.archives import File, NotTaken, files_of, is_zip, within
+from autograder.grading.collecting.assignment_of import AssignmentOf, NoTarget, is_notebook, stem_of
 from autograder.grading.collecting.forms import FORMS, plain, read_path
 from autograder.grading.collecting.lists import GRADESCOPE, Entry, is_unread, read_list
 from autograder.grading.collecting.outcomes import CollectReport, Outcome, State, WaitingList
 from autograder.grading.collecting.placing import Candidate, Placing
 from autograder.grading.collecting.records import CollectedRecords
-from autograder.grading.collecting.which import NoTarget, Which, is_notebook, stem_of
-from autograder.grading.collecting.whose import Whose
+from autograder.grading.collecting.student_of import StudentOf
 from autograder.grading.errors import GradingError, course_command
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.grading.table.roster import Roster, Student, enter_roster, read_roster
@@ -100,8 +100,8 @@ class _Collecting:
         self._form = form
         self._handed_in = self._in_utc(handed_in)
         self._roster: Roster = read_roster(directory)
-        self._whose = Whose(self._roster)
-        self._which = Which(directory, assignment)
+        self._student_of = StudentOf(self._roster)
+        self._assignment_from = AssignmentOf(directory, assignment)
         self._candidates: list[Candidate] = []
         self._outcomes: list[Outcome] = []
         self._unread: list[str] = []
@@ -116,7 +116,9 @@ class _Collecting:
         self._outcomes += placing.place(self._candidates)
         work = {(one.student, one.assignment) for one in self._directory.submissions()[0]}
         asked = [key for key in sorted(work) if self._assignment in ("", key[1])]
-        told = ((student, name, self._in_utc(self._whose.time_of(student, name))) for student, name in asked)
+        told = (
+            (student, name, self._in_utc(self._student_of.time_of(student, name))) for student, name in asked
+        )
         placing.note_times((student, name, when) for student, name, when in told if when is not None)
         came = {one.student for one in self._outcomes if one.state in (State.PLACED, State.UNCHANGED)}
         self._outcomes = [_alone(one) if one.student not in came else one for one in self._outcomes]
@@ -166,7 +168,7 @@ class _Collecting:
             told += found
         told += [one for one in entries if not one.lms]
         self._unread += [one.time for one in (*entries, *told) if is_unread(one)]
-        self._whose = Whose(self._roster, entries, told)
+        self._student_of = StudentOf(self._roster, entries, told)
 
     def _is_list(self, source: Path, file: File) -> bool:
         return (len(file.parts) <= 2 and file.name == GRADESCOPE) or (
@@ -196,9 +198,13 @@ class _Collecting:
         depth = 2 if len({file.parts[0] for file in files if file.parts}) == 1 else 1
         form = self._form or self._likely_form(files, depth)
         for file in files:
-            found = read_path(file.parts, form, self._which.is_notebook) if form and file.parts else None
+            found = (
+                read_path(file.parts, form, self._assignment_from.is_notebook)
+                if form and file.parts
+                else None
+            )
             ways = [found] if found else plain(file.parts)[:depth] if file.parts else []
-            who = next((who for way in ways if (who := self._whose.find(way)) is not None), None)
+            who = next((who for way in ways if (who := self._student_of.find(way)) is not None), None)
             try:
                 data = file.read()
             except NotTaken:
@@ -218,12 +224,12 @@ class _Collecting:
         counts: Counter[str] = Counter()
         for file in files:
             for form in FORMS:
-                if file.parts and read_path(file.parts, form, self._which.is_notebook) is not None:
+                if file.parts and read_path(file.parts, form, self._assignment_from.is_notebook) is not None:
                     counts[form] += 1
                     break
         likely = max(FORMS, key=lambda form: counts[form]) if counts else ""
         in_folders = sum(
-            any(map(self._whose.find, plain(file.parts)[:depth])) for file in files if file.parts
+            any(map(self._student_of.find, plain(file.parts)[:depth])) for file in files if file.parts
         )
         return likely if counts[likely] > in_folders else ""
 
@@ -253,7 +259,7 @@ class _Collecting:
         name = file.name if file.inner else way.file
         for (student,) in members:
             try:
-                (assignment, notebook), is_named = self._which.target(name, data)
+                (assignment, notebook), is_named = self._assignment_from.target(name, data)
             except NoTarget as error:
                 self._outcomes.append(self._soft(file, str(error), (way, ((student,),))))
                 continue
@@ -279,17 +285,17 @@ class _Collecting:
             )
 
     def _when(self, way: Found, student: str, assignment: str) -> datetime | None:
-        when = way.when or self._whose.time(way.identity, student, assignment)
+        when = way.when or self._student_of.time(way.identity, student, assignment)
         return self._in_utc(when) or self._handed_in
 
     def _reason_against(self, who: _Who | None, found: Found | None) -> str:
         """The reason why a file is nobody's work; empty where it is somebody's."""
         if who is None:
-            return self._whose.reason_against(found.identity if found else None)
+            return self._student_of.reason_against(found.identity if found else None)
         way, members = who
         for students in members:
             if len(students) > 1:
-                return self._whose.reason_against_several(way.identity, students)
+                return self._student_of.reason_against_several(way.identity, students)
             reason = reason_against_name(students[0].id)
             if reason:
                 return f"{students[0].id} cannot be a student's id: {reason}. List it in students.csv"
@@ -325,7 +331,7 @@ class _Collecting:
 
     def _assignment_of(self, file: File, who: _Who | None) -> str:
         """The assignment that the name speaks of which the student gave to a file."""
-        return self._which.named(who[0].file if who and not file.inner else file.name)
+        return self._assignment_from.named(who[0].file if who and not file.inner else file.name)
 
     def _in_utc(self, when: datetime | None) -> datetime | None:
         if when is None:

@@ -33,7 +33,7 @@ def stem_of(name: str) -> tuple[str, int]:
     return base_and_number(name[:end] if end > 0 else name.rpartition(".")[0] or name)
 
 
-class Which:
+class AssignmentOf:
     """Knows the notebooks of a class by their names and by their cells.
 
     Args:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _NO_ID = "its name does not say whose it is: say --from, or put it into a folder with the student's id and collect that"
 
 
-class Whose:
+class StudentOf:
     """Knows the students of a class by all names that systems have for them.
 
     Args:
