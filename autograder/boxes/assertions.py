@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from typing import Any
 
 _ASSERTION = "AssertionError"
+_STUB = "NotImplementedError"
+"""Raised by what nbgrader puts in the place of a solution."""
 
 
 def verdict_of(check: Check, run: CellRun) -> Verdict | None:
@@ -34,6 +36,10 @@ def verdict_of(check: Check, run: CellRun) -> Verdict | None:
         text = f"A test of this cell does not hold: {said}" if said else "A test of this cell does not hold."
         step = "Read the line with the arrow in the output: it says which test it was."
         return _verdict(check, 0.0, Diagnosis("assertion_failed", text, step))
+    if run.ended is Ended.RAISED and run.error.startswith(_STUB):
+        text = "What this cell tests is not solved yet."
+        step = "Write your answer in the place of the line `raise NotImplementedError()`."
+        return _verdict(check, 0.0, Diagnosis("not_written", text, step))
     if run.ended is not Ended.DONE:
         return None
     score = min(check.points, _partial_credit(run.outputs, check.points))

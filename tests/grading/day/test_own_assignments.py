@@ -83,3 +83,11 @@ def test_a_value_is_worth_what_nbgrader_takes_it_for(value: str, score: float) -
     assert verdict is not None
     assert verdict.score == score
     assert verdict.passed is (score == 4)
+
+
+def test_what_meets_the_stub_of_nbgrader_is_not_solved_yet() -> None:
+    for error in ("NotImplementedError: ", "NotImplementedError"):
+        verdict = verdict_of(Check("own", "own", 4, 4, 0, asserts=True), CellRun(Ended.RAISED, error=error))
+        assert verdict is not None
+        assert verdict.diagnosis is not None
+        assert (verdict.score, verdict.diagnosis.key) == (0, "not_written")
