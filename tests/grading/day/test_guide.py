@@ -88,7 +88,8 @@ def test_every_command_of_the_guide_runs(
     )
     (tmp_path / "Downloads" / "times.csv").write_text("id,handed_in\nada,2026-01-31T12:00\n")
     (tiny.path / "students.csv").write_text(
-        "id,first_name,last_name,email\nada,Ada,Lovelace,ada@uni.example\nben,Ben,Bär,ben@uni.example\n"
+        "id,first_name,last_name,email,section\nada,Ada,Lovelace,ada@uni.example,Monday\n"
+        "ben,Ben,Bär,ben@uni.example,Tuesday\n"
     )
     notebook = tiny.submit("x", 4, 7)
     names = ("lovelaceada_1_2_lab_1_2.ipynb", "barben_2_3_lab_1_2.ipynb")
