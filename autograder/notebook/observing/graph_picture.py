@@ -79,7 +79,6 @@ class GraphPicture:
         sentences = self.sentences()
         data = base64.b64encode(self.svg().encode()).decode()
         words = "".join(f"<li>{escape(sentence)}</li>" for sentence in sentences)
-        alt = f"The running graph. {escape(' '.join(sentences))}"
         return (
             f'{_DARK}<img class="ros-graph" alt="The running graph. {escape(" ".join(sentences))}" '
             f'src="data:image/svg+xml;base64,{data}">'
