@@ -212,10 +212,11 @@ class Presence:
             held = condition()
             return held
 
-        if not self._subject.shares_participant:
-            self._recorder.wait(lambda: over() or self._announced(), within, poll=START_POLL)
-        if not held and (left := patience.left) > 0:
-            self._recorder.wait(over, left, poll=GRAPH_POLL)
+        heard = self._subject.shares_participant or self._recorder.wait(
+            lambda: over() or self._announced(), within, poll=START_POLL
+        )
+        if heard and not held:
+            self._recorder.wait(over, patience.left, poll=GRAPH_POLL)
 
     # --- writing down --------------------------------------------------------------------------------------
 
