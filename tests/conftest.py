@@ -6,7 +6,7 @@ import functools
 import os
 import signal
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -93,10 +93,18 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Who names tests gets all of them. The processes of pytest-xdist inherit options and the day."""
+    """Who names tests gets all of them. The processes of pytest-xdist inherit the day."""
     tiers.day()
-    if config.args_source is not pytest.Config.ArgsSource.TESTPATHS and not hasattr(config, "workerinput"):
+    if hasattr(config, "workerinput"):
+        config.option.all = config.workerinput["all"]
+    elif config.args_source is not pytest.Config.ArgsSource.TESTPATHS:
         config.option.all = True
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_configure_node(node: Any) -> None:
+    """Called by pytest-xdist for each of its processes, which reads the command line anew and knows no more than it."""
+    node.workerinput["all"] = node.config.option.all
 
 
 def pytest_report_header(config: pytest.Config) -> list[str]:

@@ -1,4 +1,4 @@
-"""Ends a command in its middle and says what is left of it: ``python tests/left_behind.py SIGNAL WORD COMMAND...``.
+"""Ends a command in its middle and says what is left of it: ``python -m tests.left_behind SIGNAL WORD COMMAND...``.
 
 The signal is sent once a process below the command has ``WORD`` in its command line: ``SIGINT`` to the whole group, as
 a terminal does, the others to the command alone. This program makes itself the parent of whatever loses its own, so
@@ -7,16 +7,14 @@ that nothing gets out of sight, whatever session and environment it has given it
 
 from __future__ import annotations
 
-import contextlib
 import os
 import signal
 import subprocess
 import sys
 import time
 
-import psutil
-
 from autograder.parent_death import adopt_orphans
+from tests.nothing_left import below, end_all
 
 PATIENCE = 180.0
 """Seconds after which a process that is still there counts as left."""
@@ -43,19 +41,8 @@ def main(name: str, word: str, *command: str) -> int:
         time.sleep(0.05)
     for pid, line in left.items():
         print(f"left: {pid} {line}")
-        with contextlib.suppress(ProcessLookupError):
-            os.kill(pid, signal.SIGKILL)
+    end_all()
     return len(left)
-
-
-def below() -> dict[int, str]:
-    """The command line of each process below this one that lives."""
-    found = {}
-    for process in psutil.Process().children(recursive=True):
-        with contextlib.suppress(psutil.Error):
-            if process.status() != psutil.STATUS_ZOMBIE:
-                found[process.pid] = " ".join(process.cmdline())
-    return found
 
 
 if __name__ == "__main__":

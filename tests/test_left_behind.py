@@ -24,6 +24,8 @@ subprocess.Popen(["sleep", "7656.5"], start_new_session=True)
 time.sleep(600)
 """
 COURSE = [sys.executable, "-m", "autograder"]
+# As the shell of `./course test` waits for pytest.
+TESTS = f"{sys.executable} -m tests.nothing_left {sys.executable} -m pytest --numprocesses 1 {{folder}}; true"
 COMMANDS = {
     "check": (
         "sleep 7656.5",
@@ -31,6 +33,7 @@ COMMANDS = {
     ),
     "demo": ("running.worker", [*COURSE, "demo", "{folder}/class"]),
     "execute": ("running.worker", [*COURSE, "execute", "lab_1_2", "--reports", "{folder}/reports"]),
+    "test": ("sleep 7656.5", ["sh", "-c", TESTS]),
     "bank": (
         "talker.answers",
         [sys.executable, "-m", "tests.measure", "bank", "lab_1_2.talker"],
@@ -43,10 +46,11 @@ COMMANDS = {
 @pytest.mark.parametrize("ending", ["SIGINT", "SIGTERM", "SIGKILL"])
 def test_everything_ends_with_the_command(name: str, ending: str, tmp_path: Path) -> None:
     (tmp_path / "program.py").write_text(PROGRAM)
+    (tmp_path / "test_program.py").write_text(f"def test_it():{PROGRAM.replace(chr(10), chr(10) + '    ')}")
     word, command = COMMANDS[name]
     words = [part.replace("{folder}", str(tmp_path)) for part in command]
     done = subprocess.run(
-        [sys.executable, "tests/left_behind.py", ending, word, *words],
+        [sys.executable, "-m", "tests.left_behind", ending, word, *words],
         cwd=course.root(),
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,

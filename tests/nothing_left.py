@@ -1,0 +1,68 @@
+"""Runs a program and, once it has ended, ends all that it has started: ``python -m tests.nothing_left COMMAND...``.
+
+A test's own tidying up does not run where its process is killed. This process adopts whatever loses its parent,
+in whatever session it is. It ends the program when it is asked to (SIGTERM), or when who started it dies;
+Ctrl-C reaches the program itself. The exit code is the program's.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import psutil
+
+from autograder.parent_death import adopt_orphans, die_with_parent
+
+
+def main(*command: str) -> int:
+    """The exit code of the program; as of a shell where a signal has ended it."""
+    adopt_orphans()
+    process = subprocess.Popen(command, preexec_fn=_as_from_a_terminal)
+    signal.signal(signal.SIGINT, lambda *_: None)
+    signal.signal(signal.SIGTERM, lambda *_: _kill(process.pid))
+    die_with_parent(number=signal.SIGTERM)
+    ended, status = os.wait()
+    while ended != process.pid:  # an orphan
+        ended, status = os.wait()
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    process.returncode = code = os.waitstatus_to_exitcode(status)
+    end_all()
+    return code if code >= 0 else 128 - code
+
+
+def below() -> dict[int, str]:
+    """The command line of each process below this one that lives."""
+    found = {}
+    for process in psutil.Process().children(recursive=True):
+        with contextlib.suppress(psutil.Error):
+            if process.status() != psutil.STATUS_ZOMBIE:
+                found[process.pid] = " ".join(process.cmdline())
+    return found
+
+
+def end_all() -> None:
+    """Kill the processes below this one, and those that they start meanwhile, until there is none."""
+    while left := below():
+        for pid in left:
+            _kill(pid)
+        time.sleep(0.01)
+
+
+def _kill(pid: int) -> None:
+    with contextlib.suppress(ProcessLookupError):
+        os.kill(pid, signal.SIGKILL)
+
+
+def _as_from_a_terminal() -> None:
+    """A shell without job control has what is in its background ignore Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    die_with_parent()
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
