@@ -14,13 +14,12 @@ from typing import TYPE_CHECKING
 
 from autograder.boxes.execution import Cell, CellType
 from autograder.grading.collector import without_collector
+from autograder.grading.returning.page_limits import HARMLESS_LENGTH
 from autograder.judge.verdicts.deciding import Undecided, limited
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-HARMLESS_LENGTH = 6_000
-"""Characters of a notebook's own texts that need no trial: the worst of them take less than the budget of a page."""
 SECONDS = 0.5
 """Of processor time for a notebook; what students usually write takes a few hundredths."""
 

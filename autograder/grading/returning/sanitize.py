@@ -22,7 +22,7 @@ from pygments.token import STANDARD_TYPES
 from autograder.boxes.execution import CellType
 from autograder.boxes.outputs import IMAGES
 from autograder.grading.rebuilding import nodes
-from autograder.grading.returning.page_budget import HARMLESS_LENGTH
+from autograder.grading.returning.page_limits import HARMLESS_LENGTH
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable

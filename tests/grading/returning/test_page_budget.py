@@ -11,7 +11,8 @@ from nbconvert.exporters import HTMLExporter
 
 from autograder.boxes.execution import Cell, CellType
 from autograder.grading.returning import page_budget
-from autograder.grading.returning.page_budget import HARMLESS_LENGTH, SECONDS, too_costly
+from autograder.grading.returning.page_budget import SECONDS, too_costly
+from autograder.grading.returning.page_limits import HARMLESS_LENGTH
 from autograder.grading.returning.sanitize import make_harmless
 
 SIZE = 50_000
