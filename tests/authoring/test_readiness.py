@@ -13,6 +13,7 @@ from autograder.authoring.new_exercise import EXAMPLES, new_exercise, recipes
 from autograder.authoring.readiness import still_to_do
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
 ID = "lab_9_1.battery"
@@ -21,15 +22,15 @@ FOR_ITS_AUTHOR = ("answers: so far there are ", "text: the exercise does not say
 
 
 @pytest.fixture
-def lab(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The folder of a new exercise, in a course with a page of mistakes."""
-    forget()
+def lab(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """The folder of a new exercise, in a course with a page of mistakes; its modules are forgotten behind it."""
     monkeypatch.setenv(course.VARIABLE, str(tmp_path))
     new_exercise(tmp_path, ID, "publisher", chapter="01_first")
     (tmp_path / "docs").mkdir()
     keys = sorted({mistake.key for mistake in exercises.get(ID).mistakes})
     (tmp_path / "docs/mistakes.md").write_text("".join(f"### `{key}`\n" for key in keys))
-    return tmp_path / "solutions/01_first/lab_9_1"
+    yield tmp_path / "solutions/01_first/lab_9_1"
+    forget()
 
 
 def forget() -> None:

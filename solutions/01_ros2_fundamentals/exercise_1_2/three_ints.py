@@ -209,7 +209,7 @@ EXERCISE = adder.exercise(
     sample_arguments=(1, 2, 3),
     text={
         "Wait for the service, at most `patience_sec` seconds.": "late limit",
-        "if nobody offers it in time: raise `TimeoutError` then": "limit",
+        "if no node offers it in time: raise `TimeoutError` then": "limit",
         "Ask for the sum of `a` and `b`.": "calls chain",
         "Ask for the sum of that answer and `c`.": "calls chain",
         "Use the sum that the *service* gave you": "chain",

@@ -17,7 +17,7 @@ EXERCISE = listener.exercise(
     limit=120.0,
     text={
         "The listener subscribes to the topic.": "topic",
-        "Let it log each text once, and nothing that did not arrive": "says honest",
-        "Logs every text that arrives on the topic chatter.": "says honest",
+        "Let it log each string once, and nothing that did not arrive": "says honest",
+        "Logs every string that arrives on the topic chatter.": "says honest",
     },
 )
