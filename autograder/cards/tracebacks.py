@@ -9,6 +9,12 @@ import re2
 TRACEBACK = "Traceback (most recent call last)"
 _FRAME = re2.compile(r'^ +File "(?P<file>[^"]*)", line (?P<line>\d+)')
 _LIBRARIES = ("/site-packages/", "/lib/python3", "/opt/ros/", "<frozen")
+_BUILT = re2.compile(r"/install/(?:[^/.]+/)?lib/python3[^/]*/site-packages/")
+"""Where a build puts the modules of a workspace: they are the student's own."""
+_CALLED_BY_ROS = "/rclpy/task.py"
+"""The file of rclpy that is below a line that spins, where a callback went wrong and not that line."""
+_CANNOT_BE_READ = ("SyntaxError", "IndentationError", "TabError")
+"""Errors that Python tells without a traceback, as nothing of the program has run."""
 _SCRIPT = re2.compile(r"/lib/[^/]+/[^/.]+$")
 """The file that a build makes of an entry point, which ``ros2 run`` starts: nobody wrote its lines."""
 _CELLS = ("/ipykernel_", "<ipython-input")
@@ -30,25 +36,33 @@ class Place:
 
 
 def place(detail: str) -> Place | None:
-    """The last line of the student's in the last traceback of a text; None where there is none."""
+    """The last line of the student's in the last traceback of a text.
+
+    None where there is none, and where that line only spins: the mistake is in what it calls back.
+    """
     lines = detail.splitlines()
+    error = next((line for line in reversed(lines) if line.strip()), "").strip()
     starts = [number for number, line in enumerate(lines) if line.startswith(TRACEBACK)]
-    if not starts:
+    if not starts and error.startswith(_CANNOT_BE_READ):
+        starts = [0]
+    if not starts or error.startswith(TRACEBACK):
         return None
     found: tuple[str, str, str] | None = None
     for number in range(starts[-1], len(lines)):
         frame = _FRAME.match(lines[number])
-        if (
-            frame
-            and not any(part in frame["file"] for part in _LIBRARIES)
-            and not _SCRIPT.search(frame["file"])
-        ):
+        if frame and _is_students(frame["file"]):
             after = lines[number + 1] if number + 1 < len(lines) else ""
             quote = after.strip() if after.startswith("    ") and not _FRAME.match(after) else ""
             found = (frame["file"], frame["line"], quote)
-    error = next((line for line in reversed(lines) if line.strip()), "").strip()
-    if found is None or error.startswith(TRACEBACK):
+        elif frame and _CALLED_BY_ROS in frame["file"]:
+            found = None
+    if found is None:
         return None
     file, line, quote = found
     of = "your cell" if any(part in file for part in _CELLS) else file.rpartition("/")[2]
     return Place(f"Line {line} of {of}", quote, error)
+
+
+def _is_students(file: str) -> bool:
+    of_a_library = any(part in file for part in _LIBRARIES) and not _BUILT.search(file)
+    return not of_a_library and not _SCRIPT.search(file)

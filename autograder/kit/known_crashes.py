@@ -146,8 +146,8 @@ KNOWN = (
         r"(?:\A|rclpy/(?:executors|task|event_handler|action/client|action/server)\.py\".*\n(?: .*\n){1,2})"
         r"TypeError: (?P<what>.*positional argument.*)",
         "A callback takes the wrong number of arguments: {what}.",
-        "Change what stands between its parentheses where it is defined. Besides self, a timer's callback takes "
-        "nothing and a subscription's takes the message.",
+        "Change what is between its parentheses where it is defined. Besides self, a timer's callback takes nothing, a "
+        "service's takes request and response, and any other takes one thing: the message, the goal, the future.",
     ),
     Crash(
         "callback_signature",

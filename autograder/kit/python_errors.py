@@ -210,7 +210,8 @@ RUNNING: Sequence[Row] = (
         r"^NameError: name '(?P<name>\w+)' is not defined",
         "Python does not know {name}.",
         "Does it belong to your node, a value or a method of its own? Then write self.{name}. Otherwise compare the "
-        "spelling, and run the notebook's cells from the top: one of them may define it.",
+        "spelling. In a notebook, run the cells from the top: one of them may define it; in a program, copy it into "
+        "this file, above the line.",
     ),
     (
         r"^TypeError: (?:can only concatenate str|unsupported operand type\(s\) for \+=?: '(?:int|float|str)' and "
@@ -270,7 +271,7 @@ RUNNING: Sequence[Row] = (
         "Let ROS call a callback: hand it to a timer or a subscription, and do not call it inside itself.",
     ),
     (
-        r"^IndexError: (?P<kind>list|string|tuple) index out of range",
+        r"^IndexError: (?P<kind>list|string|tuple|array) (?:assignment )?index out of range",
         "The {kind} is shorter than that: its first element has the number 0, and the last one len(...) - 1.",
         "Look how many elements it has before you take one.",
     ),
@@ -278,6 +279,38 @@ RUNNING: Sequence[Row] = (
         r"^IndexError: pop from (?:an )?empty (?P<kind>list|deque|set)",
         "The {kind} has no element left to take.",
         "A callback is called again and again: what it takes one by one is used up. Ask `if` there is one left.",
+    ),
+    (
+        r"^(?:RuntimeError: (?:coroutine|generator) raised )?StopIteration",
+        "next(...) asked for one more, and none was left.",
+        "Take the values in a for loop, or give next(...) a second argument, which it returns at the end: "
+        "next(values, None).",
+    ),
+    (
+        r"^ValueError: (?:not enough|too many) values to unpack \(expected (?P<names>\d+)",
+        "Left of the = are {names} names, and the value has another number of parts.",
+        "Print the value above that line and count its parts: a text without a space, for example, has one.",
+    ),
+    (
+        r"^ValueError: (?:invalid literal for int\(\) with base \d+|could not convert string to float): (?P<text>.+)",
+        "{text} is no number.",
+        "Look where it comes from. On a command line the arguments begin with sys.argv[1]; sys.argv[0] is the program "
+        "itself.",
+    ),
+    (
+        r"^ZeroDivisionError",
+        "What is right of the / or % is 0.",
+        "0 may come as well: ask `if` before you divide, or leave the division out.",
+    ),
+    (
+        r"^TypeError: '(?P<kind>\w+)' object cannot be interpreted as an integer",
+        "A {kind} was given where a whole number belongs.",
+        "Leave out the str(...) or the quotation marks around it; int(...) makes a whole number of a string.",
+    ),
+    (
+        r"^TypeError: (?:\w+\.)*?(?P<what>\w+)(?:\.__init__)?\(\) got an unexpected keyword argument '(?P<name>\w+)'",
+        "{what} takes no argument called {name}.",
+        "Compare the name with the lab's text, letter by letter, or leave it out.",
     ),
     (
         r"",

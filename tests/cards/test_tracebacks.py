@@ -17,6 +17,32 @@ def test_of_a_program_it_is_the_last_line_of_its_own() -> None:
     assert place(OF_A_PROGRAM) == Place("Line 30 of talker.py", "rclpy.spin(node)", error)
 
 
+def test_a_line_that_spins_is_not_blamed_for_a_callback() -> None:
+    task = '  File "/opt/x/lib/python3.12/site-packages/rclpy/task.py", line 239, in __call__\n    self._handler()'
+    first, last = OF_A_PROGRAM.rsplit("\n", 1)
+    assert place(f"{first}\n{task}\n{last}") is None
+    own = '  File "/home/ada/talker.py", line 12, in tick\n    self.sey()'
+    found = place(f"{first}\n{task}\n{own}\n{last}")
+    assert found
+    assert (found.where, found.quote) == ("Line 12 of talker.py", "self.sey()")
+
+
+def test_a_file_that_python_cannot_read_has_a_line_without_a_traceback() -> None:
+    detail = (
+        "  File \"/home/ada/talker.py\", line 14\n    def tick(self)\n          ^\nSyntaxError: expected ':'"
+    )
+    assert place(detail) == Place("Line 14 of talker.py", "def tick(self)", "SyntaxError: expected ':'")
+
+
+def test_what_a_build_has_installed_is_the_students_own() -> None:
+    file = "/ws/install/my_robot_pkg/lib/python3.12/site-packages/my_robot_pkg/talker.py"
+    detail = (
+        f'Traceback (most recent call last):\n  File "{file}", line 9, in main\n    tock()\nNameError: tock'
+    )
+    assert place(detail) == Place("Line 9 of talker.py", "tock()", "NameError: tock")
+    assert place(detail.replace("/ws/install/my_robot_pkg", "/ws/.venv")) is None
+
+
 def test_a_line_that_python_does_not_quote_has_no_quote() -> None:
     found = place('Traceback (most recent call last):\n  File "<ipython-input-3>", line 2, in f\nKeyError: 1')
     assert found == Place("Line 2 of your cell", "", "KeyError: 1")

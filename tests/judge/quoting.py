@@ -27,8 +27,7 @@ def objection(verdict: Verdict, evidence: Evidence) -> str:
     if not any(part.traceback.endswith(verdict.detail) for part in evidence):
         return "the traceback on the card is of no single run"
     exercise = exercises.get(verdict.exercise)
-    without = trial.judge(exercise, _without(evidence), verdict.seed).diagnosis
-    if without is None or without.key != verdict.diagnosis.key:
+    if trial.judge(exercise, _without(evidence), verdict.seed).diagnosis != verdict.diagnosis:
         return ""
     return (
         f"{verdict.diagnosis.key} is found without the traceback, too, that the card quotes: {verdict.detail}"

@@ -23,8 +23,11 @@ from autograder import exercises
 from autograder.appeals.replaying import CannotReplay, replay
 from autograder.authoring.answers import Answer, answers, longest_first
 from autograder.authoring.judging import Turn, checked, judge_all, warm_up
-from autograder.judge.verdicts.keeping import Kept, packed, plain, restored, unpack
+from autograder.judge.verdicts import reference
+from autograder.judge.verdicts.keeping import Kept, evidence_of, packed, plain, restored, unpack
 from autograder.verdict import State, to_json
+from tests.cards import sweep
+from tests.judge import quoting
 from tests.measure import bank, stimulus
 
 if TYPE_CHECKING:
@@ -177,7 +180,7 @@ def exercises_of_another_bench() -> list[str]:
 
 
 def objection(answer: Answer) -> str:
-    """What the present criteria and diagnoses say of an answer's evidence and should not; empty where all is well.
+    """What the present criteria, diagnoses and cards say of an answer's evidence and should not; empty if all is well.
 
     Of evidence that another scenario or bench has seen, no more than that it is this answer's.
     """
@@ -185,7 +188,9 @@ def objection(answer: Answer) -> str:
         record = record_of(answer, kept(answer.exercise).get(answer.name))
         if is_of_another_bench(answer):
             return ""
-        why = answer.objection(replay(record.seen).now)
+        now = replay(record.seen).now
+        quoted = evidence_of(record.seen, reference.load(answer.exercise))
+        why = answer.objection(now) or sweep.objection(now) or quoting.objection(now, quoted)
     except CannotReplay as error:
         return f"{answer.name}: {error}; {COMMAND} {answer.name}"
     except BadEvidence as error:

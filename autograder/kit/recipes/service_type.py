@@ -313,7 +313,8 @@ def _expected(evidence: Evidence) -> list[Fields]:
 
 
 def _shown(sections: list[Fields]) -> str:
-    return " --- ".join(", ".join(f"{kind} {name}".strip() for kind, name in section) for section in sections)
+    texts = [", ".join(f"{kind} {name}".strip() for kind, name in section) for section in sections]
+    return " --- ".join(text or "(nothing)" for text in texts)
 
 
 def _generators_missing(evidence: Evidence) -> Advice | None:

@@ -13,7 +13,7 @@ from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.texts_said import changed, invented, is_said, repeated
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from random import Random
 
     from autograder.kit.counterparts import Speaker
@@ -291,10 +291,14 @@ def says_nothing_else(evidence: Evidence) -> Finding:
     if made_up:
         seen = f"“{made_up[0]}”"
     elif again:
-        seen = f"“{next(iter(again))}” {max(again.values())} times"
+        seen = "“{}” {} times".format(*_most_often(again))
     else:
         seen = "only what was sent" if heard_any else "it said none of the texts"
     return Finding(heard_any and not made_up and not again, "only what was sent, and once", seen)
+
+
+def _most_often(again: Mapping[str, int]) -> tuple[str, int]:
+    return max(again.items(), key=lambda item: item[1])
 
 
 def _said_again(evidence: Evidence) -> Advice | None:
@@ -302,7 +306,7 @@ def _said_again(evidence: Evidence) -> Advice | None:
     again = repeated(evidence.main, _sent_texts(evidence))
     if not again:
         return None
-    text, times = max(again.items(), key=lambda item: item[1])
+    text, times = _most_often(again)
     if len(again) > 2 and all(b > a for a, b in pairwise(again.values())):
         return Advice(
             f"Each text was sent once, and your program says each more often than the one before, “{text}” {times} "

@@ -25,6 +25,7 @@ from autograder.kit import goal_mistakes
 from autograder.kit.common_mistakes import only_if_ended
 from autograder.kit.crashes import meant
 from autograder.kit.hangs import HANGS
+from autograder.kit.in_words import counted
 from autograder.kit.model import Advice, Mistake
 
 if TYPE_CHECKING:
@@ -125,8 +126,8 @@ def cancel_too_early(evidence: Evidence) -> Advice | None:
     if count is None or count >= FIRST_FEEDBACK:
         return None
     return Advice(
-        f"Your client asked to cancel after {count} feedback messages; the task asks for {FIRST_FEEDBACK} to "
-        f"{LAST_FEEDBACK}.",
+        f"Your client asked to cancel after {counted(count, 'feedback message')}; the task asks for {FIRST_FEEDBACK} "
+        f"to {LAST_FEEDBACK}.",
         f"Count the calls of the feedback callback and cancel when the count reaches {FIRST_FEEDBACK}.",
     )
 

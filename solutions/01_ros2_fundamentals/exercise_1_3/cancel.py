@@ -31,6 +31,7 @@ from autograder.kit.goal_reports import (
     left_at_once,
     tells_of_refusal,
 )
+from autograder.kit.in_words import counted
 from autograder.kit.model import Finding
 from autograder.kit.recipes.action_client import ActionClient
 
@@ -52,7 +53,7 @@ def cancels_in_the_window(evidence: Evidence) -> Finding:
     """The first cancel request comes after 3 to 5 feedback messages."""
     count = telling_count(evidence)
     expected = f"after {FIRST_FEEDBACK} to {LAST_FEEDBACK} feedback messages"
-    seen = "no cancel request" if count is None else f"after {count} feedback messages"
+    seen = "no cancel request" if count is None else f"after {counted(count, 'feedback message')}"
     inside = count is not None and FIRST_FEEDBACK <= count <= LAST_FEEDBACK
     if count is not None and left_before_its_answer(evidence.main):
         return Finding(False, expected, LEFT)

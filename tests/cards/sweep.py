@@ -1,0 +1,63 @@
+"""Sentences that no card may say, whatever the answer: asked of the card of each answer of the bank."""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.cards import wording
+from autograder.cards.tracebacks import TRACEBACK, place
+from autograder.verdict import State
+
+if TYPE_CHECKING:
+    from autograder.verdict import Verdict
+
+_NO_WORDS = re2.compile(r"\x1b|\[\d+(?:;\d+)*m|\[[A-Z]\]\{|\(\?[:P<]|\\[dws][+*]|%\(|  ---|--- ;")
+"""What comes of a terminal's colours, a pattern, or a value that is empty."""
+_NOBODY = re2.compile(r"nobody (?:subscribed|published)|no (?:subscription|publisher)\b")
+_MEETS = re2.compile(r"^(?:Subscribes|Publishes) ")
+_SINGULAR = re2.compile(r"\b1 (?:\w+ )?(?:messages|calls|goals|times|numbers|runs)\b")
+_RAISED = re2.compile(r"\b([A-Z]\w*(?:Error|Exception)): ")
+_QUOTED = re2.compile(r"“([^”]*)”")
+_POINTS_AT = re2.compile(r"\b[Tt]hat line\b|line that is yours")
+
+
+def objection(verdict: Verdict) -> str:
+    """What is wrong about the words of a card; empty where nothing is."""
+    if verdict.state is not State.FAILED or verdict.diagnosis is None:
+        return ""
+    advice = wording.advice(verdict)
+    missed = [criterion.seen for criterion in verdict.criteria if not criterion.passed]
+    words = " ".join((advice.text, advice.next_step, *missed))
+    if found := _NO_WORDS.search(words) or _SINGULAR.search(words):
+        return f"its card says {found[0]!r}: {words}"
+    held = [
+        criterion.title
+        for criterion in verdict.criteria
+        if criterion.passed and _MEETS.search(criterion.title)
+    ]
+    if held and _NOBODY.search(words):
+        return f"its card says that {held[0]!r} holds, beside: {words}"
+    if _POINTS_AT.search(words) and not (place(verdict.detail) or "(line " in words):
+        return f"its card points at a line and names none: {words}"
+    if "line that is yours" in words:
+        return f"its card names no fix for: {verdict.detail[-120:]}"
+    return _of_two_things(verdict, advice.text, missed)
+
+
+def _of_two_things(verdict: Verdict, text: str, missed: list[str]) -> str:
+    """Where the diagnosis and what is beside it are about different errors, or different words."""
+    raised = _RAISED.findall(text)
+    if raised and TRACEBACK in verdict.detail and raised[0] not in verdict.detail.strip().splitlines()[-1]:
+        return f"its diagnosis is of a {raised[0]}, above the traceback of another: {verdict.detail[-120:]}"
+    told, seen = _QUOTED.findall(text), _QUOTED.findall(" ".join(missed))
+    # A list of what is said quotes only the beginning of each.
+    if (
+        told
+        and seen
+        and not any(one[:12] in other or other[:12] in one for one, other in product(told, seen))
+    ):
+        return f"its diagnosis quotes “{told[0]}”, and its criteria “{seen[0]}”"
+    return ""
