@@ -7,8 +7,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import re2
 from action_msgs.msg import GoalStatus
 
+from autograder.kit.evidence import spoken_by
 from autograder.kit.workspace_report import build_ended
 from autograder.verdict import Moment
 
@@ -44,6 +46,7 @@ _DIRECTION = {
     "cancel_answer": "from_subject",
     "result_heard": "from_subject",
     "log": "from_subject",
+    "output": "from_subject",
     "mismatch": "note",
     "subject": "note",
 }
@@ -71,13 +74,22 @@ _ENDS = {
 }
 
 
-def moments(evidence: Evidence) -> tuple[Moment, ...]:
-    """The traffic on the wire, in order: of too many events the first, and all of the kinds that matter most."""
+_QUOTED = re2.compile(r"“([^”…]*\w[^”…]*)")
+
+
+def moments(evidence: Evidence, words: str = "") -> tuple[Moment, ...]:
+    """The traffic on the wire, in order: of too many events the first, and all of the kinds that matter most.
+
+    Args:
+        evidence: What was seen.
+        words: The words of the card. Each line of the subject's that they quote is in the picture, a printed one too.
+    """
     several = len(evidence.parts) > 1
+    quoted = tuple(dict.fromkeys(_QUOTED.findall(words)))
     found = [
         moment
         for part in evidence
-        for moment in _of_part(part, evidence.reference, part.name if several else "")
+        for moment in _of_part(part, evidence.reference, part.name if several else "", quoted)
     ]
     room = MAX_MOMENTS - sum(moment.key for moment in found)
     kept = []
@@ -96,11 +108,25 @@ def _since_the_build(part: Part) -> Part:
     return replace(part, events=[replace(event, t=max(event.t - built, 0.0)) for event in part.events])
 
 
-def _of_part(part: Part, reference: Reference, title: str) -> list[Moment]:
+def _first_said(part: Part, quoted: Sequence[str]) -> dict[int, Event]:
+    """For each quoted text the event in which it was first said: in the log, else in what was printed."""
+    found: dict[str, Event] = {}
+    for event in sorted(part.events if quoted else (), key=lambda event: event.kind == "output"):
+        said = spoken_by(event) if event.kind in ("log", "output") else None
+        for text in quoted:
+            if said and said.startswith(text):
+                found.setdefault(text, event)
+    return {id(event): event for event in found.values()}
+
+
+def _of_part(part: Part, reference: Reference, title: str, quoted: Sequence[str]) -> list[Moment]:
     part = _since_the_build(part)
     start = next((e.sim for e in part.events if e.sim is not None), None)
+    told = _first_said(part, quoted)
     shown = [
-        event for event in _without_echoes(part.events) if event.kind in _DIRECTION and not _began(event)
+        event
+        for event in _without_echoes(part.events)
+        if event.kind in _DIRECTION and not _began(event) and (event.kind != "output" or id(event) in told)
     ]
     lanes = _lanes(shown)
     unlike = _first_unlike(shown, part, reference)
@@ -117,6 +143,7 @@ def _of_part(part: Part, reference: Reference, title: str) -> list[Moment]:
                 simulated=start is not None,
                 key=event.kind in _KEY
                 or event is unlike
+                or id(event) in told
                 or (event.kind == "subject" and event.name == "raised"),
             ),
         )
@@ -173,6 +200,8 @@ def _lanes(events: Sequence[Event]) -> list[str]:
     return [
         "log"
         if event.kind == "log"
+        else "printed"
+        if event.kind == "output"
         else "your code"
         if event.kind == "subject"
         else f"{event.name}, goal {number + 1}"
@@ -250,6 +279,7 @@ _LABELS: dict[str, Callable[[Event], str]] = {
     "cancel_answer": lambda e: "will cancel" if e.data["accepted"] else "will not cancel",
     "result_heard": lambda e: f"{_STATUS.get(e.data['status'], e.data['status'])} {_fields(e.data)}",
     "log": lambda e: str(e.data["text"]),
+    "output": lambda e: spoken_by(e) or "",
     "mismatch": lambda e: f"{e.data['policy']} does not fit",
     "subject": lambda e: e.name.replace("_", " "),
 }

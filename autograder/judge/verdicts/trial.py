@@ -131,6 +131,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
     )
     passed = all(criterion.passed for criterion in criteria)
     diagnosis, traceback = (None, "") if passed else diagnose(exercise, evidence)
+    told = (diagnosis.text if diagnosis else "", *(one.seen for one in criteria if not one.passed))
     return Verdict(
         exercise=exercise.id,
         title=exercise.title,
@@ -140,7 +141,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         criteria=criteria,
         diagnosis=diagnosis,
         remarks=tuple(_cut(text) for remark in exercise.remarks if (text := remark(evidence))),
-        timeline=timeline.moments(evidence),
+        timeline=timeline.moments(evidence, " ".join(told)),
         seed=seed,
         detail=traceback[-MAX_DETAIL:],
     )
