@@ -47,6 +47,9 @@ class Entry:
         return f"'{self.program} = {self.package}.{self.module}:main'"
 
 
+FORM = "a string of this form: program = package.module:function"
+
+
 def await_build(bench: Bench) -> None:
     """Wait until the workspace of a subject that was just started is built, where it is one."""
     # A command may say nothing while it waits for the judge: nobody must wait for its words then.
@@ -66,10 +69,11 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
     if report is not None and report.built and report.missing == entry.program:
         own = package_of(report, entry.package)
         named = ", ".join(own.programs) if own else ""
+        # Who has written none yet is told the form: the line itself is the answer.
         return Advice(
             f"The package is built, but it has no program {entry.program}: "
             + (f"setup.py names only {named}." if named else "setup.py names no entry point."),
-            f"In setup.py, 'console_scripts' must hold {entry.line}. {_again(evidence)}",
+            f"In setup.py, 'console_scripts' must hold {entry.line if named else FORM}. {_again(evidence)}",
         )
     tracebacks = "\n".join(part.traceback for part in evidence)
     found = re2.search(

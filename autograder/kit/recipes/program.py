@@ -143,7 +143,9 @@ class Program:
             return Finding(False, expected, f"built; there is no {report.missing} in it")
         seen = Ran(evidence)
         ran = seen.has_node or bool(seen.words)
-        return Finding(ran, expected, "built and started" if ran else "the program did nothing")
+        raised = any(part.traceback for part in evidence)
+        stopped = "the program stopped with an exception" if raised else "the program did nothing"
+        return Finding(ran, expected, "built and started" if ran else stopped)
 
     def is_a_node(self, evidence: Evidence) -> Finding:
         """A node of the program's is on the graph."""
