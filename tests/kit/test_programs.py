@@ -126,10 +126,16 @@ def test_a_client_that_was_never_there_has_not_ended() -> None:
 
 
 def test_an_entry_point_names_the_file_of_its_program() -> None:
-    seen = evidence([said(as_line(report("my_robot_pkg/asking.py", missing="asker")))])
-    advice = package_programs.entry_point(seen, Entry(PACKAGE, "asker", "asking"))
-    assert advice is not None
-    assert "'asker = my_robot_pkg.asking:main'" in advice.next_step
+    def next_step(*programs: str) -> str:
+        seen = evidence([said(as_line(report("my_robot_pkg/asking.py", programs=programs, missing="asker")))])
+        advice = package_programs.entry_point(seen, Entry(PACKAGE, "asker", "asking"))
+        return advice.next_step if advice else ""
+
+    line = "'asker = my_robot_pkg.asking:main'"
+    assert line in next_step(ENTRY)
+    # Who has written no entry point yet is not told the answer.
+    assert line not in next_step()
+    assert package_programs.FORM in next_step()
 
 
 def test_a_traceback_after_ctrl_c_costs_nothing_and_is_worth_a_word() -> None:
