@@ -7,7 +7,6 @@ with the same ``./course``: its exercises and reference outputs are in ``exercis
 
 from __future__ import annotations
 
-import re  # noqa: TID251  (the course's own notebooks)
 import shutil
 import stat
 import zipfile
@@ -19,6 +18,7 @@ from autograder import course
 from autograder.course import HANDED_OUT
 from autograder.exercises import REFERENCE
 from autograder.masters.chapters import holds_work
+from autograder.masters.layout import relinked
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -39,8 +39,6 @@ PAGES = ("students-guide.md", "mistakes.md", "fairness.md", "ros2-command.md", "
 _MADE = frozenset({"__pycache__", ".ipynb_checkpoints"})
 _MADE_BY_COLCON = frozenset({"build", "install", "log"})
 """Folders of what is made from other files; colcon's are beside the folder ``src`` of a workspace."""
-_LINK = re.compile(rb"\[([^][]+)\]\(([\w-]+)\.ipynb(?:#[^)]*)?\)")
-"""A link in the Markdown of a notebook to another one."""
 README = """\
 # {title}
 
@@ -167,7 +165,8 @@ def _notebook(
             f"somebody has worked in {notebook}, and would be handed out: ./course reset {lab.name}"
         )
     # A link to a notebook that is not handed out would lead nowhere: its words stay.
-    content = _LINK.sub(lambda link: link[0] if link[2].decode() in names else link[1], notebook.read_bytes())
+    beside = {name: f"{name}.ipynb" for name in names}
+    content = relinked(notebook.read_bytes().decode(), lambda name: beside.get(name, "")).encode()
     yield notebook.relative_to(root).as_posix(), content
     yield f"{HANDED_OUT}/{course.released(lab).relative_to(chapter.folder.parent).as_posix()}", content
 

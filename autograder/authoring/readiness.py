@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from autograder.authoring.answers import Answer
+    from autograder.kit.model import Exercise
 
 ENOUGH = {"right": 5, "wrong": 8}
 """As many answers as tell something of an exercise. It works with fewer; how fair it is, is then not known."""
@@ -75,14 +76,23 @@ def _of_text(exercise_id: str, master: Path) -> Iterator[str]:
     if not exercise.text:
         yield "text: the exercise does not say which words of the task are behind which criterion"
         return
-    whole = " ".join(" ".join(one.cell.source for one in named_cells(master)).split())
-    yield from (f"text: {course.LAB} does not say “{words}”" for words in exercise.text if words not in whole)
+    said = "\n".join(one.cell.source for one in named_cells(master))
+    yield from (f"text: {fault}" for fault in faults_of_text(exercise, said))
+
+
+def faults_of_text(exercise: Exercise, said: str) -> Iterator[str]:
+    """The sentences of ``Exercise.text`` that a lab does not say, and what its criteria lack or have too much.
+
+    Args:
+        exercise: The exercise.
+        said: All texts of the lab.
+    """
+    whole = " ".join(said.split())
+    yield from (f"{course.LAB} does not say “{words}”" for words in exercise.text if words not in whole)
     judged = {name for names in exercise.text.values() for name in names.split()}
     known = {criterion.name for criterion in exercise.criteria}
-    yield from (
-        f"text: no words of the task are behind the criterion {name}" for name in sorted(known - judged)
-    )
-    yield from (f"text: there is no criterion {name}" for name in sorted(judged - known))
+    yield from (f"no words of the task are behind the criterion {name}" for name in sorted(known - judged))
+    yield from (f"there is no criterion {name}" for name in sorted(judged - known))
 
 
 def _of_linters(lab: Path) -> Iterator[str]:

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import re2
 
 from autograder import course
 from autograder.course import CHAPTERS, COPY, LAB, SOLUTIONS
 from autograder.masters.errors import MasterError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
+
+_LINK = re2.compile(r"\[([^\[\]]+)\]\(([\w-]+)\.ipynb(#[^)]*)?\)")
+"""A link in Markdown to another notebook of the chapter, in which all are in one folder."""
 
 
 def masters(root: Path) -> list[Path]:
@@ -89,3 +95,19 @@ def find_root(start: Path) -> Path:
         "This folder lies in no course.",
         "Go to the folder that holds 'solutions' and 'chapters'.",
     )
+
+
+def relinked(text: str, place: Callable[[str], str]) -> str:
+    """A text with its links to other notebooks as they are where it is read.
+
+    Args:
+        text: Markdown, or a notebook's file with Markdown in it.
+        place: Where the notebook of a lab is there, by the lab's name; empty where it is not, and only the words of
+            the link stay.
+    """
+
+    def there(link: Any) -> str:
+        words, name, anchor = link.groups()
+        return f"[{words}]({found}{anchor or ''})" if (found := place(name)) else str(words)
+
+    return str(_LINK.sub(there, text))

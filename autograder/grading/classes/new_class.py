@@ -6,9 +6,8 @@ import contextlib
 import copy
 import shutil
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import re2
 from alembic.config import Config
 from alembic.script import ScriptDirectory
 from nbgrader import api, dbutil
@@ -23,7 +22,7 @@ from autograder.grading.errors import ClassExists, GradingError, clear_disk_erro
 from autograder.grading.following.origins import remember
 from autograder.grading.rebuilding import nodes
 from autograder.masters.errors import MasterError
-from autograder.masters.layout import lab_name, masters
+from autograder.masters.layout import lab_name, masters, relinked
 from autograder.masters.source import source_notebook
 
 if TYPE_CHECKING:
@@ -198,10 +197,6 @@ def _fill(path: Path, sources: Sources, config: str) -> None:
     remember(ClassDirectory(path), sources)
 
 
-_LINK = re2.compile(r"\[([^\[\]]+)\]\((\w+)\.ipynb\)")
-"""A link from one notebook of the chapter to another one beside it."""
-
-
 def write_source(
     directory: ClassDirectory, name: str, notebook: NotebookNode, assignments: Container[str]
 ) -> None:
@@ -220,14 +215,13 @@ def write_source(
         OSError: It could not be written.
     """
 
-    def in_a_class(link: Any) -> str:
-        title, other = link.groups()
-        return f"[{title}](../{other}/{other}.ipynb)" if other in assignments else title
+    def in_a_class(other: str) -> str:
+        return f"../{other}/{other}.ipynb" if other in assignments else ""
 
     linked = copy.deepcopy(notebook)
     for cell in linked.cells:
         if cell.cell_type == "markdown":
-            cell.source = _LINK.sub(in_a_class, cell.source)
+            cell.source = relinked(cell.source, in_a_class)
     (directory.path / "source" / name / f"{name}{SUFFIX}").write_text(nodes.text(linked), encoding="utf-8")
 
 

@@ -61,19 +61,22 @@ class WhatCounts:
         by_assignment: dict[str, list[Row]] = {}
         for row in rows:
             by_assignment.setdefault(row.assignment, []).append(row)
-        most = {name: sum(row.max_score for row in own) for name, own in by_assignment.items()}
-        points = {name: total(own) for name, own in by_assignment.items() if most[name]}
+        worth = {name: sum(row.max_score for row in own) for name, own in by_assignment.items()}
+        points = {name: total(own) for name, own in by_assignment.items() if worth[name]}
         to_come = any(row.is_blank and row.max_score and row.state != NOT_SUBMITTED for row in rows)
         if to_come or total(rows) is None:
             return list(rows)
-        lowest = sorted(
-            points, key=lambda name: -1.0 if points[name] is None else (points[name] or 0.0) / most[name]
-        )
-        for name in lowest[: min(self.drop_lowest, len(lowest) - 1)]:
-            reason = f"among the {self.drop_lowest} lowest of {len(lowest)} assignments"
-            score, named = 0.0 - (points[name] or 0.0), rows[0].name
+        shares = {name: -1.0 if own is None else own / worth[name] for name, own in points.items()}
+        for name in sorted(shares, key=shares.__getitem__)[: min(self.drop_lowest, len(shares) - 1)]:
             dropped = Row(
-                rows[0].student, name, DROPPED, score, -most[name], DROPPED, reason=reason, name=named
+                rows[0].student,
+                name,
+                DROPPED,
+                0.0 - (points[name] or 0.0),
+                -worth[name],
+                DROPPED,
+                reason=f"among the {self.drop_lowest} lowest of {len(shares)} assignments",
+                name=rows[0].name,
             )
             by_assignment[name].append(dropped)
         return [row for own in by_assignment.values() for row in own]
