@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from random import Random
 
 import pytest
@@ -64,6 +65,14 @@ def test_one_answer_is_right_in_one_case_at_most() -> None:
         planted = [case for _, case in mismatch.mismatches(Random(seed))]
         for key in mismatch.KEYS:
             assert len({case[key] for case in planted}) == len(planted)
+
+
+def test_the_names_that_are_told_give_no_topic_away() -> None:
+    for seed in range(300):
+        for _, case in mismatch.mismatches(Random(seed)):
+            told = set(re.findall("[a-z]+", f"{case['talker']} {case['listener']}"))
+            asked = set(re.findall("[a-z]+", f"{case['topic_published']} {case['topic_subscribed']}"))
+            assert not told & asked
 
 
 def test_a_notebook_s_class_is_held_until_it_is_known() -> None:

@@ -37,15 +37,16 @@ _OTHERS = ("zapper", "zester", "zipper", "zither")
 """The former come first in every list of names and the latter last, so that who takes the first one that there is, or
 the last, takes the same in each run."""
 _QUALITIES = ("state", "status", "level", "position", "speed", "report", "alarm", "mode")
-_TYPES = (
-    "std_msgs/msg/String", "std_msgs/msg/Int32", "std_msgs/msg/Float64", "std_msgs/msg/Bool", "std_msgs/msg/Int64",
-    "std_msgs/msg/UInt8",
+_TYPES = tuple(
+    f"std_msgs/msg/{name}"
+    for name in (
+        "String", "Bool", "Char", "Int8", "Int16", "Int32", "Int64", "UInt8", "UInt16", "UInt32", "Float32", "Float64",
+    )
 )  # fmt: skip
-_OTHER_TYPES = (
-    "geometry_msgs/msg/Twist",
-    "geometry_msgs/msg/Point",
-    "geometry_msgs/msg/Pose",
-    "geometry_msgs/msg/Vector3",
+"""Three of twelve in the right order: one guess in 1,320 is right."""
+_OTHER_TYPES = tuple(
+    f"geometry_msgs/msg/{name}"
+    for name in ("Accel", "Point", "Pose", "Pose2D", "Quaternion", "Transform", "Twist", "Vector3", "Wrench")
 )
 """Types of another package. Where the two sides differ, the listener has one of these."""
 
@@ -124,8 +125,9 @@ def mismatch(
     )
     numbers = random.sample(range(100, 1000), 3)
     return {
-        "talker": f"{thing}_{numbers[0]}",
-        "listener": f"{quality}_monitor_{numbers[1]}",
+        # The subject is told these names: no word of a topic may be among theirs.
+        "talker": f"driver_{numbers[0]}",
+        "listener": f"monitor_{numbers[1]}",
         "bystander": f"{third}_{numbers[2]}",
         "beside": {f"/{third}/{quality}": kind, f"/{last}/{quality}": kind},
         "topic_published": topic,
