@@ -184,10 +184,19 @@ def broken_patience(part: Part) -> str:
     return f"gave up after {waited(part):.1f} s, where {PATIENCE} was {limit:g}"
 
 
-def other_names(evidence: Evidence, role: str) -> set[str]:
-    """The names under which it looks for a server, other than the task's: who looks there may give up as it does."""
+def looks_elsewhere(evidence: Evidence, absent: Part, role: str) -> bool:
+    """True if a client that was never seen to ask for anything was seen to look for a server all the same.
+
+    One that ends, whether there is a server or not, must have looked under another name than the task's. One that goes
+    on waiting may have the task's name and another type.
+
+    Args:
+        evidence: All of its runs.
+        absent: The run without a server.
+        role: ``client`` or ``action_client``.
+    """
     named = {name for part in evidence for name in part.endpoints(role)}
-    return named - {evidence.reference.only(role)[0]}
+    return bool(named if absent.ending is None else named - {evidence.reference.only(role)[0]})
 
 
 def ended_at_once(part: Part) -> bool:

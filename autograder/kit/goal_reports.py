@@ -14,7 +14,7 @@ import re2
 from autograder.kit import outcome_words as words
 from autograder.kit.crashes import SLIPS
 from autograder.kit.evidence import INTERRUPTED
-from autograder.kit.giving_up import objection, other_names, remark
+from autograder.kit.giving_up import looks_elsewhere, objection, remark
 from autograder.kit.model import Finding
 from autograder.kit.texts_said import mentions
 
@@ -315,11 +315,9 @@ def given_up(evidence: Evidence) -> str:
     asked = (
         asked_for(late)
         or (late.traceback and not raised_on_purpose(late) and any(map(asked_for, evidence)))
-        or other_names(evidence, "action_client")
+        or looks_elsewhere(evidence, part, "action_client")
     )
-    if part.ending is not None and not asked:
-        return "never sent a goal to anybody"
-    return objection(part)
+    return objection(part) if asked or not part.events else "never sent a goal to anybody"
 
 
 # --- criteria -----------------------------------------------------------------------------------------------

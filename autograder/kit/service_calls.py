@@ -175,13 +175,13 @@ def gives_up_in_time(evidence: Evidence) -> Finding:
     part = evidence.part(ABSENT)
     # Who ends at once whether there is a service or not has not given up. But one that looks under another name has.
     # A client that gives up at once may or may not have called in the other runs: timing decides.
-    asked = bool(requests(evidence.part(LATE)) or giving_up.other_names(evidence, "client"))
+    asked = bool(requests(evidence.part(LATE)) or giving_up.looks_elsewhere(evidence, part, "client"))
     numbers = part.inputs.get("numbers", ())
     # Who names the sum has not given up, but added up by itself; a sum that is one of the numbers shows nothing.
     if numbers and sum(numbers) not in numbers and mentions(part.said(), sum(numbers)):
         wrong = "named a sum that no service gave"
-    elif part.ending is not None and not asked:
-        wrong = "ends in the same way, without a call, where the service is only late"
+    elif part.events and not asked:
+        wrong = "does the same, without a call, where the service is only late"
     else:
         usual = [other for other in Client(evidence).served if other.name != LATE and reports(other)]
         reported = {giving_up.shape(line) for other in usual for line in _reporting(other)}

@@ -176,6 +176,28 @@ def test_how_a_client_takes_it_that_nobody_serves(part: Part, expected: str) -> 
     assert objection(part) == expected
 
 
+@pytest.mark.parametrize("exercise_id", ["exercise_1_2.three_ints", "lab_1_3.client", "lab_1_4.client"])
+@pytest.mark.parametrize("is_client", [True, False])
+def test_words_about_waiting_bring_a_point_only_to_what_was_a_client_of_something(
+    exercise_id: str, is_client: bool
+) -> None:
+    stored = reference.load(exercise_id)
+    absent = next(part.name for part in stored.parts if part.name.startswith("there is no"))
+    role = "action_client" if exercise_id == "lab_1_4.client" else "client"
+    of_another_type = {"nodes": ["/client"], role: {stored.only(role)[0]: "std_srvs/srv/Trigger"}}
+    on_graph = [Event(0.1, "interface", "graph", of_another_type)] if is_client else []
+    parts = [
+        Part(
+            part.name,
+            part.inputs,
+            [*on_graph, *(_waits(*EACH_SECOND).events if part.name == absent else [ENDED])],
+        )
+        for part in stored.parts
+    ]
+    limit = next(one for one in exercises.get(exercise_id).criteria if one.name == "limit")
+    assert limit.judge(Evidence(parts, stored)).passed is is_client
+
+
 GREETING, GONE = (0.1, "asking for 1 + 2"), (5.0, "no service")
 NAMELESS = (
     (5.0, "Traceback (most recent call last):"),
