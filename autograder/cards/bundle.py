@@ -30,7 +30,9 @@ def mimebundle(
         short: Leave out all but the points, what happened and what to do next.
     """
     return {
-        "text/html": card_html(verdict, before=before, notice=notice, solution=solution, short=short),
+        "text/html": card_html(
+            verdict, before=before, notice=notice, solution=solution, short=short, buttons=True
+        ),
         "text/plain": card_text(verdict, before=before, notice=notice, solution=solution, short=short),
     }
 

@@ -44,6 +44,7 @@ def card_html(
     notice: str = "",
     solution: Solution | None = None,
     short: bool = False,
+    buttons: bool = False,
 ) -> str:
     """Show a verdict in JupyterLab, in nbgrader's feedback or on any page; everything is escaped.
 
@@ -53,6 +54,7 @@ def card_html(
         notice: Why the card is out of date; it is then dimmed. Empty for one that is not.
         solution: The reference solution, which is shown with full marks only.
         short: Leave out all but the points, what happened and what to do next.
+        buttons: With Check, Watch and Next, which only JupyterLab with the course's commands shows.
     """
     css, template = templates()
     card = _Card.of(verdict, before, notice)
@@ -63,6 +65,7 @@ def card_html(
         solution=None if short else offered,
         solution_heading=HEADING,
         other_way=OTHER,
+        buttons=buttons,
     )
 
 

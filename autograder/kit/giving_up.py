@@ -185,18 +185,20 @@ def broken_patience(part: Part) -> str:
 
 
 def looks_elsewhere(evidence: Evidence, absent: Part, role: str) -> bool:
-    """True if a client that was never seen to ask for anything was seen to look for a server all the same.
+    """True if a client that was never seen to ask for anything was seen to look for another server than the task's.
 
-    One that ends, whether there is a server or not, must have looked under another name than the task's. One that goes
-    on waiting may have the task's name and another type.
+    One that ends, whether there is a server or not, must have looked under another name. One that goes on waiting may
+    have had the task's name and another type.
 
     Args:
         evidence: All of its runs.
         absent: The run without a server.
         role: ``client`` or ``action_client``.
     """
-    named = {name for part in evidence for name in part.endpoints(role)}
-    return bool(named if absent.ending is None else named - {evidence.reference.only(role)[0]})
+    name, kind = evidence.reference.only(role)
+    looked_for = [found for part in evidence for found in part.endpoints(role).items()]
+    waits_on = absent.ending is None
+    return any(other != name or (waits_on and its_type != kind) for other, its_type in looked_for)
 
 
 def ended_at_once(part: Part) -> bool:

@@ -1,4 +1,4 @@
-"""Watch mode as a student uses it, with the real judge: a short card below the cell of the class follows each run."""
+"""Watch mode and the buttons as a student uses them, with the real judge."""
 
 from __future__ import annotations
 
@@ -56,3 +56,31 @@ def test_each_run_of_the_cell_shows_one_short_card_below_it(page: Page, lab: str
     expect(defined.locator(".agc-passed")).to_contain_text("10 of 10 points")
     expect(defined.locator(".agc")).to_have_count(1)
     look(page, "watched-passed")
+
+
+def test_a_task_is_done_with_the_buttons_alone(page: Page, lab: str) -> None:
+    from playwright.sync_api import expect
+
+    page.goto(lab.format("lab/tree/01_ros2_fundamentals/lab_1_2.ipynb"))
+    notebook = OpenNotebook(page)
+    expect(page.locator("#jp-main-statusbar")).to_contain_text("Python 3 (ipykernel) | Idle")
+    expect(notebook.run(r"^import time")).to_contain_text(re.compile(r"ROS 2 is up"))
+    notebook.write(r"^class TalkerNode", answer("wrong/topic_name.py"))
+    defined, checked = notebook.cell(r"^class TalkerNode"), notebook.cell(r'^check\("lab_1_2.talker"')
+    look(page, "buttons-of-a-cell")
+    defined.locator(".jp-cell-toolbar").get_by_text("Check", exact=True).click()
+    expect(checked.locator(".agc-failed")).to_contain_text("chater")
+    expect(checked.locator(".agc-acts")).to_be_visible()
+    look(page, "buttons-of-a-card")
+
+    # From now on the class is checked again as soon as its cell has run.
+    notebook.write(r"^class TalkerNode", answer("right/as_hinted.py"))
+    notebook.run(r"^class TalkerNode")
+    expect(defined.locator(".agc-passed")).to_contain_text("10 of 10 points")
+    checked.locator(".agc-acts").get_by_role("button", name="Check again").click()
+    expect(checked.locator(".agc-passed")).to_contain_text("10 of 10")
+    look(page, "buttons-passed")
+    checked.locator(".agc-acts").get_by_role("button", name="Watch").click()
+    expect(page.locator(".Toastify")).to_contain_text("TalkerNode is no longer checked by itself.")
+    checked.locator(".agc-acts").get_by_role("button", name="Next task").click()
+    expect(page.locator(".jp-Cell.jp-mod-active")).to_contain_text("class ListenerNode")

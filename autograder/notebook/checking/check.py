@@ -73,6 +73,11 @@ def check(exercise: str, subject: Any) -> float:
     keep(verdict)
     if is_validating():
         raise_unless_full(verdict)
+    elif is_live():
+        # Here, because a watched class is checked through this module.
+        from autograder.notebook.checking.watched_cells import watch_after
+
+        watch_after(verdict, subject)
     return Score(verdict.score)
 
 

@@ -1,4 +1,6 @@
-"""Watch mode: a class is checked again each time that its cell defines it anew, on the student's request.
+"""Watch mode: a class is checked again each time that its cell defines it anew.
+
+It begins by itself after a check that did not earn all points, or on the student's request.
 
 The cell ends as fast as ever, and the check goes on while the kernel has nothing else to do. A check swaps rclpy's
 default context and reads all that is printed, so it cannot go on beside a cell: it gives way to whatever is run next,
@@ -21,7 +23,7 @@ from autograder.notebook.checking.card_display import display_card, is_live, upd
 from autograder.notebook.checking.check import converse, what_to_pass
 from autograder.notebook.checking.judge_link import JudgeLink, JudgeUnreachable
 from autograder.notebook.checking.kept_checks import keep
-from autograder.verdict import not_checked
+from autograder.verdict import State, not_checked
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -158,6 +160,7 @@ class Watches:
 
 
 _watches: Watches | None = None
+_ended_by_the_student = False
 
 
 def watch(exercise: str, subject: Callable[..., Any]) -> Watch:
@@ -173,9 +176,10 @@ def watch(exercise: str, subject: Callable[..., Any]) -> Watch:
     Raises:
         TypeError: The subject is neither a class nor a function; the message says what to write instead.
     """
-    global _watches
+    global _watches, _ended_by_the_student
     if not (inspect.isclass(subject) or inspect.isfunction(subject)):
         raise TypeError(what_to_pass(exercise, subject, "watch"))
+    _ended_by_the_student = False
     begun = Watch(exercise, subject.__name__, subject)
     if is_live():
         _watches = _watches or Watches(notebook_shell())
@@ -188,6 +192,31 @@ def watch(exercise: str, subject: Callable[..., Any]) -> Watch:
 
 
 def unwatch() -> None:
-    """Watch nothing any more; what the cards say stays."""
+    """Watch nothing any more, and begin with nothing by itself; what the cards say stays."""
+    global _ended_by_the_student
+    _ended_by_the_student = True
     if _watches is not None:
         _watches.all.clear()
+
+
+def switch(exercise: str, subject: Callable[..., Any]) -> str:
+    """Watch a class or function, or nothing where it is watched already: the button *Watch*.
+
+    Args:
+        exercise: The exercise's id.
+        subject: The class or function.
+
+    Returns:
+        What holds from now on, in words.
+    """
+    if _watches is not None and exercise in _watches.all:
+        unwatch()
+        return f"{subject.__name__} is no longer checked by itself."
+    return repr(watch(exercise, subject))
+
+
+def watch_after(verdict: Verdict, subject: Any) -> None:
+    """Begin to watch after a check that showed something to mend, unless the student has ended that."""
+    is_code = inspect.isclass(subject) or inspect.isfunction(subject)
+    if verdict.state is State.FAILED and is_code and not _ended_by_the_student:
+        watch(verdict.exercise, subject)

@@ -146,3 +146,32 @@ def test_nothing_is_watched_while_a_class_is_graded_or_validated(notebook: Any, 
 def test_only_what_has_a_cell_can_be_watched() -> None:
     with pytest.raises(TypeError, match=r"watch\('lab', …\) takes your class or function"):
         watched_cells.watch("lab", "ros2_ws")  # type: ignore[arg-type]
+
+
+CHECKED = """
+from types import SimpleNamespace
+scores[:] = [5.0, 10.0]
+watched_cells.watch_after(converse(None, "lab", Talker, SimpleNamespace(doing=str)), Talker)
+"""
+
+
+def test_watching_begins_by_itself_after_a_check_that_showed_something_to_mend_until_the_student_ends_it(
+    notebook: Any,
+) -> None:
+    found = Watched(notebook)
+    found.run(JUDGE + "watched_cells._ended_by_the_student = False", "judge")
+    found.run(TALKER.format("one"), "talker")
+    found.run(CHECKED, "check")
+    found.run(TALKER.format("two"), "talker")
+    assert "10 of 10 points" in found.wait_for("10 of 10 points")
+    found.run(
+        "assert watched_cells.switch('lab', Talker) == 'Talker is no longer checked by itself.'", "button"
+    )
+    found.run(CHECKED, "check")
+    found.run(TALKER.format("three"), "talker")
+    assert len(found.cards) == 1, "the student has ended it"
+    found.run("assert 'whenever its cell is run' in watched_cells.switch('lab', Talker)", "button")
+    found.run(TALKER.format("four"), "talker")
+    while len(found.cards) < 2:
+        found._hear("")
+    found.run("unwatch()", "end")
