@@ -80,6 +80,12 @@ def after_result(part: Part) -> list[str]:
     return part.said(after=result) if result else []
 
 
+def says_nothing_of_its_success(part: Part) -> bool:
+    """True if the goal of a run came to its end and nothing was said of that, nor shown by an exception."""
+    ended = part.first("result") is not None
+    return ended and not part.traceback and not any(map(str.strip, after_result(part)))
+
+
 def aborted_run(evidence: Evidence) -> Part | None:
     """The run in which the server agreed to cancel and the goal was aborted; None where it did not come to that."""
     part = evidence.part(AGREED)

@@ -17,9 +17,10 @@ from exercise_1_3._cancel_evidence import (
     expected_order,
     goals,
     orders_as_seen,
+    says_nothing_of_its_success,
     telling_count,
 )
-from exercise_1_3._cancel_words import false_claim, says_canceled
+from exercise_1_3._cancel_words import HAS_SUCCEEDED, false_claim, says_canceled
 
 from autograder.kit import goal_mistakes
 from autograder.kit.common_mistakes import only_if_ended
@@ -167,12 +168,18 @@ def cancel_repeated(evidence: Evidence) -> Advice | None:
 
 
 def status_not_reported(evidence: Evidence) -> Advice | None:
-    """It cancels, and never says how the goal ended."""
-    part = evidence.part(HONOURED)
-    if part.first("cancel") is None or says_canceled(
-        after_result(part), evidence.part(CANCEL_REFUSED).said()
-    ):
+    """It cancels, and of one of its goals it never says how that ended."""
+    part, refused = evidence.part(HONOURED), evidence.part(CANCEL_REFUSED)
+    if part.first("cancel") is None:
         return None
+    if says_canceled(after_result(part), refused.said()):
+        if not says_nothing_of_its_success(refused):
+            return None
+        return Advice(
+            f"One goal of your client {HAS_SUCCEEDED}, and your client said nothing of how it ended.",
+            "A cancel is a request, which the server may refuse. Log the name of the status whatever it is, not only "
+            "CANCELED.",
+        )
     if part.first("result_request") is None:
         return Advice(
             "Your client asked to cancel, but it never asked for the result, so it cannot know how the goal "

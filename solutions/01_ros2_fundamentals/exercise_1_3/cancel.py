@@ -17,11 +17,12 @@ from exercise_1_3._cancel_evidence import (
     expected_order,
     left_before_its_answer,
     orders_as_seen,
+    says_nothing_of_its_success,
     telling_count,
 )
 from exercise_1_3._cancel_mistakes import MISTAKES
 from exercise_1_3._cancel_scenario import scenario
-from exercise_1_3._cancel_words import false_claim, says_canceled
+from exercise_1_3._cancel_words import HAS_SUCCEEDED, false_claim, says_canceled
 
 from autograder.kit.draft import Draft
 from autograder.kit.goal_reports import (
@@ -59,7 +60,10 @@ def cancels_in_the_window(evidence: Evidence) -> Finding:
         return Finding(False, expected, LEFT)
     if cancels_every_goal(evidence):
         return Finding(False, expected, "a request to cancel every goal of the server")
-    return Finding(inside and sends_the_goal(evidence).passed, expected, seen)
+    goal = sends_the_goal(evidence)
+    return Finding(
+        inside and goal.passed, expected, seen if goal.passed else f"{seen}, and another goal ({goal.seen})"
+    )
 
 
 def cancels_once(evidence: Evidence) -> Finding:
@@ -122,6 +126,8 @@ def reports_the_status(evidence: Evidence) -> Finding:
     if claim:
         words, ended = claim
         return Finding(False, expected, f"“{words}” about a goal that {ended}")
+    if says_nothing_of_its_success(refused):
+        return Finding(False, expected, f"nothing about a goal that {HAS_SUCCEEDED}")
     return Finding(True, expected, f"“{said[-1]}”")
 
 
