@@ -12,17 +12,31 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
+from typing import TYPE_CHECKING
 
 import psutil
 
+from autograder.boxes.held_folder import HeldFolder
 from autograder.parent_death import adopt_orphans, die_with_parent
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
 
 
 def main(*command: str) -> int:
     """The exit code of the program; as of a shell where a signal has ended it."""
     adopt_orphans()
-    process = subprocess.Popen(command, preexec_fn=_as_from_a_terminal)
+    os.environ.setdefault("PYTEST_DEBUG_TEMPROOT", tempfile.gettempdir())
+    with HeldFolder("course-tests-") as folder:
+        code = _exit_code(command, {**os.environ, "TMPDIR": str(folder.path)})
+        end_all()
+    return code if code >= 0 else 128 - code
+
+
+def _exit_code(command: Sequence[str], environment: Mapping[str, str]) -> int:
+    process = subprocess.Popen(command, env=environment, preexec_fn=_as_from_a_terminal)
     signal.signal(signal.SIGINT, lambda *_: None)
     signal.signal(signal.SIGTERM, lambda *_: _kill(process.pid))
     die_with_parent(number=signal.SIGTERM)
@@ -30,9 +44,8 @@ def main(*command: str) -> int:
     while ended != process.pid:  # an orphan
         ended, status = os.wait()
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    process.returncode = code = os.waitstatus_to_exitcode(status)
-    end_all()
-    return code if code >= 0 else 128 - code
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return process.returncode
 
 
 def below() -> dict[int, str]:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import select
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
+from autograder.boxes.held_folder import HeldFolder
 from autograder.clean_stdout import private_stdout
 from autograder.verdict import State, Verdict, from_json
 
@@ -112,8 +111,8 @@ def checked(answer: Answer, seed: str, *, warm: bool) -> tuple[Verdict, Checked 
     from autograder.judge.subjects.command import checked_here
 
     exercise = exercises.get(answer.exercise)
-    with tempfile.TemporaryDirectory(prefix="answer-") as folder:
-        command = answer.unpack(Path(folder))
+    with HeldFolder("autograder-answer-") as folder:
+        command = answer.unpack(folder.path)
         if warm and answer.may_be_warm and not exercise.wraps_commands:
             return _checked_warm(exercise, command, seed)
         return checked_here(exercise, command, seed, None)

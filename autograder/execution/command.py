@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import contextlib
-import tempfile
 import time
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
 
 from autograder.boxes.execution import CellType
+from autograder.boxes.held_folder import HeldFolder
 from autograder.execution.plan import Planned, plan
 from autograder.execution.problems import Problem, problems_of
 from autograder.execution.report import write_report
@@ -21,6 +20,7 @@ from autograder.grading.running.worker import JUDGE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
     from autograder.boxes.execution import Cell, Execution
 
@@ -109,11 +109,13 @@ def execute_all(
     of_task = {id(item.task): item for item in planned}
     results: dict[int, Executed] = {}
     # Short, because the names of Unix sockets will be in it.
-    scratch = Path(tempfile.mkdtemp(prefix="execute-"))
-    with BatchProgress(console, len(planned), doing="executing", did="executed") as progress:
+    with (
+        HeldFolder("autograder-run-") as scratch,
+        BatchProgress(console, len(planned), doing="executing", did="executed") as progress,
+    ):
         running = engine.execute_all(
             [item.task for item in _longest_first(planned)],
-            scratch,
+            scratch.path,
             jobs,
             on_start=lambda task: progress.started(task.label),
             judge=judge,
