@@ -90,7 +90,7 @@ NIGHTLY = (
 
 @dataclass(frozen=True)
 class Draw:
-    """Tests of which some run each day.
+    """Tests of which some run each day, of those that no line above leaves to ``--all``.
 
     Attributes:
         tests: The beginning of their ids.
@@ -103,8 +103,19 @@ class Draw:
     group: str = ""
 
 
+_LIVE = "tests/judge/test_bank.py::test_answer_is_judged_right"
+_BUILT = (
+    "exercise_1_1.remap",
+    "lab_1_1.hello",
+    "lab_1_2.programs",
+    "lab_1_3.interface",
+    "lab_1_3.programs",
+    "lab_1_4.programs",
+)
+"""Exercises whose answers are built or launched: seven seconds of a processor each, where others take two."""
 DRAWS = (
-    Draw("tests/judge/test_bank.py::test_answer_is_judged_right[", 4, "/"),
+    Draw(f"{_LIVE}[", 4, "/"),
+    *(Draw(f"{_LIVE}[{exercise}/", 2) for exercise in _BUILT),
     Draw("tests/attacks/test_attacks.py::test_it_is_defeated[", 1, "-"),
     Draw("tests/test_left_behind.py::test_everything_ends_with_the_command[", 1, "-"),
     Draw("tests/test_recording.py::test_recording_again_gives_the_same_file[", 1),
