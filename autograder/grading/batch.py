@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from autograder.grading.rebuilding.source_points import GradedCell
     from autograder.grading.running.places import Execute
     from autograder.grading.table.entries import Entries
+    from autograder.grading.table.roster import Roster
     from autograder.grading.task import Task
 
 
@@ -112,9 +113,10 @@ def grade(
         place = places.on_cluster(directory, scheduler, judge, tell)
     with directory.lock(), contextlib.ExitStack() as stack:
         places.remove_leftovers(directory)
-        in_sections = read_roster(directory).of_sections(sections) if sections else ()
+        roster = read_roster(directory)
+        in_sections = roster.of_sections(sections) if sections else ()
         asked = AskedFor(assignments, [*students, *in_sections])
-        batch = _Batch(directory, console, asked, feedback=feedback, dry_run=dry_run)
+        batch = _Batch(directory, console, roster, asked, feedback=feedback, dry_run=dry_run)
         batch.collect()
         batch.plan(again)
         # Before anything is taken back: where nobody can execute anything, all stays as it is.
@@ -127,8 +129,16 @@ def grade(
 
 class _Batch:
     def __init__(
-        self, directory: ClassDirectory, console: Console, asked: AskedFor, *, feedback: bool, dry_run: bool
+        self,
+        directory: ClassDirectory,
+        console: Console,
+        roster: Roster,
+        asked: AskedFor,
+        *,
+        feedback: bool,
+        dry_run: bool,
     ) -> None:
+        self._roster = roster
         self._asked = asked
         self._dry_run = dry_run
         self._directory = directory
@@ -189,7 +199,7 @@ class _Batch:
         there = {submission.student for submission in found}
         # Who asks for a folder that was refused is told why, further down.
         there |= {one.path.name for one in refused if one.path.parent == self._directory.path / "submitted"}
-        check_known(students, sorted(there | read_roster(self._directory).students.keys()), "student")
+        check_known(students, sorted(there | self._roster.students.keys()), "student")
         self._refused = refused
         names = {assignment: self._directory.notebooks(assignment) for assignment in self._cells}
         for submission in found:
@@ -307,14 +317,13 @@ class _Batch:
                 self._notices.append(
                     f"{student}/{assignment} is not in submitted any more; its points stay in the gradebook"
                 )
-        roster = read_roster(self._directory)
         rows = true_rows(
-            roster.names,
+            self._roster.names,
             self._cells,
             judged,
             entries,
             works,
-            excused=roster.excused,
+            excused=self._roster.excused,
             what_counts=self._what_counts,
         )
         changes: list[Difference] = []

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 _PAGES = ("index.html", GRADESCOPE)
 """Files that an LMS itself adds to a download."""
+_CAME = (State.PLACED, State.UNCHANGED, State.EARLIER)
 _OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".tgz", ".tar", ".bz2", ".xz", ".zst")
 
 
@@ -120,8 +121,14 @@ class _Collecting:
             (student, name, self._in_utc(self._student_of.time_of(student, name))) for student, name in asked
         )
         placing.note_times((student, name, when) for student, name, when in told if when is not None)
-        came = {one.student for one in self._outcomes if one.state in (State.PLACED, State.UNCHANGED)}
-        self._outcomes = [_alone(one) if one.student not in came else one for one in self._outcomes]
+        came = {(one.student, one.assignment) for one in self._outcomes if one.state in _CAME}
+        came |= {(student, "") for student, _ in came}
+        self._outcomes = [
+            _alone(one)
+            if one.state == State.BESIDE and one.student and (one.student, one.assignment) not in came
+            else one
+            for one in self._outcomes
+        ]
         WaitingList(self._directory).note(self._outcomes)
         return self._report(work)
 
@@ -314,14 +321,15 @@ class _Collecting:
             )
             return self._outcome(file, State.NOT_PLACED, reason, who)
         place = self._directory.path / "submitted" / name / (self._assignment_of(file, who) or "ASSIGNMENT")
-        return self._soft(file, f"it is no notebook: ask for the notebook, or put it into {place}", who)
+        return self._soft(file, "it is no notebook", who, f"ask for the notebook, or put it into {place}")
 
     def _refuse(self, file: File, reason: str, who: _Who | None = None) -> None:
         self._outcomes.append(self._outcome(file, State.NOT_PLACED, reason, who))
 
-    def _soft(self, file: File, reason: str, who: _Who | None) -> Outcome:
+    def _soft(self, file: File, reason: str, who: _Who | None, what_to_do: str = "") -> Outcome:
         """An outcome that somebody has to look at, unless its student's notebook has come, too."""
-        return self._outcome(file, State.BESIDE if _only(who) else State.NOT_PLACED, reason, who)
+        outcome = replace(self._outcome(file, State.BESIDE, reason, who), what_to_do=what_to_do)
+        return outcome if outcome.student else _alone(outcome)
 
     def _outcome(self, file: File, state: State, reason: str, who: _Who | None) -> Outcome:
         student = _only(who)
@@ -342,8 +350,9 @@ class _Collecting:
 
 
 def _alone(one: Outcome) -> Outcome:
-    """A file that is beside its student's notebook needs no place; one that came without any does."""
-    return replace(one, state=State.NOT_PLACED) if one.state == State.BESIDE and one.student else one
+    """The outcome of a file that came without its student's notebook of that assignment: it needs a place."""
+    reason = f"{one.reason}: {one.what_to_do}" if one.what_to_do else one.reason
+    return replace(one, state=State.NOT_PLACED, reason=reason)
 
 
 def _only(who: _Who | None) -> Student | None:

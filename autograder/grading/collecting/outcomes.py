@@ -50,6 +50,7 @@ class Outcome:
         when: When it was handed in, in UTC; None where nothing says so.
         late: Whether the LMS marks it as late.
         replaced: Whether another one lay at its place, which is kept.
+        what_to_do: The advice if its student's notebook has not come; empty where the reason says it.
     """
 
     label: str
@@ -60,6 +61,7 @@ class Outcome:
     when: datetime | None = None
     late: bool = False
     replaced: bool = False
+    what_to_do: str = ""
 
 
 @dataclass(frozen=True)

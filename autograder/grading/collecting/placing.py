@@ -212,8 +212,13 @@ def _best(
     for one in files:
         if one is not best:
             same = one.content == best.content
-            counts = "is newer" if best.is_named <= one.is_named else "has the notebook's own name"
-            reason = "" if same else f"{best.label} {counts} and counts; this one is kept"
+            place = f"submitted/{best.student}/{best.assignment}/{best.notebook}{SUFFIX}"
+            counts = (
+                "is newer and counts; this one is kept"
+                if best.is_named <= one.is_named
+                else f"has the notebook's own name and counts; this one is kept: to let it count, put it at {place}"
+            )
+            reason = "" if same else f"{best.label} {counts}"
             others.append((one, one.outcome(State.UNCHANGED if same else State.EARLIER, reason)))
     return best, others
 

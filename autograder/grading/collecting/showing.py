@@ -38,7 +38,8 @@ def _lines(report: CollectReport) -> Iterator[str]:
     for state in (State.EARLIER, State.BESIDE, State.NOT_PLACED):
         for one in report.having(state):
             whose = f"{one.student}: " if one.student else ""
-            yield f"{state:<12} {one.label}: {whose}{one.reason}"
+            also = "; the notebook has come, too" if state == State.BESIDE and one.student else ""
+            yield f"{state:<12} {one.label}: {whose}{one.reason}{also}"
     for assignment, students in report.missing.items():
         yield f"nothing of   {assignment}: {', '.join(students)}"
     untimed = {student for students in report.untimed.values() for student in students}

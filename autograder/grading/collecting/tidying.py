@@ -129,7 +129,9 @@ def _tidy_assignment(folder: Path, names: list[str], found: Tidied) -> None:
         elif (name and place.exists()) or (
             not name and all((folder / f"{one}{SUFFIX}").exists() for one in names)
         ):
-            found.notices.append(f"{label} was left out: the notebook beside it is graded")
+            found.notices.append(
+                f"{label} was left out: the notebook beside it is graded; to let this one count, put it there"
+            )
         elif name or entry.suffix.lower() == ".zip":
             found.refused.append(Refused(entry, f"it is not graded: put the notebook that counts at {place}"))
 

@@ -15,7 +15,7 @@ from autograder.grading.entering import attempts
 from autograder.grading.entering.journal import Journal
 from autograder.grading.errors import GradingError, clear_disk_errors
 from autograder.grading.overview import statistics as figures
-from autograder.grading.reporting.report import EXCUSED, NOT_SUBMITTED, columns
+from autograder.grading.reporting.report import DROPPED, EXCUSED, NOT_SUBMITTED, columns
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.table.class_table import ClassTable, by_exercise, read_table
 from autograder.page_templates import page_templates
@@ -86,6 +86,7 @@ def _page(directory: ClassDirectory, table: ClassTable, *, names: bool, folder: 
         absent=[student for student in table.students if student not in there],
         exercises=columns(table.rows),
         rows={student: by_exercise(table.of(student)) for student in table.students},
+        dropped=_dropped(table),
         cell=_cell,
         mean=statistics.fmean(totals),
         median=statistics.median(totals),
@@ -114,6 +115,15 @@ def _people(directory: ClassDirectory, table: ClassTable, *, names: bool, folder
         name = table.roster.students[student].name
         people[student] = _Person(f"{name} ({student})" if name else student, links)
     return people
+
+
+def _dropped(table: ClassTable) -> dict[str, list[str]]:
+    """The assignments that ``drop_lowest`` leaves out of a student's total; empty where it leaves out none."""
+    found: dict[str, list[str]] = {}
+    for row in table.rows:
+        if row.exercise == DROPPED:
+            found.setdefault(row.student, []).append(row.assignment)
+    return found
 
 
 def _cell(row: Row | None) -> str:

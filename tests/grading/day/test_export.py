@@ -22,6 +22,7 @@ from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.forms import read_path
 from autograder.grading.errors import GradingError
 from autograder.grading.exporting.export import export
+from autograder.grading.overview.page import write_report
 from autograder.grading.running import engine
 
 if TYPE_CHECKING:
@@ -314,6 +315,9 @@ def test_the_lowest_assignments_leave_the_total_and_nothing_else(
     export(graded.path, "canvas")
     header, *lines = rows(graded.path / "export" / "canvas.csv")
     assert next(line[5:] for line in lines if line[3] == "ada") == ["18.5", "3.5"]
+    page = write_report(graded.path).read_text()
+    assert "<th>left out of the total</th>" in page
+    assert page.count("<td>own</td></tr>") == len(found)
     (graded.path / "class.toml").write_text("drop_lowest = 5")
     assert {row.student for row in graded.grade().rows if row.exercise == "dropped"} == {
         "ada",

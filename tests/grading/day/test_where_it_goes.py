@@ -120,6 +120,23 @@ def test_beside_a_notebook_pictures_need_no_place_and_archives_do(klass: TinyCla
     assert gathered(klass, tmp_path, ours | {"lovelaceada_101_9003_new.rar": b"Rar!"}).exit_code == 2
 
 
+def test_the_notebook_of_one_assignment_gives_no_place_to_a_file_of_another(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    other_lab(klass)
+    files = {
+        "lovelaceada_101_9001_lab_1_2.ipynb": work(klass),
+        "lovelaceada_101_9002_lab_1_2.py": "print()",
+        "lovelaceada_101_9003_lab_1_3.py": "print()",
+    }
+    report = gathered(klass, tmp_path, files)
+    assert [(one.label.rpartition("/")[2], one.reason) for one in report.having(State.BESIDE)] == [
+        ("lovelaceada_101_9002_lab_1_2.py", "it is no notebook")
+    ]
+    assert named(report, State.NOT_PLACED) == [("lovelaceada_101_9003_lab_1_3.py", "ada")]
+    assert "ask for the notebook" in why(report)
+
+
 def test_what_has_no_place_is_repeated_until_it_has_one(
     klass: TinyClass, fake_engine: FakeEngine, tmp_path: Path
 ) -> None:
@@ -169,8 +186,10 @@ def test_of_two_notebooks_the_one_with_the_exact_name_counts(klass: TinyClass, t
         report = gathered(klass, tmp_path, files)
         assert (why(report), lies(klass, "ada")) == ("", work(klass, 3))
         assert named(report, State.EARLIER) == [(MOODLE.format("Ada Lovelace", name), "ada")]
-    kept = klass.path / ".autograder" / "collected" / "lab_1_2" / "ada"
-    assert [path.read_text() for path in kept.iterdir()] == [work(klass, 4)]
+        (kept,) = report.having(State.EARLIER)
+        assert kept.reason.endswith("to let it count, put it at submitted/ada/lab_1_2/lab_1_2.ipynb")
+    folder = klass.path / ".autograder" / "collected" / "lab_1_2" / "ada"
+    assert [path.read_text() for path in folder.iterdir()] == [work(klass, 4)]
 
 
 @pytest.mark.filterwarnings("ignore:Duplicate name")
