@@ -3,20 +3,30 @@
 Names of files
     Canvas: github.com/mikewesthad/canvas-unzipper and github.com/TimHanneman/Canvas_submission_sort (README.md):
     name, number, number of the file, the student's own name; LATE behind the name; -1 where it came again.
+    Moodle: github.com/johnhw/moodle_nbgrader (collect_files.py, update_gradesheet.py) and
+    github.com/cladelpino/MoodleAssignmentScripts (GenerateFolderStructure.bat): full name, number, what kind it is.
     Gradescope: github.com/djhuffman/gradescope_renaming_files (gradescope_rename_files.py) and
     github.com/ucbds-infra/otter-grader (otter/grade/metadata.py): a file or folder for each submission, and
     submission_metadata.yml, in which each has its submitters with name, sid and email.
-    Blackboard: github.com/vangef/BBGradebookOrganiser (README.md); times as in names of files that public programs
-    read (two excerpts of an index that names no repository).
-    Brightspace: github.com/OfficeCoffee/GradingFileProject (ToDo.md).
-    Moodle: github.com/johnhw/moodle_nbgrader (README.md) says how they are downloaded; the names of folders are those
-    that public submissions have as their packages (excerpts of an index that names no repository).
+    Blackboard: github.com/vangef/BBGradebookOrganiser and github.com/kwurst/bb-file-cleanup (README.md): assignment,
+    user name, attempt and time, the student's own name; a text file for each attempt.
+    Brightspace: github.com/OfficeCoffee/GradingFileProject (ToDo.md), in which there are two samples. No second
+    repository was found by name.
 
 Columns of lists
-    Canvas's gradebook, Moodle's grading worksheet with day and month in two orders, Gradescope's roster and scores:
-    each in several excerpts of that index.
-    From memory: Moodle's participants, and Canvas's submissions as a list (user_id and submitted_at are the names that
-    its interface for programs has).
+    Canvas's gradebook: github.com/ubraket513/mylab-to-canvas-gradebook (tests/fixtures/anonymized/canvas-valid.csv),
+    with a line about posting above the points, and github.com/myl7/mylmoe (docs/posts/cityu-ta-upload-canvas-grade.md).
+    Canvas's submissions: github.com/upenn/gradescope-canvas-crawler (data/schemas.md); the names are those of Canvas's
+    interface for programs.
+    Moodle's grading worksheet: github.com/apo5698/helli-grading (app/lib/helli/csv/adapter/moodle_grading_worksheet.rb)
+    and github.com/johnhw/moodle_nbgrader (collect_files.py). Day and month are in two orders.
+    Moodle's participants: github.com/tonechas/moodle-workshop-group-grades (README.md) and
+    github.com/jozsef-k/nbgutils (mstudent_import.py).
+    Gradescope's scores: github.com/upenn/gradescope-canvas-crawler (data/schemas.md) and, of a whole course,
+    github.com/matthigger/gradescope_mean (test/scope.csv). Gradescope's roster, and the
+    grades of GitHub Classroom: excerpts of an index that names no repository.
+
+From memory: the names of Google Classroom's files and of GitHub Classroom's folders.
 """
 
 from __future__ import annotations
@@ -170,6 +180,15 @@ def test_gradescopes_export_is_collected_with_its_times_and_groups(tiny: TinyCla
             "Student,ID,SIS User ID,SIS Login ID,Section,Quiz 1 (23)\n    Points Possible,,,,,10.00\n"
             '"Lovelace, Ada",101,,ada,XC 101,8.00\n"Student, Test",9,,x,XC 101,\n',
             ("ada", "Ada", "Lovelace", "", {"canvas": "101"}),
+        ),
+        (
+            "Student,ID,SIS User ID,SIS Login ID,Section,H2 (154),Homework Current Score\n,,,,,Manual Posting,\n"
+            '    Points Possible,,,,,10.00,(read only)\n"Lovelace, Ada",101,9001,ada@uni.example,MATH 1,2.5,80\n',
+            ("ada@uni.example", "Ada", "Lovelace", "", {"canvas": "101"}),
+        ),
+        (
+            '"First name",Surname,"Email address",Groups\nAda,Lovelace,ada@uni.example,"A, G1_1"\n',
+            ("ada@uni.example", "Ada", "Lovelace", "ada@uni.example", {}),
         ),
         (
             "\ufeffFirst name,Last name,ID number,Email address,Groups\nAda,Lovelace,ada,ada@uni.example,A\n",
