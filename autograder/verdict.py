@@ -66,7 +66,8 @@ class Moment:
     Attributes:
         t: Seconds since the check began to watch (simulated seconds where ``simulated`` is set).
         lane: Where it happened: a topic, service or action name, or ``"log"``.
-        direction: ``"from_subject"``, ``"to_subject"`` or ``"note"``.
+        direction: ``"from_subject"``, ``"to_subject"`` or ``"note"``; ``"expected"`` for what did not happen: a
+            message of the reference solution's that did not come.
         label: A few words: the text, the numbers, the status.
         part: Which part of the check, where it has several (``"the service is late"``), else empty.
         simulated: Whether ``t`` is simulated time.

@@ -27,7 +27,7 @@ MOMENTS = 30
 """Moments that the text shows at most, about."""
 
 _MARK = "..."
-_ARROWS = {"from_subject": "-->", "to_subject": "<--"}
+_ARROWS = {"from_subject": "-->", "to_subject": "<--", "expected": "..>"}
 _COLOURS = {State.PASSED: "32", State.FAILED: "33", State.NOT_CHECKED: "34"}
 _NARROWEST = 40
 
@@ -144,7 +144,9 @@ class _Writer:
         if not shown.parts:
             return
         yield ""
-        heading = "What was on the wire (--> from your code, <-- to your code, * note)"
+        missed = any(moment.direction == "expected" for part in shown.parts for moment in part.moments)
+        ghost = f"..> {wording.DIRECTION_WORDS['expected']}, " if missed else ""
+        heading = f"What was on the wire (--> from your code, <-- to your code, {ghost}* note)"
         yield from (self._heading(line) for line in self._wrapped(heading))
         for part in shown.parts:
             yield from self._part(part)

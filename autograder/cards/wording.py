@@ -24,6 +24,7 @@ DIRECTION_WORDS = {
     "from_subject": "from your code",
     "to_subject": "to your code",
     "note": "note",
+    "expected": "expected, and did not come",
 }
 
 CRITERION_WORDS = {True: "PASS", False: "NOT YET"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
@@ -26,6 +27,9 @@ MOST_MOMENTS = 120
 
 MAX_LABEL = 200
 """Characters of one of them."""
+
+EXPECTED = 5
+"""Messages of the reference solution that a failed card shows for each topic: the first that were missed."""
 
 _DIRECTION = {
     "message": "from_subject",
@@ -77,19 +81,20 @@ _ENDS = {
 _QUOTED = re2.compile(r"“([^”…]*\w[^”…]*)")
 
 
-def moments(evidence: Evidence, words: str = "") -> tuple[Moment, ...]:
+def moments(evidence: Evidence, words: str = "", *, missed: bool = False) -> tuple[Moment, ...]:
     """The traffic on the wire, in order: of too many events the first, and all of the kinds that matter most.
 
     Args:
         evidence: What was seen.
         words: The words of the card. Each line of the subject's that they quote is in the picture, a printed one too.
+        missed: Also tell which messages of the reference solution did not come, each at its time.
     """
     several = len(evidence.parts) > 1
     quoted = tuple(dict.fromkeys(_QUOTED.findall(words)))
     found = [
         moment
         for part in evidence
-        for moment in _of_part(part, evidence.reference, part.name if several else "", quoted)
+        for moment in _of_part(part, evidence.reference, part.name if several else "", quoted, missed)
     ]
     room = MAX_MOMENTS - sum(moment.key for moment in found)
     kept = []
@@ -119,7 +124,9 @@ def _first_said(part: Part, quoted: Sequence[str]) -> dict[int, Event]:
     return {id(event): event for event in found.values()}
 
 
-def _of_part(part: Part, reference: Reference, title: str, quoted: Sequence[str]) -> list[Moment]:
+def _of_part(
+    part: Part, reference: Reference, title: str, quoted: Sequence[str], missed: bool
+) -> list[Moment]:
     part = _since_the_build(part)
     start = next((e.sim for e in part.events if e.sim is not None), None)
     told = _first_said(part, quoted)
@@ -150,6 +157,8 @@ def _of_part(part: Part, reference: Reference, title: str, quoted: Sequence[str]
         for event, lane in zip(shown, lanes, strict=True)
     ]
     found += [((moment.t, moment.t), moment) for moment in _astray(part, reference, title, start)]
+    if missed:  # below what did happen at that time
+        found += [((moment.t, math.inf), moment) for moment in _missed(part, reference, title, start)]
     return [moment for _, moment in sorted(found, key=lambda pair: pair[0])]
 
 
@@ -240,6 +249,35 @@ def _astray(part: Part, reference: Reference, title: str, start: float | None) -
             for name in sorted(missing):
                 none = words.replace("your", "no", 1).replace("is here", "of yours")
                 yield Moment(last, name, "note", none, title, start is not None, key=True)
+
+
+def _missed(part: Part, reference: Reference, title: str, start: float | None) -> Iterator[Moment]:
+    """The first messages of the reference solution that did not come, where a part asks the same of everybody.
+
+    They are counted from the subject's first message, or else its first words: only the intervals were asked for.
+    """
+    known = next(
+        (one for one in reference.parts if one.name == part.name and one.inputs == part.inputs), None
+    )
+    expected = [event for event in known.of("message") if event.sim is not None] if known else []
+    for topic in dict.fromkeys(event.name for event in expected):
+        came = [(_time(event, start), _label(event)) for event in part.of("message", topic)]
+        due = [(event.moment, _label(event)) for event in expected if event.name == topic]
+        if len(due) < 2:
+            continue  # no interval
+        near = (due[1][0] - due[0][0]) / 2
+        # The first that was heard need not be the first that was sent: DDS numbers each publisher's messages from 1.
+        number = int(part.of("message", topic)[0].data.get("number", 1)) if came else 1
+        due = due[min(number, len(due)) - 1 :]
+        first = came or [(_time(event, start), "") for event in part.of("log")]
+        shift = (first[0][0] if first else 0.0) - due[0][0]
+        missed = [
+            (t + shift, label)
+            for t, label in due
+            if not any(label == told and abs(t + shift - at) < near for at, told in came)
+        ]
+        for place, (t, label) in enumerate(missed[:EXPECTED]):
+            yield Moment(round(t, 3), topic, "expected", label, title, start is not None, key=place == 0)
 
 
 def _fields(data: Mapping[str, Any]) -> str:

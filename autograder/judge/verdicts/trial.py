@@ -141,7 +141,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         criteria=criteria,
         diagnosis=diagnosis,
         remarks=tuple(_cut(text) for remark in exercise.remarks if (text := remark(evidence))),
-        timeline=timeline.moments(evidence, " ".join(told)),
+        timeline=timeline.moments(evidence, " ".join(told), missed=not passed),
         seed=seed,
         detail=traceback[-MAX_DETAIL:],
     )

@@ -133,3 +133,39 @@ def test_that_a_program_got_going_needs_no_words() -> None:
     names = ("started", "constructed", "raised")
     shown = told(*(Event(n / 10, "subject", name, {}) for n, name in enumerate(names)))
     assert [moment.label for moment in shown] == ["raised"]
+
+
+def ghosts(*seen: tuple[float, str, int], missed: bool = True) -> list[tuple[float, str]]:
+    """The messages of a talker that are told as expected, where these were seen: when, the text, its number."""
+    said = [
+        Event(0.0, "message", "/chatter", {"fields": {"data": f"Hello, world! {n}"}}, n / 2)
+        for n in range(10)
+    ]
+    reference = Reference("an exercise", {"publisher": {"/chatter": "t"}}, [Part("talking", {}, said)])
+    came = [
+        Event(t, "message", "/chatter", {"fields": {"data": text}, "number": number})
+        for t, text, number in seen
+    ]
+    found = moments(Evidence([Part("talking", {}, came)], reference), missed=missed)
+    return [(moment.t, moment.label) for moment in found if moment.direction == "expected"]
+
+
+def test_messages_that_did_not_come_are_told_where_they_belong() -> None:
+    right = [(0.7 + n / 2, f"Hello, world! {n}", n + 1) for n in range(10)]
+    assert ghosts(*right) == []
+    assert ghosts(*right[:8]) == [(4.7, "Hello, world! 8"), (5.2, "Hello, world! 9")]
+    # One that nobody could hear yet is none that did not come.
+    assert ghosts(*right[1:]) == []
+    slow = [(0.7 + n, f"Hello, world! {n}", n + 1) for n in range(10)]
+    assert ghosts(*slow)[:2] == [(1.2, "Hello, world! 1"), (1.7, "Hello, world! 2")]
+    wrong = [(t, text.replace("!", "."), number) for t, text, number in right]
+    assert ghosts(*wrong) == [(t, text) for t, text, _ in right[:5]]
+    assert ghosts() == [(n / 2, f"Hello, world! {n}") for n in range(5)]
+    assert ghosts(*wrong, missed=False) == [], "on a card with full marks nothing is missing"
+
+
+def test_where_inputs_are_random_no_message_is_expected() -> None:
+    said = [Event(0.0, "message", "/a", {"fields": HELLO}, n / 2) for n in range(4)]
+    reference = Reference("an exercise", {}, [Part("talking", {"text": "one"}, said)])
+    seen = Evidence([Part("talking", {"text": "two"}, ())], reference)
+    assert moments(seen, missed=True) == ()

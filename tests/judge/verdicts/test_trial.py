@@ -65,3 +65,11 @@ def test_the_last_look_that_is_needed_decides(
     assert made == looks
     assert checked.verdict.passed is passed
     assert (checked.evidence.before is not None) is (len(looks) == 2)
+
+
+@pytest.mark.parametrize(("name", "missed"), [("good", False), ("bad", True)])
+def test_a_card_shows_what_was_expected_only_where_something_is_missing(name: str, missed: bool) -> None:
+    stored = reference.load("lab_1_2.talker")
+    stored = replace(stored, parts=[replace(stored.part("talking"), name=name)])
+    verdict = trial.judge(exercise(), Evidence([Part(name)], stored), "seed")
+    assert any(moment.direction == "expected" for moment in verdict.timeline) is missed
