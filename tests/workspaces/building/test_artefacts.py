@@ -80,6 +80,65 @@ def test_what_leads_out_is_refused(members: list[tuple[str, bytes, str, int]], t
     assert not [path for path in (tmp_path / "install").rglob("*") if path.is_symlink()]
 
 
+def header(size: bytes, kind: bytes = tarfile.REGTYPE, name: bytes = b"a") -> bytes:
+    """The header of one entry, with any bytes for its size (pax(1), ustar)."""
+    found = bytearray(name.ljust(100, b"\0") + b"0000755\0" + b"0000000\0" * 2 + size.ljust(12, b"\0"))
+    found += b"0" * 11 + b"\0" + b" " * 8 + kind + bytes(100) + b"ustar\x0000" + bytes(247)
+    found[148:156] = b"%06o\0 " % sum(found)
+    return bytes(found)
+
+
+def told_before(**words: object) -> bytes:
+    """An extended header of pax: what it says of the entry that follows holds in place of the entry's own words."""
+    records = b""
+    for key, value in words.items():
+        record = f" {key.replace('_', '.')}={value}\n".encode()
+        length = next(
+            n for n in range(len(record), len(record) + 9) if len(f"{n}".encode()) + len(record) == n
+        )
+        records += f"{length}".encode() + record
+    return header(b"%011o" % len(records), tarfile.XHDTYPE) + records.ljust(
+        -(-len(records) // 512) * 512, b"\0"
+    )
+
+
+EMPTY, END = header(b"%011o" % 0), bytes(1024)
+BACKWARDS = b"\xff" + ((1 << 88) - 512).to_bytes(11, "big")
+"""A size of -512 bytes: whoever looks for the next entry behind this one finds this one again."""
+
+
+@pytest.mark.parametrize(
+    "archive",
+    [
+        pytest.param(header(BACKWARDS, tarfile.DIRTYPE) + header(BACKWARDS, name=b"b") * 2, id="goes back"),
+        pytest.param(told_before(size=-512) + header(b"", tarfile.SYMTYPE), id="goes back to a link"),
+        pytest.param(told_before(size=10**15) + EMPTY, id="says that it is huge"),
+        pytest.param(told_before(path="../x") + EMPTY, id="has another path before it"),
+        pytest.param(told_before(linkpath="/etc/passwd") + header(b"", tarfile.SYMTYPE), id="another target"),
+        pytest.param(header(b"%011o" % 1, tarfile.GNUTYPE_LONGNAME) + bytes(512), id="a name and no file"),
+        pytest.param(
+            (header(b"%011o" % 1, tarfile.GNUTYPE_LONGNAME) + bytes(512)) * 3000 + EMPTY, id="names of names"
+        ),
+        pytest.param(
+            told_before(
+                GNU_sparse_major=1, GNU_sparse_minor=0, GNU_sparse_realsize=10**12, GNU_sparse_name="a"
+            )
+            + header(b"%011o" % 512)
+            + b"1\n0\n0\n".ljust(512, b"\0"),
+            id="is mostly holes",
+        ),
+    ],
+)
+def test_an_archive_that_was_written_by_hand_is_refused_and_comes_to_an_end(
+    archive: bytes, tmp_path: Path
+) -> None:
+    (tmp_path / "outside").write_text("x = a.b:c")
+    with pytest.raises(BadArtefacts):
+        unpack(archive + END, tmp_path / "install", most=1_000_000)
+    assert {path.name for path in tmp_path.iterdir()} == {"install", "outside"}
+    assert not [path for path in (tmp_path / "install").rglob("*") if path.is_symlink()]
+
+
 def test_too_much_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(BadArtefacts, match="too much"):
         unpack(packed(("a", tarfile.REGTYPE, "", 11)), tmp_path / "bytes", most=10)

@@ -66,6 +66,7 @@ LEFT_OUT: dict[str, Callable[[Path], object]] = {
     "time": lambda folder: os.utime(folder / "setup.py", (1, 1)),
     "rights of others": lambda folder: (folder / "setup.py").chmod(0o4666),
     "rights of a folder": lambda folder: (folder / "sub").chmod(0o777),
+    "extended attribute": lambda folder: os.setxattr(folder / "setup.py", "user.build", b"poison"),
 }
 KEPT: dict[str, Callable[[Path], object]] = {
     "hidden": lambda folder: (folder / ".hidden").write_text("x"),
@@ -79,6 +80,8 @@ KEPT: dict[str, Callable[[Path], object]] = {
     "egg-info": lambda folder: (folder / "my_pkg.egg-info").mkdir(),
     "build": lambda folder: (folder / "build").mkdir(),
     "extension module": lambda folder: (folder / "setuptools.abi3.so").write_bytes(b"\x7fELF"),
+    "hard link": lambda folder: (folder / "link.py").hardlink_to(folder / "setup.py"),
+    "hole in a file": lambda folder: os.truncate(folder / "setup.py", 900),
     "name that is no text": lambda folder: (folder / os.fsdecode(b"\xff.py")).write_text("x"),
     "a byte in a name for one in a file": lambda folder: (folder / "setup.py").rename(folder / "setup.pyx"),
 }
@@ -108,6 +111,16 @@ def test_what_is_written_is_what_the_hash_is_of(kind: str, folder: Path, tmp_pat
     assert all(path.is_dir() or path.is_file() for path in boxed)
     assert not [path for path in boxed if path.is_symlink()]
     assert {path.stat().st_mode & 0o7777 for path in boxed if path.is_file()} <= {0o755, 0o644}
+
+
+def test_what_changes_after_it_was_read_is_in_neither(folder: Path, tmp_path: Path) -> None:
+    tree = tree_of(folder)
+    before = tree.digest
+    (folder / "setup.py").write_text("poison")
+    (folder / "more.py").write_text("poison")
+    tree.write(tmp_path / "box")
+    assert tree_of(tmp_path / "box").digest == before == tree.digest
+    assert not [file for file in (tmp_path / "box").rglob("*.py") if "poison" in file.read_text()]
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
