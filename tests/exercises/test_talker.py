@@ -47,11 +47,6 @@ def judged(name: str, evidence: Evidence) -> bool:
     return next(c for c in talker.EXERCISE.criteria if c.name == name).judge(evidence).passed
 
 
-def test_the_reference_itself_passes() -> None:
-    evidence = _evidence(_messages(list(range(20)), 0.5))
-    assert all(criterion.judge(evidence).passed for criterion in talker.EXERCISE.criteria)
-
-
 @pytest.mark.parametrize(("ended", "known"), [(None, True), (2.5, True), (0.3, False)])
 def test_a_publisher_whose_qos_does_not_fit_was_there_whether_it_goes_on_or_not(
     ended: float | None, known: bool
@@ -150,15 +145,6 @@ def test_who_stumbles_in_simulated_time_is_listened_to_for_longer_in_real_time()
     short = _evidence(_spaced([0.5] * 6), real_time=True)
     assert not judged("counter", replace(short, before=_evidence(_spaced([0.5] * 12, simulated=True))))
     assert judged("counter", replace(short, before=_evidence(_spaced([0.5] * 19, simulated=True))))
-
-
-def test_one_that_stops_too_soon_does_not_count_on() -> None:
-    assert not judged("counter", _evidence(_messages([0, 1, 2, 3], 0.5)))
-
-
-def test_nothing_heard_is_nothing_earned() -> None:
-    silent = Evidence([Part("talking")], REFERENCE)
-    assert not any(criterion.judge(silent).passed for criterion in talker.EXERCISE.criteria)
 
 
 @pytest.mark.parametrize("speed", [25.0, 2.3, 1.3, 0.4])
