@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from typing import TYPE_CHECKING
@@ -58,3 +59,15 @@ def test_everything_ends_with_the_command(name: str, ending: str, tmp_path: Path
         check=False,
     )
     assert done.returncode == 0, done.stdout
+
+
+def test_a_run_of_tests_leaves_no_temporary_files(tmp_path: Path) -> None:
+    makes_one_and_is_killed = "import os, tempfile; tempfile.mkdtemp(); os.kill(os.getpid(), 9)"
+    done = subprocess.run(
+        [sys.executable, "-m", "tests.nothing_left", sys.executable, "-c", makes_one_and_is_killed],
+        cwd=course.root(),
+        env={**os.environ, "TMPDIR": str(tmp_path)},
+        check=False,
+    )
+    assert done.returncode == 128 + 9
+    assert list(tmp_path.iterdir()) == []
