@@ -25,6 +25,11 @@ def test_as_many_of_each_group_are_drawn_and_other_ones_each_day(monkeypatch: py
     assert [sum(f"lab.{exercise}/" in one for one in chosen[0]) for exercise in "ab"] == [4, 4]
 
 
+def test_no_draw_is_spent_on_what_is_left_to_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tiers, "NIGHTLY", IDS[:7])
+    assert set(IDS[:9]) - tiers.left_to_all(IDS, []) == set(IDS[7:9])
+
+
 def test_what_is_due_runs_whatever_is_drawn() -> None:
     assert not tiers.left_to_all(IDS, IDS)
     assert len(tiers.left_to_all(IDS, IDS[:9])) == 5
