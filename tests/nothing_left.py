@@ -3,6 +3,9 @@
 A test's own tidying up does not run where its process is killed. This process adopts whatever loses its parent,
 in whatever session it is. It ends the program when it is asked to (SIGTERM), or when who started it dies;
 Ctrl-C reaches the program itself. The exit code is the program's.
+
+Temporary files are in a folder of this run, which is removed with all that was left in it. Only pytest's own folders
+of the last three runs stay where they always are: with them one finds out why a test failed.
 """
 
 from __future__ import annotations
