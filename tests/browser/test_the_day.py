@@ -1,7 +1,8 @@
-"""The instructor's day: a class of forty hands in through four systems and by hand, with every oddity.
+"""The instructor's day: a class of forty hands in through five systems and by hand, with every oddity.
 
 It hands in a lab with a question that a person grades, and an assignment of the instructor's own with plain asserts.
-Two students are late, one of them with an extension, and one hands in nothing. All is collected, graded, graded by hand
+Three students are late, one of them with an extension, one as a list of times says; one hands in nothing, one is
+excused, and the work of four has no place. All is collected, graded, graded by hand
 in formgrader, reported and returned, and every number in every output is compared with nbgrader's own gradebook.
 """
 
@@ -28,7 +29,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "grading" / "day"))
 from formgrader import Formgrader
 from gradebook_truth import Truth, read_truth
 from handed_in import BY_HAND as ODD
-from handed_in import DUE, Pupil, hand_in, pupils, put_by_hand, roster
+from handed_in import DUE, UNPLACED, Pupil, hand_in, pupils, put_by_hand, roster, times
 from instructor import add_question, due, penalty
 from own_assignment import EngineWithAsserts, answered, write_assignment
 from server_of_a_test import jupyter_server
@@ -50,6 +51,7 @@ pytestmark = [
     pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning"),
 ]
 COUNT = 40
+EXCUSED = [pupil.id for pupil in pupils(COUNT) if pupil.oddity == "excused"]
 BY_HAND = 4
 """How many are graded by hand."""
 LAB, OWN = "lab_1_2", "own"
@@ -109,6 +111,8 @@ def work_of(tiny: TinyClass) -> Callable[[Pupil, bool], str]:
     """What makes a student's notebook, of an earlier attempt where the flag is set."""
 
     def work(pupil: Pupil, is_earlier: bool) -> str:
+        if pupil.oddity == "other lab":
+            return answered(tiny, "", OWN)
         path = tiny.submit("x", *((0, 1) if is_earlier else points(pupil)))
         text = path.read_text().replace("YOUR ANSWER HERE", "Because.")
         for part in (path, path.parent, path.parent.parent):
@@ -125,13 +129,16 @@ def collect(tiny: TinyClass, class_: list[Pupil], folder: Path) -> list[Path]:
         return answered(tiny, "" if is_earlier else answer(pupil), OWN)
 
     archives = hand_in(folder, class_, work_of(tiny))
-    said = run("collect", tiny.path, *archives, "--timezone", "UTC")
-    assert f"{sum(bool(pupil.lms) for pupil in class_)} placed, 0 unchanged, " in said, said
+    (folder / "times.csv").write_text(times(class_))
+    said = run("collect", tiny.path, *archives, "--timezone", "UTC", "--times", folder / "times.csv")
+    assert f"{sum(pupil.is_collected for pupil in class_)} placed, 0 unchanged, " in said, said
     assert "not placed   moodle.zip/Guest User_999" in said
     for reason in ("its name leads out of the archive", "it is a link", "unpacks to 60 MB"):
         assert said.count(reason) == 1, reason
-    missing = sorted(pupil.id for pupil in class_ if not pupil.lms)
+    check_unplaced(said, class_)
+    missing = sorted(pupil.id for pupil in class_ if not (pupil.is_collected or pupil.oddity == "excused"))
     assert f"nothing of   lab_1_2: {', '.join(missing)}" in said
+    missing = sorted(pupil.id for pupil in class_ if not pupil.lms)
     (folder / OWN).mkdir()
     others = hand_in(folder / OWN, class_, own_work, OWN, strange=False)
     said = run("collect", tiny.path, *others, "--timezone", "UTC")
@@ -140,12 +147,24 @@ def collect(tiny: TinyClass, class_: list[Pupil], folder: Path) -> list[Path]:
     return [*archives, *others]
 
 
+def check_unplaced(said: str, class_: list[Pupil]) -> None:
+    """Each file without a place is named with its student, the reason and what to type."""
+    what_to_type = {"py": "ask for the notebook", "other lab": "say --assignment own"}
+    for pupil in class_:
+        if pupil.oddity in UNPLACED:
+            words = what_to_type.get(pupil.oddity, f"unpack it into a folder named {pupil.id}")
+            assert re.search(rf"canvas\.zip/\S+lab_1_2\S*[ :].*\b{pupil.id}\b.*{words}", said), said
+
+
 def grade_by_hand(formgrader: Formgrader, class_: list[Pupil], expected: dict[str, float]) -> dict[str, str]:
     """Give points and comments to the first submissions that formgrader shows; the comments."""
-    by_name = {f"{pupil.last}, {pupil.first}": pupil for pupil in class_}
+    names = [f"{pupil.last}, {pupil.first}" for pupil in class_]
+    by_name = {name: pupil for name, pupil in zip(names, class_, strict=True) if names.count(name) == 1}
     comments = {}
     formgrader.first_submission("lab_1_2")
     for given in range(1, BY_HAND + 1):
+        while formgrader.name not in by_name:  # two are called so
+            formgrader.next()
         pupil = by_name[formgrader.name]
         comments[pupil.id] = f"Remark number {given}: many listen."
         formgrader.give("why", given, comment=comments[pupil.id])
@@ -172,7 +191,7 @@ def check_tables(tiny: TinyClass, truth: Truth, output: str) -> None:
     printed = run("grade", tiny.path)
     for student in truth.students:
         score = truth.shown(student)
-        words = "–" if score is None else f"{score:g}/35"
+        words = "–" if score is None else f"{score:g}/{35 if student not in EXCUSED else 10}"
         assert re.search(rf"^ *{student} .* {words} *$", printed, re.MULTILINE), printed
 
 
@@ -192,7 +211,7 @@ def check_rows(rows: list[dict[str, Any]], truth: Truth) -> None:
             for name, most in cells.items():
                 cell = truth.cells.get((student, assignment, name))
                 expected[student, assignment, name] = (
-                    (None, most, None, None, None, "")
+                    (None, 0 if student in EXCUSED and assignment == LAB else most, None, None, None, "")
                     if cell is None
                     else (cell.score, most, cell.judged, cell.by_hand, cell.extra or None, "yes" * cell.waits)
                 )
@@ -202,18 +221,22 @@ def check_rows(rows: list[dict[str, Any]], truth: Truth) -> None:
 
 def check_pages(tiny: TinyClass, class_: list[Pupil], truth: Truth, comments: dict[str, str]) -> None:
     """The pages, with the remarks, and the page about the class."""
-    for pupil in class_[:-1]:
-        text = (tiny.path / "feedback" / pupil.id / LAB / f"{LAB}.html").read_text()
-        assert f"Score: {truth.score(pupil.id, LAB):.1f} / 25.0" in text
-        assert (comments.get(pupil.id, "Remark number") in text) is (pupil.id in comments)
-        assert ("handed in 2026-01-11 18:00 UTC, due 2026-01-10 12:00 UTC" in text) is (
-            (pupil.id, LAB) in truth.late
-        )
+    for pupil in class_:
+        page_of_lab = tiny.path / "feedback" / pupil.id / LAB / f"{LAB}.html"
+        assert page_of_lab.exists() is pupil.hands_in
+        if pupil.hands_in:
+            text = page_of_lab.read_text()
+            assert f"Score: {truth.score(pupil.id, LAB):.1f} / 25.0" in text
+            assert (comments.get(pupil.id, "Remark number") in text) is (pupil.id in comments)
+            assert ("handed in 2026-01-11 18:00 UTC, due 2026-01-10 12:00 UTC" in text) is (
+                (pupil.id, LAB) in truth.late
+            )
         if pupil.lms:
             text = (tiny.path / "feedback" / pupil.id / OWN / f"{OWN}.html").read_text()
             assert f"Score: {truth.score(pupil.id, OWN):.1f} / 10.0" in text
     run("report", tiny.path)
     page = BeautifulSoup((tiny.path / "report.html").read_text(), "html.parser")
+    check_unplaced(page.get_text(), class_)
     titled = page.find("h2", string="Who is where")
     assert titled
     table = titled.find_next("table")
@@ -230,14 +253,19 @@ def check_pages(tiny: TinyClass, class_: list[Pupil], truth: Truth, comments: di
             cell = truth.cells.get((student, assignment, name))
             is_by_hand = cell and (cell.by_hand is not None or cell.extra)
             mark = "?" if cell and cell.waits else "*" if is_by_hand else ""
-            assert shown[names.index(name)] == (f"{cell.score:g}{mark}" if cell else "–")
+            none = "excused" if student in EXCUSED and assignment == LAB else "–"
+            assert shown[names.index(name)] == (f"{cell.score:g}{mark}" if cell else none)
 
 
 def check_exports(tiny: TinyClass, class_: list[Pupil], truth: Truth) -> None:
     """What goes back to the systems, and every cell of the workbook."""
-    for form in ("canvas", "moodle", "csv", "xlsx"):
-        run("export", tiny.path, "--to", form)
+    for form in ("canvas", "moodle", "gradescope", "csv", "xlsx"):
+        check_unplaced(run("export", tiny.path, "--to", form), class_)
     out = tiny.path / "export"
+    with (out / "canvas.csv").open() as lines:
+        assert [(row["SIS Login ID"], row[LAB]) for row in csv.DictReader(lines) if row[LAB] == "EX"] == [
+            (one, "EX") for one in EXCUSED
+        ]
     for name, line in (("canvas.csv", 2), ("moodle.csv", 1)):
         header, *table = csv.reader(io.StringIO((out / name).read_text()))
         who = header.index("SIS Login ID" if name == "canvas.csv" else "ID number")
@@ -250,7 +278,9 @@ def check_exports(tiny: TinyClass, class_: list[Pupil], truth: Truth) -> None:
         assert grades == {one.id: truth.score(one.id, assignment) for one in class_ if one.lms == "moodle"}
         for lms in ("canvas", "moodle"):
             with zipfile.ZipFile(out / f"feedback-{lms}-{assignment}.zip") as archive:
-                assert len(archive.namelist()) == sum(pupil.lms == lms for pupil in class_)
+                assert len(archive.namelist()) == sum(
+                    pupil.lms == lms and (assignment == OWN or pupil.is_collected) for pupil in class_
+                )
     for rows in (
         list(csv.DictReader(io.StringIO((out / "students.csv").read_text("utf-8-sig")))),
         rows_of(out / "grades.xlsx", 1),
@@ -280,22 +310,22 @@ def check_student(row: dict[str, Any], class_: list[Pupil], truth: Truth) -> Non
         "excused": row["excused"],
         "dropped": row["dropped"],
     }
-    assert not row["excused"]
+    assert row["excused"] == (LAB if pupil.id in EXCUSED else "")
     assert not row["dropped"]
     waiting = sum(cell.waits for key, cell in truth.cells.items() if key[0] == pupil.id)
     assert [number(row[name]) for name in NUMBERS] == [
         truth.shown(pupil.id, LAB),
         truth.shown(pupil.id, OWN),
         truth.shown(pupil.id),
-        35,
+        35 if pupil.id not in EXCUSED else 10,
         truth.late.get((pupil.id, LAB), 0),
         waiting,
     ]
 
 
 def number(cell: Any) -> float | None:
-    """A cell; None where it is blank, which is not zero."""
-    return None if cell in ("", None) else float(cell)
+    """A cell; None where it is blank or excused, which is not zero."""
+    return None if cell in ("", None, "EX") else float(cell)
 
 
 NUMBERS = (LAB, OWN, "total", "max", "late_penalty", "waits_for_a_person")
@@ -304,7 +334,7 @@ NUMBERS = (LAB, OWN, "total", "max", "late_penalty", "waits_for_a_person")
 def test_the_whole_day(tiny: TinyClass, page: Page, tmp_path: Path) -> None:
     class_ = pupils(COUNT)
     archives = collect(tiny, class_, tmp_path)
-    late, with_extension = class_[2].id, class_[3].id
+    late, with_extension = (class_[1].id, class_[2].id), class_[3].id
 
     # What would come of it, which leaves the results for whoever enters them: formgrader's button, for one student.
     run("grade", tiny.path, "--dry-run")
@@ -321,7 +351,8 @@ def test_the_whole_day(tiny: TinyClass, page: Page, tmp_path: Path) -> None:
         # Some bring their work themselves.
         put_by_hand(tiny.path / "submitted", class_, work_of(tiny))
         said = run("grade", tiny.path)
-        through_a_system = sum(bool(pupil.lms) for pupil in class_)
+        check_unplaced(said, class_)
+        through_a_system = sum(bool(pupil.lms) + pupil.is_collected for pupil in class_)
         for oddity in (
             "s33/lab_1_2/lab_1_2 (1).ipynb was left out",
             "s34/lab_1_2/lab_1_2.ipynb was called lab_1_2/lab_1_2 (1).ipynb and is graded",
@@ -330,7 +361,7 @@ def test_the_whole_day(tiny: TinyClass, page: Page, tmp_path: Path) -> None:
             "the folder José was renamed",
             "submitted/all.zip: whose it is cannot be seen",
             "submitted/lab_1_2.ipynb: whose it is cannot be seen",
-            f"{len(ODD)} notebooks run, {2 * through_a_system} unchanged",
+            f"{len(ODD)} notebooks run, {through_a_system} unchanged",
         ):
             assert oddity in said, said
         with Gradebook(f"sqlite:///{tiny.path / 'gradebook.db'}") as book:
@@ -338,16 +369,16 @@ def test_the_whole_day(tiny: TinyClass, page: Page, tmp_path: Path) -> None:
         expected = expected_points(class_)
         comments = grade_by_hand(formgrader, class_, expected[LAB])
     assert DUE < class_[3].when < DUE + timedelta(days=2)
-    lost = expected[LAB][late]
-    expected[LAB][late] = 0.0
+    lost = {(student, LAB): expected[LAB][student] for student in late}
+    expected[LAB] |= dict.fromkeys(late, 0.0)
 
     output = run("grade", tiny.path, "--json")
     truth = read_truth(tiny.path)
     assert {assignment: truth.of(assignment) for assignment in expected} == expected
-    assert truth.late == {(late, LAB): lost}
+    assert truth.late == lost
     assert truth.score(with_extension, LAB) > 0
     assert truth.total(class_[-1].id) == 0
-    assert sum(cell.waits for cell in truth.cells.values()) == COUNT - 1 - BY_HAND
+    assert sum(cell.waits for cell in truth.cells.values()) == sum(one.hands_in for one in class_) - BY_HAND
 
     check_tables(tiny, truth, output)
     check_pages(tiny, class_, truth, comments)

@@ -1,4 +1,4 @@
-"""A class that hands in through four learning management systems and by hand, with every oddity that real work has.
+"""A class that hands in through five learning management systems and by hand, with every oddity that real work has.
 
 ``python tests/grading/day/handed_in.py NOTEBOOK FOLDER --students 40`` makes the archives, the list of students and
 what is put by hand into ``submitted`` from a notebook, so that a class can be collected by hand, too.
@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 import sys
 import unicodedata
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -33,6 +33,25 @@ BY_HAND = {
     "capitals": "Bob",
 }
 """How work lies in ``submitted`` that somebody has put there, and the student's id where that is the oddity."""
+SYSTEMS = ("moodle", "canvas", "blackboard", "brightspace", "gradescope")
+"""The systems that students hand in through, one after the other."""
+ODDITIES = {
+    1: "twice",
+    5: "zip",
+    6: "text",
+    10: "folder",
+    11: "two notebooks",
+    15: "zip in a zip",
+    16: "rar",
+    21: "py",
+    25: "name of another",
+    26: "tar.gz",
+    31: "other lab",
+    32: "excused",
+}
+"""What is odd about the work of a lab, by the student's place; it follows from the place which system it is."""
+UNPLACED = ("rar", "py", "tar.gz", "other lab")
+"""Oddities with which work has no place."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +66,7 @@ class Pupil:
         lms: Through which system the work comes; empty for who hands in nothing, or by hand.
         late: Whether it comes after it was due.
         habit: How it was put into ``submitted`` by hand, one of :data:`BY_HAND`; empty where it was not.
+        oddity: What is odd about the lab, one of :data:`ODDITIES`; empty where nothing is.
     """
 
     place: int
@@ -56,36 +76,39 @@ class Pupil:
     lms: str
     late: bool
     habit: str = ""
+    oddity: str = ""
+
+    @property
+    def is_collected(self) -> bool:
+        """Whether the lab comes through a system and has a place."""
+        return bool(self.lms) and self.oddity not in (*UNPLACED, "excused")
 
     @property
     def hands_in(self) -> bool:
-        """Whether there is any work."""
-        return bool(self.lms or self.habit)
+        """Whether the lab comes to its place at all."""
+        return self.is_collected or bool(self.habit)
 
     @property
     def when(self) -> datetime:
         """When the work comes."""
         return DUE + timedelta(hours=30 if self.late else -self.place - 1)
 
-    @property
-    def times_are_known(self) -> bool:
-        """Whether the system says when work came."""
-        return self.lms in ("blackboard", "brightspace")
-
 
 def pupils(count: int) -> list[Pupil]:
-    """The class; the last one hands in nothing, those before by hand; two of those whose systems say when are late."""
+    """The class; the last one hands in nothing, those before by hand; three are late, one as a list of times says."""
     found = []
     habits = dict(enumerate(BY_HAND, count - 1 - len(BY_HAND)))
     for place in range(count):
         habit = habits.get(place, "")
-        lms = "" if place >= min(habits) else ("moodle", "canvas", "blackboard", "brightspace")[place % 4]
+        lms = "" if place >= min(habits) else SYSTEMS[place % len(SYSTEMS)]
+        oddity = ODDITIES.get(place, "") if lms else ""
+        named = place - len(SYSTEMS) if oddity == "name of another" else place
         first, last = (
-            FIRST[place % len(FIRST)],
-            f"{LAST[place % len(LAST)]}{'' if place < 8 else ' ' + 'abcdefgh'[place // 8]}",
+            FIRST[named % len(FIRST)],
+            f"{LAST[named % len(LAST)]}{'' if named < 8 else ' ' + 'abcdefgh'[named // 8]}",
         )
         id_ = BY_HAND.get(habit) or f"s{place:02}"
-        found.append(Pupil(place, id_, first, last, lms, place in (2, 3), habit))
+        found.append(Pupil(place, id_, first, last, lms, place in (1, 2, 3), habit, oddity))
     return found
 
 
@@ -129,20 +152,38 @@ def hand_in(
         strange: Put in what is nobody's, and what is hostile.
 
     Returns:
-        The archives.
+        The archives, and Moodle's grading worksheet, which tells two of one name apart.
     """
-    archives: dict[str, dict[str, bytes | str]] = {
-        "moodle": {},
-        "canvas": {},
-        "blackboard": {},
-        "brightspace": {},
-    }
+    archives: dict[str, dict[str, bytes | str]] = {name: {} for name in SYSTEMS}
     for pupil in class_:
-        if pupil.lms:
-            archives[pupil.lms] |= _FORMS[pupil.lms](pupil, work, assignment)
+        if pupil.lms and not (strange and pupil.oddity == "excused"):
+            odd = pupil if strange else replace(pupil, oddity="")
+            archives[pupil.lms] |= _FORMS[pupil.lms](odd, work, assignment)
     if strange:
         _put_strange(archives, class_, work)
-    return [write_zip(folder / f"{name}.zip", files) for name, files in archives.items()]
+    archives["gradescope"][f"{_EXPORT}/submission_metadata.yml"] = "".join(
+        f"submission_{3000 + one.place}:\n  :submitters:\n  - :name: {one.first} {one.last}\n"
+        f"    :email: {one.id}@uni.example\n  :created_at: {one.when:%Y-%m-%d %H:%M:%S}.5 Z\n"
+        for one in class_
+        if one.lms == "gradescope"
+    )
+    worksheet = folder / "Grades.csv"
+    lines = ["Identifier,Full name,Email address,Grade"]
+    lines += [
+        f"Participant {500 + one.place},{one.first} {one.last},{one.id}@uni.example,"
+        for one in class_
+        if one.lms == "moodle"
+    ]
+    worksheet.write_text("\n".join(lines), encoding="utf-8")
+    return [*(write_zip(folder / f"{name}.zip", files) for name, files in archives.items()), worksheet]
+
+
+def times(class_: list[Pupil]) -> str:
+    """The list of times, which an instructor writes of those of whom no system says it."""
+    lines = [
+        f"{one.id},{one.when:%Y-%m-%dT%H:%M},lab_1_2" for one in class_ if one.lms == "canvas" and one.late
+    ]
+    return "\n".join(["id,handed_in,assignment", *lines]) + "\n"
 
 
 def _put_strange(
@@ -158,18 +199,23 @@ def _put_strange(
 
 def roster(class_: list[Pupil]) -> str:
     """The list of students."""
-    lines = ["id,first_name,last_name,email,canvas"]
-    lines += [f"{one.id},{one.first},{one.last},{one.id}@uni.example,{1000 + one.place}" for one in class_]
+    lines = ["id,first_name,last_name,email,canvas,excused"]
+    lines += [
+        f"{one.id},{one.first},{one.last},{one.id}@uni.example,{1000 + one.place},"
+        f"{'lab_1_2' if one.oddity == 'excused' else ''}"
+        for one in class_
+    ]
     return "\n".join(lines) + "\n"
 
 
 def _moodle(pupil: Pupil, work: Callable[[Pupil, bool], str], assignment: str) -> dict[str, bytes | str]:
     name = f"{pupil.first} {pupil.last}_{500 + pupil.place}_assignsubmission_file"
-    if pupil.place % 12 == 4:
-        return {
-            f"{name}_my work.zip": zipped({f"in/{assignment} (2).ipynb": work(pupil, False), "in/a.txt": "x"})
-        }
-    if pupil.place % 12 == 8:
+    zip_ = zipped({f"in/{assignment} (2).ipynb": work(pupil, False), "in/a.txt": "x"})
+    if pupil.oddity == "zip":
+        return {f"{name}_my work.zip": zip_}
+    if pupil.oddity == "zip in a zip":
+        return {f"{name}_all.zip": zipped({"course/my work.zip": zip_})}
+    if pupil.oddity == "folder":
         return {f"{name}/{assignment}.ipynb": work(pupil, False)}
     return {unicodedata.normalize("NFD", f"{name}_{assignment}.ipynb"): work(pupil, False)}
 
@@ -177,10 +223,16 @@ def _moodle(pupil: Pupil, work: Callable[[Pupil, bool], str], assignment: str) -
 def _canvas(pupil: Pupil, work: Callable[[Pupil, bool], str], assignment: str) -> dict[str, bytes | str]:
     login = "".join(c for c in f"{pupil.last}{pupil.first}".lower() if c.isalnum())
     name = f"{login}_{1000 + pupil.place}_"
-    files: dict[str, bytes | str] = {f"{name}{9000 + pupil.place}_{assignment}-1.ipynb": work(pupil, False)}
-    if pupil.place % 8 == 1:
-        files[f"{name}{8000 + pupil.place}_{assignment}.ipynb"] = work(pupil, True)
-    return files
+    first, second = (f"{name}{number + pupil.place}_{assignment}" for number in (8000, 9000))
+    kinds: dict[str, dict[str, bytes | str]] = {
+        "twice": {f"{first}.ipynb": work(pupil, True), f"{second}-1.ipynb": work(pupil, False)},
+        "text": {f"{second}.ipynb.txt": work(pupil, False)},
+        "two notebooks": {f"{first}.ipynb": work(pupil, False), f"{second}_old.ipynb": work(pupil, True)},
+        "rar": {f"{second}.rar": b"Rar!\x1a\x07\x00"},
+        "tar.gz": {f"{second}.tar.gz": b"\x1f\x8b"},
+        "py": {f"{second}.py": "print()"},
+    }
+    return kinds.get(pupil.oddity, {f"{second}-1.ipynb": work(pupil, False)})
 
 
 def _blackboard(pupil: Pupil, work: Callable[[Pupil, bool], str], assignment: str) -> dict[str, bytes | str]:
@@ -202,7 +254,12 @@ def _brightspace(pupil: Pupil, work: Callable[[Pupil, bool], str], assignment: s
     return {f"{folder}/{assignment} (1).ipynb": work(pupil, False), "index.html": "<html>"}
 
 
-_FORMS = {"moodle": _moodle, "canvas": _canvas, "blackboard": _blackboard, "brightspace": _brightspace}
+def _gradescope(pupil: Pupil, work: Callable[[Pupil, bool], str], assignment: str) -> dict[str, bytes | str]:
+    return {f"{_EXPORT}/submission_{3000 + pupil.place}/{assignment}.ipynb": work(pupil, False)}
+
+
+_EXPORT = "assignment_80_export"
+_FORMS = dict(zip(SYSTEMS, (_moodle, _canvas, _blackboard, _brightspace, _gradescope), strict=True))
 
 
 def main() -> None:
