@@ -38,7 +38,7 @@ LONGEST = (
     "tests/grading/cluster/test_cluster.py",
     "tests/grading/classes/test_sample_class.py",
     "tests/test_recording.py",
-    "tests/grading/test_killed.py",
+    "tests/grading/day/test_killed_at_random.py",
     "tests/benchmarks/test_short_run.py",
     "tests/grading/running/test_workers.py",
     "tests/browser",

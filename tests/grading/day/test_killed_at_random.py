@@ -1,4 +1,4 @@
-"""``collect`` and ``export`` ended by TERM and KILL in their middle: nothing is lost, and the same command goes on.
+"""``collect``, ``export`` and ``grade`` ended by TERM and KILL: nothing is lost, and the same command goes on.
 
 Of a power cut the same holds as far as each step is on the disk before the next one, which the last tests look at.
 """
@@ -12,7 +12,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections import Counter
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,6 +20,7 @@ import pytest
 from downloads import write_zip
 from test_collect import work
 
+from autograder.boxes.sandbox import why_impossible
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.outcomes import WaitingList
@@ -35,6 +36,7 @@ STUDENTS = [f"s{place:02}" for place in range(24)]
 FEW, MANY = 3, 20
 """Moments: in the short tier, and in the nightly one."""
 PATIENCE = 120.0
+KILL_THE_GRADER = Path(__file__).parents[1] / "kill_the_grader.py"
 
 
 def start(klass: Path, *words: str) -> subprocess.Popen[str]:
@@ -84,92 +86,127 @@ def collected(klass: Path) -> tuple[object, ...]:
     return files_below(klass / "submitted"), histories, kept, waiting
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("moments", [FEW, MANY])
-def test_collect_is_ended_and_goes_on(tiny: TinyClass, tmp_path: Path, moments: int) -> None:
-    seed = random.SystemRandom().randrange(1 << 30)
-    chance = random.Random(seed)
-    (tiny.path / "students.csv").write_text("id\n" + "\n".join(STUDENTS), encoding="utf-8")
+@dataclass(frozen=True)
+class Command:
+    """A command that is ended in its middle.
+
+    Attributes:
+        words: What is typed, without the class.
+        exit_code: How it ends where nothing disturbs it.
+        middle: Of a copy of the class, what is true once the command has come to a moment that is drawn.
+        check_half: Looks at a copy of the class after the command was ended.
+        left: All that the command leaves.
+    """
+
+    words: tuple[str, ...]
+    exit_code: int
+    middle: Callable[[Path, random.Random], Callable[[], bool]]
+    check_half: Callable[[Path], None]
+    left: Callable[[Path], object]
+
+
+def of_collect(tiny: TinyClass, folder: Path) -> Command:
+    """Later work of everybody in place of earlier work, and a file of nobody's."""
     texts = {(one, day): work(tiny, place, day) for place, one in enumerate(STUDENTS) for day in (3, 4)}
     archives = {
         day: write_zip(
-            tmp_path / f"{day}.zip",
+            folder / f"{day}.zip",
             {f"Lab_{one}_attempt_2025-10-0{day}-14-00-00_lab_1_2.ipynb": texts[one, day] for one in STUDENTS}
             | {f"guest_{day}.ipynb": texts["s00", day]},
         )
         for day in (3, 4)
     }
     collect(tiny.path, [archives[3]])
-    words = ("collect", str(archives[4]))
-    whole = shutil.copytree(tiny.path, tmp_path / "whole")
-    assert run(whole, *words) == 2
-    wanted = collected(whole)
-    ended: Counter[bool] = Counter()
-    for moment in range(moments):
-        klass = shutil.copytree(tiny.path, tmp_path / f"{moment}")
+
+    def middle(klass: Path, chance: random.Random) -> Callable[[], bool]:
         place = klass / "submitted" / chance.choice(STUDENTS[:16]) / "lab_1_2" / "lab_1_2.ipynb"
         before = place.stat().st_ino
-        ended[
-            end_in_its_middle(
-                klass,
-                words,
-                lambda: place.stat().st_ino != before,  # noqa: B023  (called in this round only)
-                chance,
-                (signal.SIGTERM, signal.SIGKILL)[moment % 2],
-            )
-        ] += 1
+        return lambda: place.stat().st_ino != before
+
+    def check_half(klass: Path) -> None:
         kept = files_below(klass / ".autograder" / "collected").values()
         for one in STUDENTS:
             there = (klass / "submitted" / one / "lab_1_2" / "lab_1_2.ipynb").read_text()
-            assert there in (texts[one, 3], texts[one, 4]), f"seed {seed}: half of {one}'s is there"
-            assert there == texts[one, 3] or texts[one, 3].encode() in kept, f"seed {seed}: {one}'s is lost"
-        assert run(klass, *words) == 2
-        assert collected(klass) == wanted, f"seed {seed}"
-        assert not [*klass.rglob("*.new")], f"seed {seed}: something half written is left"
-        shutil.rmtree(klass)
-    assert ended[True], "no signal came in time"
+            assert there in (texts[one, 3], texts[one, 4]), f"half of {one}'s is there"
+            assert there == texts[one, 3] or texts[one, 3].encode() in kept, f"{one}'s is lost"
+
+    return Command(("collect", str(archives[4])), 2, middle, check_half, collected)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("moments", [FEW, MANY])
-def test_export_is_ended_and_goes_on(
-    tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path, moments: int
-) -> None:
-    seed = random.SystemRandom().randrange(1 << 30)
-    chance = random.Random(seed)
-    (tiny.path / "students.csv").write_text("id\n" + "\n".join(STUDENTS), encoding="utf-8")
+def of_export(tiny: TinyClass, folder: Path) -> Command:
+    """Points, a worksheet and pages of everybody."""
     files = {
         f"{one}_{place}_assignsubmission_file_lab_1_2.ipynb": work(tiny, place % 11)
         for place, one in enumerate(STUDENTS)
     }
-    collect(tiny.path, [write_zip(tmp_path / "c.zip", files)])
+    collect(tiny.path, [write_zip(folder / "c.zip", files)])
     tiny.grade(feedback=True)
-    words = ("export", "--to", "moodle")
-    whole = shutil.copytree(tiny.path, tmp_path / "whole")
-    assert run(whole, *words) == 0
+    gradebook = (tiny.path / "gradebook.db").read_bytes()
+    whole = shutil.copytree(tiny.path, folder / "to_compare")
+    assert run(whole, "export", "--to", "moodle") == 0
     wanted = files_below(whole / "export")
     assert len(wanted) == 3
-    gradebook = (tiny.path / "gradebook.db").read_bytes()
-    ended: Counter[bool] = Counter()
+
+    def middle(klass: Path, chance: random.Random) -> Callable[[], bool]:
+        lock, out, number = klass / ".autograder" / "lock", klass / "export", chance.choice((0, 0, 1, 2))
+        return lambda: len([*out.glob("[!.]*")]) >= number if number else lock.stat().st_size > 0
+
+    def check_half(klass: Path) -> None:
+        half = files_below(klass / "export").items()
+        assert {item for item in half if not item[0].startswith(".")} <= set(wanted.items())
+        assert (klass / "gradebook.db").read_bytes() == gradebook
+
+    return Command(
+        ("export", "--to", "moodle"), 0, middle, check_half, lambda klass: files_below(klass / "export")
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("of", [of_collect, of_export])
+@pytest.mark.parametrize("moments", [FEW, MANY])
+def test_a_command_is_ended_and_goes_on(
+    tiny: TinyClass,
+    fake_engine: FakeEngine,
+    tmp_path: Path,
+    of: Callable[[TinyClass, Path], Command],
+    moments: int,
+) -> None:
+    seed = random.SystemRandom().randrange(1 << 30)
+    chance = random.Random(seed)
+    print(f"seed {seed}")
+    (tiny.path / "students.csv").write_text("id\n" + "\n".join(STUDENTS), encoding="utf-8")
+    command = of(tiny, tmp_path)
+    whole = shutil.copytree(tiny.path, tmp_path / "whole")
+    assert run(whole, *command.words) == command.exit_code
+    wanted = command.left(whole)
+    in_time = 0
     for moment in range(moments):
         klass = shutil.copytree(tiny.path, tmp_path / f"{moment}")
-        lock, out, number = klass / ".autograder" / "lock", klass / "export", chance.choice((0, 0, 1, 2))
-        ended[
-            end_in_its_middle(
-                klass,
-                words,
-                lambda: len([*out.glob("[!.]*")]) >= number if number else lock.stat().st_size > 0,  # noqa: B023
-                chance,
-                (signal.SIGTERM, signal.SIGKILL)[moment % 2],
-            )
-        ] += 1
-        half = {name: data for name, data in files_below(out).items() if not name.startswith(".")}
-        assert half.items() <= wanted.items(), f"seed {seed}"
-        assert (klass / "gradebook.db").read_bytes() == gradebook
-        assert run(klass, *words) == 0
-        assert files_below(out) == wanted, f"seed {seed}"
+        with_ = (signal.SIGTERM, signal.SIGKILL)[moment % 2]
+        in_time += end_in_its_middle(klass, command.words, command.middle(klass, chance), chance, with_)
+        command.check_half(klass)
+        assert run(klass, *command.words) == command.exit_code
+        assert command.left(klass) == wanted
+        assert not [*klass.rglob("*.new")], "something half written is left"
         shutil.rmtree(klass)
-    assert ended[True], "no signal came in time"
+    print(f"{in_time} of {moments} were ended in their middle")
+    assert in_time, "no signal came in time"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("moments", [FEW, MANY])
+def test_grade_is_ended_and_goes_on(moments: int) -> None:
+    """In a process that adopts whatever the grader leaves: see ``kill_the_grader.py``."""
+    if reason := why_impossible():
+        pytest.skip(reason)
+    ended = subprocess.run(
+        [sys.executable, "-W", "ignore", str(KILL_THE_GRADER), "--kills", str(moments)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+    assert ended.stdout.count("killed after") == moments
 
 
 # -- a power cut
