@@ -87,7 +87,11 @@ class AssignmentOf:
         """The notebook of the assignment that was asked for; None where it has several and nothing says which."""
         said = [named] if named and (not held or named in held) else held
         if said and self._asked not in {assignment for assignment, _ in said}:
-            raise NoTarget(f"it is not for {self._asked}: it is the notebook of {said[0][0]}")
+            other = said[0][0]
+            raise NoTarget(
+                f"it is not for {self._asked}: it is the notebook of {other}; to have it there, collect it and say "
+                f"--assignment {other}"
+            )
         here = [target for target in said if target[0] == self._asked]
         notebooks = self._directory.notebooks(self._asked)
         if named in here or len(here) == 1:

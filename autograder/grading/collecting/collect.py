@@ -120,7 +120,12 @@ class _Collecting:
         told = (
             (student, name, self._in_utc(self._student_of.time_of(student, name))) for student, name in asked
         )
-        placing.note_times((student, name, when) for student, name, when in told if when is not None)
+        noted = placing.note_times((student, name, when) for student, name, when in told if when is not None)
+        notes = [f"{student}/{name} was handed in {when:%Y-%m-%d %H:%M} UTC" for student, name, when in noted]
+        notes += [
+            f"{name} is in the list of times, and nobody is called so" for name in self._student_of.strangers
+        ]
+        notes += [f"{source} holds no file" for source, files in downloads.items() if not files]
         came = {(one.student, one.assignment) for one in self._outcomes if one.state in _CAME}
         came |= {(student, "") for student, _ in came}
         self._outcomes = [
@@ -130,9 +135,9 @@ class _Collecting:
             for one in self._outcomes
         ]
         WaitingList(self._directory).note(self._outcomes)
-        return self._report(work)
+        return self._report(work, notes)
 
-    def _report(self, work: set[tuple[str, str]]) -> CollectReport:
+    def _report(self, work: set[tuple[str, str]], notes: Sequence[str]) -> CollectReport:
         records = CollectedRecords(self._directory.state)
         untimed = defaultdict(list)
         for student, assignment in sorted({(one.student, one.assignment) for one in self._candidates}):
@@ -152,6 +157,7 @@ class _Collecting:
             {name: tuple(students) for name, students in untimed.items()},
             {name: students for name, students in missing.items() if students},
             not self._roster.students,
+            tuple(notes),
         )
 
     def _learn(self, downloads: dict[Path, list[File]], times: Sequence[Path]) -> None:

@@ -75,6 +75,7 @@ class CollectReport:
         untimed: Whose work has no time, by assignment, of what was collected now.
         missing: Students of whom nothing is there, by assignment.
         by_their_names: Whether there is no list of students, so that folders have the LMS's names.
+        notes: What else is to be known: times that were noted, names in a list that are nobody's, empty downloads.
     """
 
     path: Path
@@ -83,6 +84,7 @@ class CollectReport:
     untimed: dict[str, tuple[str, ...]] = field(default_factory=dict)
     missing: dict[str, tuple[str, ...]] = field(default_factory=dict)
     by_their_names: bool = False
+    notes: tuple[str, ...] = ()
 
     def having(self, state: State) -> tuple[Outcome, ...]:
         """The files that went there."""

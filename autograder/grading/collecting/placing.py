@@ -96,11 +96,14 @@ class Placing:
             if newest is not None:
                 yield self._put(newest)
 
-    def note_times(self, whose: Iterable[tuple[str, str, datetime]]) -> None:
+    def note_times(self, whose: Iterable[tuple[str, str, datetime]]) -> Iterator[tuple[str, str, datetime]]:
         """Write down when work was handed in that is in ``submitted`` already.
 
         Args:
             whose: Student, assignment and time in UTC.
+
+        Returns:
+            Those of whom it is news.
 
         Raises:
             OSError: It could not be written.
@@ -120,6 +123,7 @@ class Placing:
                 now[notebook] = replace(known, when=when)
             if now != history.now:
                 self._write(student, assignment, replace(history, now=now))
+                yield student, assignment, when
 
     def _put(self, newest: Candidate) -> Outcome:
         folder = self._directory.path / "submitted" / newest.student / newest.assignment

@@ -57,6 +57,8 @@ def _lines(report: CollectReport) -> Iterator[str]:
             f"note         the time “{time}” in a name or a list could not be read, so nothing says when that work was "
             "handed in: have the system show itself in English, and download again"
         )
+    for note in report.notes:
+        yield f"note         {note}"
     if report.by_their_names:
         yield "note         the class has no students.csv: folders have the names that the LMS uses"
     counts = {state: len(report.having(state)) for state in State}

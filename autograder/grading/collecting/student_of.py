@@ -95,6 +95,16 @@ class StudentOf:
         times = self._times
         return times.get((student, assignment), times.get((student, "")))
 
+    @property
+    def strangers(self) -> list[str]:
+        """Those whom a list of times names, and who are nobody in the class."""
+        return [
+            str(names[0])
+            for entry in self._told
+            for names in entry.members
+            if names and entry.when is not None and self._first(names) is None
+        ]
+
     @functools.cached_property
     def _times(self) -> dict[tuple[str, str], datetime]:
         return {

@@ -159,9 +159,8 @@ def filled_in(
         )
     strangers = []
     for row in rows[1:]:
-        if len(row) <= max(places.values()) or row[0].strip().startswith(
-            ("Points Possible", "Manual Posting", "Student, Test")
-        ):
+        is_nobodys = not any(row[:1]) or row[0].strip().startswith(("Points Possible", "Student, Test"))
+        if len(row) <= max(places.values()) or is_nobodys:
             continue
         values = [original(row[header.index(name)].strip()) for name in names if name in header]
         student = _who(table, lms, values)

@@ -147,11 +147,13 @@ def progress(student: str, attempts: Iterable[Attempt]) -> list[Progress]:
 
 
 def bands(table: ClassTable) -> list[Band]:
-    """The spread of the students over the points, without those who handed in nothing at all."""
+    """The spread of the students over the points, without those who have none yet."""
     most = table.max_score()
     found: dict[int, list[str]] = defaultdict(list)
     for student in handed_in(table):
-        share = (table.score(student) or 0.0) / most if most else 0.0
+        if (points := table.score(student)) is None:
+            continue
+        share = points / most if most else 0.0
         found[max(0, min(BANDS - 1, int(share * BANDS + 1e-9)))].append(student)
     width = 100 // BANDS
     return [Band(place * width, (place + 1) * width, tuple(found[place])) for place in range(BANDS)]
@@ -167,8 +169,8 @@ def handed_in(table: ClassTable) -> list[str]:
 
 
 def totals(table: ClassTable) -> list[float]:
-    """The points of everybody who has handed in anything."""
-    return [table.score(student) or 0.0 for student in handed_in(table)]
+    """The points of everybody who has any; where nothing is graded yet, there are none."""
+    return [points for student in handed_in(table) if (points := table.score(student)) is not None]
 
 
 def items(table: ClassTable, journal: Journal) -> list[ItemFigures]:

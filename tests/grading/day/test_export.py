@@ -156,11 +156,12 @@ def test_a_list_of_the_lms_is_filled_in_and_else_left_as_it_is(graded: TinyClass
     assert any("Guest User" in notice for notice in done.notices)
     gradebook = tmp_path / "canvas.csv"
     gradebook.write_text(
-        'Student,ID,SIS Login ID,Section,lab_1_2 (815),Other (9)\n"    Points Possible",,,,20,5\n'
+        'Student,ID,SIS Login ID,Section,lab_1_2 (815),Other (9)\n,,,,Manual Posting,\n"    Points Possible",,,,20,5\n'
         '"Lovelace, Ada",101,al,A,,4\n"Nobody, N",9,nn,A,1,1\n'
     )
-    export(graded.path, "canvas", into=gradebook)
-    lines = rows(graded.path / "export" / "canvas.csv")
+    done = export(graded.path, "canvas", into=gradebook)
+    assert [line for line in done.notices if "Nobody" in line and ", ," not in line]
+    lines = rows(graded.path / "export" / "canvas.csv")[1:]
     assert lines[2] == ["Lovelace, Ada", "101", "al", "A", "18.5", "4"]
     assert lines[3] == ["Nobody, N", "9", "nn", "A", "1", "1"]
     for text, words in (("Student,ID,Section,Lab\n", "no column for lab_1_2"), ("a,b\n", "neither")):

@@ -25,6 +25,11 @@ if TYPE_CHECKING:
 
 UTC = ZoneInfo("UTC")
 
+NOT_THIS = (
+    "it is not for lab_1_2: it is the notebook of lab_1_3; to have it there, collect it and say "
+    "--assignment lab_1_3"
+)
+
 
 @pytest.fixture
 def klass(tiny: TinyClass) -> TinyClass:
@@ -241,7 +246,7 @@ def test_of_a_zip_of_the_whole_course_each_notebook_is_itself(
     third = klass.path / "submitted" / "ada" / "lab_1_3" / "lab_1_3.ipynb"
     assert third.exists() is (assignment == "")
     beside = [one.reason for one in report.having(State.BESIDE) if not one.label.endswith("a.txt")]
-    assert beside == (["it is not for lab_1_2: it is the notebook of lab_1_3"] if assignment else [])
+    assert beside == ([NOT_THIS] if assignment else [])
 
 
 def test_what_the_instructor_says_counts_where_nothing_else_does(klass: TinyClass, tmp_path: Path) -> None:

@@ -272,8 +272,17 @@ def test_times_come_from_a_list_of_ones_own_also_later(klass: TinyClass, tmp_pat
     assert report.untimed == {"lab_1_2": ("ada", "ben")}
     klass.submit("zoe")
     times = tmp_path / "times.csv"
-    times.write_text("id,handed_in\nada,2025-10-03T14:05\nzoe@uni.example,2025-10-04 10:00:00 +0200\n")
-    collect(klass.path, [], times=[times], zone=UTC)
+    times.write_text(
+        "id,handed_in\nada,2025-10-03T14:05\nzoe@uni.example,2025-10-04 10:00:00 +0200\nzack,2025-10-04\n"
+    )
+    nothing = write_zip(tmp_path / "empty.zip", {})
+    report = collect(klass.path, [nothing], times=[times], zone=UTC)
+    assert report.notes == (
+        "ada/lab_1_2 was handed in 2025-10-03 14:05 UTC",
+        "zoe/lab_1_2 was handed in 2025-10-04 08:00 UTC",
+        "zack is in the list of times, and nobody is called so",
+        f"{nothing} holds no file",
+    )
     assert stamp(klass, "ada") == "2025-10-03 14:05:00.000000 UTC"
     assert stamp(klass, "zoe") == "2025-10-04 08:00:00.000000 UTC"
     assert not (klass.path / "submitted" / "ben" / "lab_1_2" / "timestamp.txt").exists()
