@@ -15,7 +15,7 @@ from autograder.grading.entering import attempts
 from autograder.grading.entering.journal import Journal
 from autograder.grading.errors import GradingError, clear_disk_errors
 from autograder.grading.overview import statistics as figures
-from autograder.grading.reporting.report import DROPPED, EXCUSED, NOT_SUBMITTED, columns
+from autograder.grading.reporting.report import DROPPED, EXCUSED, columns
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.table.class_table import ClassTable, by_exercise, read_table
 from autograder.page_templates import page_templates
@@ -127,7 +127,7 @@ def _dropped(table: ClassTable) -> dict[str, list[str]]:
 
 
 def _cell(row: Row | None) -> str:
-    if row is None or row.state in (NOT_SUBMITTED, EXCUSED):
+    if row is None or row.is_blank:
         return "excused" if row and row.state == EXCUSED else "–"
     mark = "?" if row.waits else "*" if row.by_hand is not None or row.extra else ""
     return f"{row.score:g}{mark}"

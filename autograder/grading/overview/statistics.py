@@ -183,7 +183,7 @@ def items(table: ClassTable, journal: Journal) -> list[ItemFigures]:
     criteria = _criteria(table, journal)
     found = []
     for key, name in columns(table.rows).items():
-        rows = [row for row in table.rows if _key(row) == key and row.state not in _ABSENT]
+        rows = [row for row in table.rows if _key(row) == key and not row.is_blank]
         if not rows:
             continue
         scores, most = [row.score for row in rows], rows[0].max_score

@@ -75,6 +75,22 @@ def test_the_figures_are_the_gradebooks(graded: TinyClass) -> None:
     assert mistakes["lab_1_2.talker", "crashed"] == ("jose",)
 
 
+def test_work_that_is_not_graded_yet_is_blank_and_in_no_figure(graded: TinyClass) -> None:
+    graded.submit("zoe", 10, 10)
+    table = read_table(ClassDirectory(graded.path))
+    assert sorted(figures.totals(table)) == [3, 6, 10, 20]
+    assert not any("zoe" in band.students for band in figures.bands(table))
+    items = figures.items(table, Journal(graded.path / ".autograder" / "journal"))
+    assert [item.handed_in for item in items] == [4, 4]
+    page = BeautifulSoup(write_report(graded.path).read_text(), "html.parser")
+    titled = page.find("h2", string="Who is where")
+    assert titled
+    table_of_page = titled.find_next("table")
+    assert table_of_page
+    zoe = next(line for line in table_of_page.find_all("tr") if "zoe" in line.get_text())
+    assert [cell.get_text(strip=True) for cell in zoe.find_all("td")][1:] == ["–", "–", "–"]
+
+
 def test_the_page_needs_nothing_and_links_lead_somewhere(graded: TinyClass) -> None:
     path = write_report(graded.path)
     text = path.read_text()
