@@ -194,7 +194,7 @@ def test_a_command_is_ended_and_goes_on(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("moments", [FEW, MANY])
+@pytest.mark.parametrize("moments", [MANY])
 def test_grade_is_ended_and_goes_on(moments: int) -> None:
     """In a process that adopts whatever the grader leaves: see ``kill_the_grader.py``."""
     if reason := why_impossible():
