@@ -47,6 +47,14 @@ LINE = 70
 """Characters of a line of output that are shown while a check goes on."""
 
 
+_after_a_check: list[Callable[[Verdict, Any], None]] = []
+
+
+def after_each_check(then: Callable[[Verdict, Any], None]) -> None:
+    """Have something done with the verdict and the subject of each check that a cell makes."""
+    _after_a_check.append(then)
+
+
 def check(exercise: str, subject: Any) -> float:
     """Let the judge check a subject, and show the verdict as a card.
 
@@ -73,11 +81,8 @@ def check(exercise: str, subject: Any) -> float:
     keep(verdict)
     if is_validating():
         raise_unless_full(verdict)
-    elif is_live():
-        # Here, because a watched class is checked through this module.
-        from autograder.notebook.checking.watched_cells import watch_after
-
-        watch_after(verdict, subject)
+    for then in _after_a_check:
+        then(verdict, subject)
     return Score(verdict.score)
 
 

@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.cards import bundle
 from autograder.notebook.cells.student_tracebacks import notebook_shell
-from autograder.notebook.checking.card_display import display_card, is_live, update_card
-from autograder.notebook.checking.check import converse, what_to_pass
+from autograder.notebook.checking.card_display import display_card, is_live, renew_card, update_card
+from autograder.notebook.checking.check import after_each_check, converse, what_to_pass
 from autograder.notebook.checking.judge_link import JudgeLink, JudgeUnreachable
 from autograder.notebook.checking.kept_checks import keep
 from autograder.verdict import State, not_checked
@@ -76,6 +76,7 @@ class Watch:
         before = self._verdict.score if self._verdict else None
         self._verdict, self.due = verdict, False
         self._here.run(update_card, self._handle, bundle.mimebundle(verdict, before=before, short=True))
+        self._here.run(renew_card, verdict, self.subject)
         self._here.run(keep, verdict)
 
     def _say(self, words: str) -> None:
@@ -218,5 +219,8 @@ def switch(exercise: str, subject: Callable[..., Any]) -> str:
 def watch_after(verdict: Verdict, subject: Any) -> None:
     """Begin to watch after a check that showed something to mend, unless the student has ended that."""
     is_code = inspect.isclass(subject) or inspect.isfunction(subject)
-    if verdict.state is State.FAILED and is_code and not _ended_by_the_student:
+    if is_live() and verdict.state is State.FAILED and is_code and not _ended_by_the_student:
         watch(verdict.exercise, subject)
+
+
+after_each_check(watch_after)

@@ -215,7 +215,7 @@ EXERCISE = adder.exercise(
         "Ask for the sum of that answer and `c`.": "calls chain",
         "Use the sum that the *service* gave you": "chain",
         "Log or print the sum; return it.": "sum",
-        "(In the notebook one of the two is enough.)": "sum",
+        "(In the notebook one is enough.)": "sum",
         "it says so and ends within 12 seconds, or it says again and again that it waits": "limit",
     },
 )

@@ -172,6 +172,29 @@ def test_watching_begins_by_itself_after_a_check_that_showed_something_to_mend_u
     assert len(found.cards) == 1, "the student has ended it"
     found.run("assert 'whenever its cell is run' in watched_cells.switch('lab', Talker)", "button")
     found.run(TALKER.format("four"), "talker")
-    while len(found.cards) < 2:
+    while sum("10 of 10 points" in shown[-1] for shown in found.cards.values()) < 2:
+        found._hear("")  # to its end: a check that goes on would take the next test's score
+    found.run("unwatch()", "end")
+
+
+CHECK_CELL = """
+from autograder.notebook.checking.card_display import CardDisplay
+scores[:] = [5.0, 10.0]
+with CardDisplay("lab", Talker) as place:
+    place.show(converse(None, "lab", Talker, place))
+watch("lab", Talker)
+"""
+
+
+def test_the_card_of_the_check_cell_follows_what_is_watched(notebook: Any) -> None:
+    found = Watched(notebook)
+    found.run(JUDGE, "judge")
+    found.run(TALKER.format("one"), "talker")
+    found.run(CHECK_CELL, "check")
+    (checked,) = found.cards
+    assert "5 of 10 points" in found.cards[checked][-1]
+    found.run(TALKER.format("two"), "talker")
+    while "10 of 10 points, 5 before" not in found.cards[checked][-1]:
         found._hear("")
+    assert "has changed since this check" not in found.cards[checked][-1]
     found.run("unwatch()", "end")
