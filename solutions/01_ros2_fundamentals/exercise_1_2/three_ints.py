@@ -208,9 +208,9 @@ EXERCISE = adder.exercise(
     remarks=(service_calls.no_limit,),
     sample_arguments=(1, 2, 3),
     text={
-        "Wait for the service, at most `patience_sec` seconds.": "late limit",
+        "Wait for the service for `patience_sec` seconds.": "late limit",
         "if no node offers it in time: raise `TimeoutError` then": "limit",
-        "Another exception, or a line that says so, is accepted as well.": "limit",
+        "Another exception, or a line that says so and `None`, is accepted as well.": "limit",
         "Ask for the sum of `a` and `b`.": "calls chain",
         "Ask for the sum of that answer and `c`.": "calls chain",
         "Use the sum that the *service* gave you": "chain",

@@ -424,7 +424,7 @@ EXERCISE = question.exercise(
     text={
         "returns the name as soon as it sees a service of the type": "late other",
         "After `patience_sec` seconds without one it raises `TimeoutError`.": "none",
-        "Another exception, or a line that says so, is accepted as well.": "none",
+        "Another exception, or a line that says so and `None`, is accepted as well.": "none",
         "A program of your own has no `patience_sec`: "
         "without such a service it says so and ends within 12 seconds, or it says again and again "
         "that it looks": "none",

@@ -184,7 +184,7 @@ EXERCISE = client.exercise(
     sample_arguments=(1, 2),
     text={
         "raise `TimeoutError` if it is not there in time.": "late limit",
-        "Another exception, or a line that says so, is accepted as well.": "limit",
+        "Another exception, or a line that says so and `None`, is accepted as well.": "limit",
         "Send the request, and spin the node until the answer has arrived": "call",
         "Log or print the sum that the server sent": "sum",
         "Return it, too": "sum",

@@ -28,7 +28,7 @@ EXERCISE = client.exercise(
     text={
         "Wait for the server: `client.actions.wait_for_server(timeout_sec=...)` returns `False`": "late limit",
         "In this case raise `TimeoutError`.": "limit",
-        "Another exception, or a line that says so, is accepted as well.": "limit",
+        "Another exception, or a line that says so and `None`, is accepted as well.": "limit",
         "Make the goal, `Fibonacci.Goal(order=...)`, and send it": "goal feedback",
         "Wait for the future that you get, and return its result": "goal",
         "it says so and ends within 12 seconds, or it says again and again that it waits": "limit",
