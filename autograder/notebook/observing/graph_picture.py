@@ -31,7 +31,7 @@ _GAP_ALONG = 52
 _GAP_ALONG_DOWN = 34
 _MARGIN = 12
 _PAGE = 860
-"""The width of a notebook's column; a wider picture is drawn from top to bottom."""
+"""The width of a notebook's column; a wider picture is drawn from top to bottom, where that is narrower."""
 
 _STYLE = """
 .ground { fill: #fff; }
@@ -164,9 +164,11 @@ class _Drawing:
             {key: (label.width, _HEIGHT) for key, label in labels.items()}, arrows, _GAP_ALONG
         )
         if self._layout.extent[0] + 2 * _MARGIN > _PAGE:
-            self._down = True
             sizes = {key: (float(_HEIGHT), label.width) for key, label in labels.items()}
-            self._layout = lay_out(sizes, arrows, _GAP_ALONG_DOWN)
+            down = lay_out(sizes, arrows, _GAP_ALONG_DOWN)
+            # A page shrinks a picture that is too wide, with its letters.
+            if down.extent[1] < self._layout.extent[0]:
+                self._down, self._layout = True, down
 
     def svg(self) -> str:
         """The whole picture."""

@@ -149,3 +149,24 @@ def test_a_long_chain_runs_down_the_page() -> None:
         GraphPicture(RosGraph(nodes, tuple(ends))).svg().split('viewBox="')[1].split('"')[0].split()
     )
     assert float(width) < 400 < float(height)
+
+
+def test_the_first_notebook_s_graph_is_not_drawn_wider_downwards() -> None:
+    """A page shrinks what is too wide, and the letters with it."""
+    drive = Channel(ChannelKind.TOPIC, "/cmd_vel", "geometry_msgs/msg/Twist")
+    robots = (
+        Channel(ChannelKind.TOPIC, "/odom", "nav_msgs/msg/Odometry"),
+        Channel(ChannelKind.TOPIC, "/scan", "sensor_msgs/msg/LaserScan"),
+        Channel(ChannelKind.SERVICE, "/lamp", "std_srvs/srv/SetBool"),
+        Channel(ChannelKind.SERVICE, "/reset", "std_srvs/srv/Trigger"),
+        Channel(ChannelKind.ACTION, "/walk_to", "small_robot_interfaces/action/WalkTo"),
+    )
+    ends = (
+        End("/driver", drive, True),
+        End("/robot", drive, False),
+        *(End("/robot", one, True) for one in robots),
+    )
+    box = (
+        GraphPicture(RosGraph(("/driver", "/robot"), ends)).svg().split('viewBox="')[1].split('"')[0].split()
+    )
+    assert float(box[2]) < 1100

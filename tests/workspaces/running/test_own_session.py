@@ -21,7 +21,7 @@ def is_gone(pid: int) -> bool:
     """Whether a process has ended, be it that nobody has asked for it yet."""
     try:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
-    except FileNotFoundError:
+    except (FileNotFoundError, ProcessLookupError):  # the latter where it goes while it is read
         return True
 
 
