@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rclpy.node import Node
+
+
+_STOPPED = "was stopped while this call was waiting for its answer"
 
 
 class NodeEndedError(RuntimeError):
@@ -56,10 +60,13 @@ def is_destroyed(node: Node) -> bool:
 
 def release_waiting_calls(node: Node) -> None:
     """Wake everybody who waits for a service's or an action's answer through this node."""
-    error = NodeEndedError(f"{node_label(node)} was stopped while this call was waiting for its answer")
+    error = NodeEndedError(f"{node_label(node)} {_STOPPED}")
     for future in list(_pending_answers(node)):
         if not future.done():
-            future.set_exception(error)
+            with warnings.catch_warnings():
+                # A callback that asks for the answer gets this error. rclpy would warn of it, though all is as meant.
+                warnings.filterwarnings("ignore", f".* {_STOPPED}", UserWarning)
+                future.set_exception(error)
             # Nobody needs to look at it: unfetched exceptions are written to stderr when the future is
             # collected.
             future.exception()

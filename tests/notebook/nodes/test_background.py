@@ -15,7 +15,7 @@ from rclpy.node import Node
 
 from autograder.notebook.nodes import spin_threads
 from autograder.notebook.nodes.executors import spin_in_background, start_ros, stop_all
-from autograder.notebook.nodes.node_ends import NodeEndedError, is_destroyed
+from autograder.notebook.nodes.node_ends import NodeEndedError, is_destroyed, release_waiting_calls
 from autograder.notebook.nodes.spin_threads import CallbackBrokenOff
 
 if TYPE_CHECKING:
@@ -223,6 +223,22 @@ def test_a_call_that_waits_for_ever_is_released(
     assert count_spin_threads() == 0
     assert isinstance(background.errors[0].error, NodeEndedError), "released, not broken off"
     assert "a callback group of its own" in capfd.readouterr().out
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_callback_of_an_answer_that_never_comes_ends_in_silence() -> None:
+    node = Node("patient_client")
+    sent = node.create_client(AddTwoInts, "nobody_adds").call_async(AddTwoInts.Request())
+    seen: list[BaseException | None] = []
+
+    def on_answer(future: Any) -> None:
+        seen.append(future.exception())
+        future.result()
+
+    sent.add_done_callback(on_answer)
+    release_waiting_calls(node)
+    node.destroy_node()
+    assert isinstance(seen[0], NodeEndedError)
 
 
 def test_a_healthy_call_that_the_end_cuts_off_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
