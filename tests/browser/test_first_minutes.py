@@ -53,6 +53,25 @@ def test_a_student_drives_the_robot_in_five_actions(page: Page, lab: str) -> Non
     assert "trail" in picture
 
 
+def test_the_arrow_keys_drive_the_robot(page: Page, lab: str) -> None:
+    from playwright.sync_api import expect
+
+    page.goto(lab.format("lab/tree/01_ros2_fundamentals/00_nervous_system.ipynb"))
+    notebook = OpenNotebook(page)
+    expect(page.locator("#jp-main-statusbar")).to_contain_text("Python 3 (ipykernel) | Idle")
+    first = notebook.run(r"^from geometry_msgs")
+    robot, button = first.locator(ROBOT), first.get_by_role("button", name="Drive with the arrow keys")
+    expect(robot).to_have_attribute("alt", re.compile(r"x = 1\.00 m"))
+    button.click()
+    page.keyboard.down("ArrowUp")
+    expect(robot).to_have_attribute("alt", re.compile(r"in the right room"), timeout=60_000)
+    look(page, "robot-driven-by-keys")
+    page.keyboard.up("ArrowUp")
+    expect(robot).to_have_attribute("alt", re.compile(r"It stands still\."))
+    page.keyboard.press("Escape")
+    expect(page.locator("body")).not_to_have_class(re.compile("ros2-course-drives"))
+
+
 def driver() -> str:
     """What a student has in the solution cell in the end."""
     master = Path(__file__).parents[2] / "solutions/01_ros2_fundamentals/00_nervous_system/lab.md"

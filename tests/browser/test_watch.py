@@ -25,7 +25,8 @@ def answer(file: str) -> str:
     return (BANK / file).read_text().partition("# %% solution ")[2].partition("\n")[2].strip()
 
 
-def test_each_run_of_the_cell_shows_one_short_card_below_it(page: Page, lab: str) -> None:
+def with_a_wrong_talker(page: Page, lab: str) -> OpenNotebook:
+    """Lab 1.2, with ROS up and a talker on another topic, whose cell was not run yet."""
     from playwright.sync_api import expect
 
     page.goto(lab.format("lab/tree/01_ros2_fundamentals/lab_1_2.ipynb"))
@@ -33,6 +34,13 @@ def test_each_run_of_the_cell_shows_one_short_card_below_it(page: Page, lab: str
     expect(page.locator("#jp-main-statusbar")).to_contain_text("Python 3 (ipykernel) | Idle")
     expect(notebook.run(r"^import time")).to_contain_text(re.compile(r"ROS 2 is up"))
     notebook.write(r"^class TalkerNode", answer("wrong/topic_name.py"))
+    return notebook
+
+
+def test_each_run_of_the_cell_shows_one_short_card_below_it(page: Page, lab: str) -> None:
+    from playwright.sync_api import expect
+
+    notebook = with_a_wrong_talker(page, lab)
     defined = notebook.run(r"^class TalkerNode")
     # A cell of the student's own, below it.
     page.keyboard.press("Escape")
@@ -61,11 +69,7 @@ def test_each_run_of_the_cell_shows_one_short_card_below_it(page: Page, lab: str
 def test_a_task_is_done_with_the_buttons_alone(page: Page, lab: str) -> None:
     from playwright.sync_api import expect
 
-    page.goto(lab.format("lab/tree/01_ros2_fundamentals/lab_1_2.ipynb"))
-    notebook = OpenNotebook(page)
-    expect(page.locator("#jp-main-statusbar")).to_contain_text("Python 3 (ipykernel) | Idle")
-    expect(notebook.run(r"^import time")).to_contain_text(re.compile(r"ROS 2 is up"))
-    notebook.write(r"^class TalkerNode", answer("wrong/topic_name.py"))
+    notebook = with_a_wrong_talker(page, lab)
     defined, checked = notebook.cell(r"^class TalkerNode"), notebook.cell(r'^check\("lab_1_2.talker"')
     look(page, "buttons-of-a-cell")
     defined.locator(".jp-cell-toolbar").get_by_text("Check", exact=True).click()

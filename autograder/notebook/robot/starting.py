@@ -6,6 +6,8 @@ import math
 from collections import deque
 from typing import TYPE_CHECKING
 
+from IPython.display import display
+
 from autograder.notebook.nodes.background import replace_named
 from autograder.notebook.nodes.executors import spin_in_background, start_ros
 from autograder.notebook.observing.live_picture import LivePicture
@@ -27,6 +29,11 @@ _TRAIL = 150
 """Places that the trail keeps."""
 _TRAIL_STEP = 0.08
 """Metres between them."""
+_BUTTON = (
+    '<button type="button" class="ros2-course-drive" hidden="hidden" data-commandlinker-command="ros2-course:drive" '
+    'data-commandlinker-args="{}">Drive with the arrow keys</button>'
+)
+"""Shown where JupyterLab has the command."""
 _TELEPORT = 0.5
 """Metres that it cannot roll from one picture to the next: it was put back to the start."""
 
@@ -57,6 +64,9 @@ class LiveRobot:
             self._picture.stop()
         self._picture = LivePicture(_RobotPictures(self._node), MINUTES)
         self._picture.start()
+        if self._picture.running:
+            # Below the picture, and no part of it: it is not drawn anew while it is clicked.
+            display({"text/html": _BUTTON, "text/plain": ""}, raw=True)  # type: ignore[no-untyped-call]
 
     def stop(self) -> None:
         """End the robot and its picture. Calling it again does no harm."""

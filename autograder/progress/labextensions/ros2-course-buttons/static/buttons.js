@@ -1,6 +1,7 @@
-// Check, Watch and Next: three commands of JupyterLab, as buttons on a student's cell and on the card of a check. The
-// buttons of a card are in its HTML (card.html.j2); they are shown only where these commands are. Written as JupyterLab
-// loads it (a container of webpack's module federation: init, then get), so that nothing has to be built.
+// Check, Watch and Next: three commands of JupyterLab, as buttons on a student's cell and on the card of a check; and
+// Drive, below the picture of the robot. The buttons of a card and of the robot are in their HTML (card.html.j2,
+// robot/starting.py); they are shown only where these commands are. Written as JupyterLab loads it (a container of
+// webpack's module federation: init, then get), so that nothing has to be built.
 "use strict";
 window._JUPYTERLAB = window._JUPYTERLAB || {};
 window._JUPYTERLAB["ros2-course-buttons"] = (() => {
@@ -11,7 +12,14 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
   const NEXT = /Next: \[[^\]]*\]\(([^)#]+\.ipynb)\)/;
   const NAME = /^[A-Za-z_]\w*$/;
 
-  const SHOWN = `.jp-Notebook .agc .agc-acts { display: flex !important; }`;
+  // For each key, metres a second ahead and radians a second to the left.
+  const KEYS = { ArrowUp: [0.5, 0], ArrowDown: [-0.5, 0], ArrowLeft: [0, 1.5], ArrowRight: [0, -1.5] };
+  const AGAIN = 300; // milliseconds; the robot obeys a command for a second
+
+  const SHOWN = `
+    .jp-Notebook .agc .agc-acts { display: flex !important; }
+    .jp-Notebook .ros2-course-drive { display: inline-block !important; margin: 4px 0; padding: 4px 12px; cursor: pointer; }
+    .ros2-course-drives .ros2-course-drive { outline: 3px solid var(--jp-brand-color1); }`;
 
   const text = cell => cell.model.sharedModel.getSource();
   const isCheck = cell => cell.model.type === "code" && CHECK.test(text(cell));
@@ -68,17 +76,23 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
         }
       }
 
+      // What an expression has as its value in a notebook's kernel, where that is a string; nothing where it failed. No
+      // name is left in the student's notebook.
+      async function ask(kernel, module, call) {
+        const words = `__import__("${module}", fromlist=["_"]).${call}`;
+        const asked = { code: "", silent: true, store_history: false, user_expressions: { words } };
+        const { content } = await kernel.requestExecute(asked).done;
+        return content.user_expressions?.words?.data?.["text/plain"]?.slice(1, -1);
+      }
+
       async function watchOrNot(app) {
         const panel = notebook(app);
         const found = panel && check(panel);
         const kernel = panel?.sessionContext.session?.kernel;
         if (!found || !kernel) return say("There is no check below this cell, or no kernel.");
         if (!NAME.test(found.subject)) return say("What is checked here is a file: it is checked when you run its check.");
-        const code = `from autograder.notebook.checking import watched_cells as _watched`;
-        const words = `_watched.switch(${JSON.stringify(found.exercise)}, ${found.subject})`;
-        const asked = { code, silent: true, store_history: false, user_expressions: { words } };
-        const { content } = await kernel.requestExecute(asked).done;
-        const said = content.user_expressions?.words?.data?.["text/plain"];
+        const call = `switch(${JSON.stringify(found.exercise)}, ${found.subject})`;
+        const said = await ask(kernel, "autograder.notebook.checking.watched_cells", call);
         say(said ?? `Run the cell with ${found.subject} first.`);
       }
 
@@ -95,6 +109,51 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
         app.commands.execute("docmanager:open", { path: [...folder, link[1]].join("/") });
       }
 
+      // Send the arrow keys to the robot, until another key or a click says that something else is wanted.
+      let endDriving = null;
+      function driveOrNot(app) {
+        if (endDriving) return endDriving();
+        const kernel = notebook(app)?.sessionContext.session?.kernel;
+        if (!kernel) return say("The notebook has no kernel.");
+        const pressed = new Set();
+        let sends = false, changed = false;
+        // One at a time: what waits for a busy kernel would come too late.
+        async function send() {
+          changed = true;
+          if (sends) return;
+          sends = true;
+          while (changed) {
+            changed = false;
+            const [ahead, left] = [...pressed].map(key => KEYS[key]).reduce((a, b) => [a[0] + b[0], a[1] + b[1]], [0, 0]);
+            const said = await ask(kernel, "autograder.notebook.robot.keyboard", `drive(${ahead}, ${left})`).catch(() => "");
+            if (said && endDriving) { endDriving(); say(said); }
+          }
+          sends = false;
+        }
+        const key = event => {
+          if (!(event.key in KEYS)) return event.type === "keydown" && endDriving();
+          event.preventDefault();
+          event.stopImmediatePropagation(); // JupyterLab would go to another cell
+          if (event.repeat) return;
+          pressed[event.type === "keydown" ? "add" : "delete"](event.key);
+          send();
+        };
+        const click = event => event.target.closest?.(".ros2-course-drive") || endDriving();
+        const again = setInterval(() => pressed.size && send(), AGAIN);
+        const away = () => endDriving();
+        const listened = { keydown: key, keyup: key, mousedown: click, blur: away };
+        endDriving = () => {
+          endDriving = null;
+          clearInterval(again);
+          for (const name in listened) window.removeEventListener(name, listened[name], name !== "blur");
+          document.body.classList.remove("ros2-course-drives");
+          if (pressed.size) { pressed.clear(); send(); }
+        };
+        for (const name in listened) window.addEventListener(name, listened[name], name !== "blur");
+        document.body.classList.add("ros2-course-drives");
+        say("Drive with the arrow keys. Any other key ends it.");
+      }
+
       const plugin = {
         id: "ros2-course-buttons:buttons",
         autoStart: true,
@@ -106,6 +165,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
             app.commands.addCommand(`ros2-course:${name}`, { label, caption, execute: () => execute(app) });
           add("check", "Check", "Run the cells of this task, and then its check", checkNow);
           add("watch", "Watch", "Check again whenever the cell is run, or end that", watchOrNot);
+          add("drive", "Drive the robot", "Send the arrow keys to the robot, or end that", driveOrNot);
           add("next", "Next task", "Go to the next task, here or in the next notebook", next);
         },
       };
