@@ -137,13 +137,15 @@ def entries(journal: Path | None) -> list[Entry]:
 
 def best(lines: Iterable[Entry]) -> dict[str, Entry]:
     """For each exercise the first of its best checks since its notebook was last begun anew."""
-    found: dict[str, Entry] = {}
+    found: dict[str, dict[str, Entry]] = {}
     for entry in lines:
         if entry.kind == "reset":
-            found = {name: kept for name, kept in found.items() if kept.notebook != entry.name}
-        elif entry.kind == "check" and (entry.name not in found or found[entry.name].points < entry.points):
-            found[entry.name] = entry
-    return found
+            found.pop(entry.name, None)
+        elif entry.kind == "check":
+            of_notebook = found.setdefault(entry.notebook, {})
+            if entry.name not in of_notebook or of_notebook[entry.name].points < entry.points:
+                of_notebook[entry.name] = entry
+    return {name: entry for of_notebook in found.values() for name, entry in of_notebook.items()}
 
 
 def finished(chapter: course.Chapter, reached: dict[str, Entry]) -> float | None:
@@ -164,8 +166,9 @@ def finished(chapter: course.Chapter, reached: dict[str, Entry]) -> float | None
 
 @contextlib.contextmanager
 def _opened(path: Path, flags: int) -> Iterator[int]:
-    # What is no file, such as a pipe that somebody has put there, must not keep a check waiting.
-    number = os.open(path, flags | os.O_NONBLOCK | os.O_CLOEXEC, 0o600)
+    # The folder may be another's, whose work somebody looks at: what is no file must not keep a check waiting, and a
+    # link have no line written into a file elsewhere.
+    number = os.open(path, flags | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)
     try:
         if not stat.S_ISREG(os.fstat(number).st_mode):
             raise OSError(f"{path} is no file")

@@ -7,9 +7,12 @@ import errno
 import os
 import stat
 from pathlib import Path
-from typing import IO
+from typing import IO, TYPE_CHECKING
 
 import re2
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 _UNFINISHED = re2.compile(r"\..+\.\d+\.new")
 
@@ -31,6 +34,11 @@ def opened(path: str | Path, folder: int | None = None) -> IO[bytes]:
         return os.fdopen(descriptor, "rb")
     os.close(descriptor)
     raise OSError(errno.EINVAL, "not a regular file")
+
+
+def name_as_text(name: str) -> str:
+    """The name of a file as a text that can be written and searched: on a disk it may be bytes that no text has."""
+    return name.encode("utf-8", "replace").decode()
 
 
 def write_whole(path: Path, data: bytes) -> None:
@@ -56,12 +64,24 @@ def write_whole(path: Path, data: bytes) -> None:
         _keep_names(folder)
 
 
+def files_below(folder: Path) -> Iterator[Path]:
+    """All files and links below a folder, as far as they can be looked at, however many folders are in each other."""
+    folders = [folder]  # os.walk and Path.rglob do not come back from a thousand
+    while folders:
+        with contextlib.suppress(OSError), os.scandir(folders.pop()) as entries:
+            for entry in entries:
+                if entry.is_dir(follow_symlinks=False):
+                    folders.append(Path(entry))
+                else:
+                    yield Path(entry)
+
+
 def remove_unfinished(folder: Path) -> None:
     """Remove what killed processes had begun to write below a folder, in which nobody else is at work."""
-    for place, _, names in os.walk(folder):
-        for name in filter(_UNFINISHED.fullmatch, names):
+    for file in files_below(folder):
+        if _UNFINISHED.fullmatch(name_as_text(file.name)):
             with contextlib.suppress(OSError):
-                Path(place, name).unlink()
+                file.unlink()
 
 
 def _keep_names(folder: Path) -> None:

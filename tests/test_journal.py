@@ -39,6 +39,22 @@ def test_a_check_is_a_line_and_the_best_one_counts(kept: Path) -> None:
     assert journal.best(lines)["lab.talker"] == lines[1]
 
 
+def test_a_link_in_anothers_folder_has_no_line_written_elsewhere(kept: Path, tmp_path: Path) -> None:
+    own = tmp_path / ".bashrc"
+    own.write_text("export A=1\n")
+    kept.parent.mkdir()
+    kept.symlink_to(own)
+    assert not journal.note(Entry("read", "lab", 1))
+    assert own.read_text() == "export A=1\n"
+    assert journal.entries(kept) == []
+
+
+def test_each_line_of_a_journal_made_by_hand_is_looked_at_once() -> None:
+    """Looking at all others for each would take minutes here."""
+    checks = [Entry("check", f"lab.{number}", 1, 1, 10) for number in range(30_000)]
+    assert len(journal.best([*checks, *(Entry("reset", "other", 2) for _ in range(30_000))])) == 30_000
+
+
 def test_points_begin_anew_with_the_notebook(kept: Path) -> None:
     lines = [Entry("check", "lab.talker", 1, 10, 10), Entry("check", "lab_2.server", 2, 5, 10)]
     lines += [Entry("reset", "lab", 3), Entry("check", "lab.listener", 4, 3, 10)]

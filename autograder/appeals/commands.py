@@ -56,9 +56,15 @@ def replay(file: Path, mcap: Path | None, bag: Path | None) -> None:
         if bag is not None:
             click.echo(save_bag(appeal.seen, bag))
         again = replaying.replay(appeal.seen)
+        lines = list(_lines(appeal, again))
     except (appeal_file.BadAppeal, replaying.CannotReplay) as error:
         _fail(str(error))
-    for line in _lines(appeal, again):
+    except Exception as error:  # whoever wrote the file may have put anything anywhere
+        _fail(
+            f"{file} is not as an appeal file is ({type(error).__name__}: {error}). It was edited, or comes from "
+            "another version of the course: use that one."
+        )
+    for line in lines:
         click.echo(printable(line))
     sys.exit(1 if again.differences else 0)
 

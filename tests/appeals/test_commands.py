@@ -121,6 +121,48 @@ def test_what_cannot_be_judged_again_ends_with_2(
     assert "Traceback" not in said
 
 
+def first_event(content: dict[str, Any]) -> dict[str, Any]:
+    event: dict[str, Any] = content["seen"]["looks"][0]["parts"][0]["events"][0]
+    return event
+
+
+@pytest.mark.parametrize("options", [[], ["--mcap"], ["--bag"]])
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda content: content["seen"].update(at=float("nan")),
+        lambda content: content["seen"].update(at=1e308),
+        lambda content: content["seen"].update(at=-(10**18)),
+        lambda content: content["expected"].update(x={"$float": 10**400}),
+    ],
+)
+def test_a_number_that_none_can_be_ends_with_2(
+    file: Path, tmp_path: Path, change: Callable[[dict[str, Any]], object], options: list[str]
+) -> None:
+    edit(file, change)
+    code, said = run("replay", file, *options, *(tmp_path / "check.mcap" for _ in options))
+    assert code == 2
+    assert "is not as an appeal file is" in said
+
+
+@pytest.mark.parametrize("option", ["--mcap", "--bag"])
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda content: first_event(content)["data"].update(publisher=None),
+        lambda content: first_event(content)["data"].update(fields=3),
+        lambda content: first_event(content).update(t=float("inf")),
+    ],
+)
+def test_messages_that_none_can_be_end_with_2(
+    file: Path, tmp_path: Path, change: Callable[[dict[str, Any]], object], option: str
+) -> None:
+    edit(file, change)
+    code, said = run("replay", file, option, tmp_path / "check.mcap")
+    assert code == 2
+    assert "is not as an appeal file is" in said
+
+
 def test_a_file_that_is_none_ends_with_2(tmp_path: Path) -> None:
     code, said = run("replay", tmp_path / "none.json")
     assert code == 2

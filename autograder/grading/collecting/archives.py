@@ -13,33 +13,36 @@ import os
 import stat
 import zipfile
 import zlib
+from collections import Counter
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from autograder.grading.rebuilding.submission import MAX_BYTES, UnreadableSubmission, read_bytes
+from autograder.regular_files import name_as_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 MOST_FILES = 20_000
-"""In one archive or folder; a class of a thousand has a few thousand."""
-_MOST_UNPACKED = 4_000_000_000
-"""Bytes that one archive may unpack to, as far as it says so itself."""
+"""In one folder of a download: who fills a folder, such as a student's own repository, harms nobody else."""
 _LARGEST_LIST = 8_000_000
 """Bytes of an archive's list of files, which Python reads whole before anybody can count them: 400 a file."""
-_MOST_FILES_OF_ONE = 2_000
-_MOST_UNPACKED_OF_ONE = 500_000_000
 _LARGEST_LIST_OF_ONE = 300_000
-"""The same for an archive that a student has handed in, with all archives in it: who fills it harms nobody else."""
+"""The same for an archive that a student has handed in."""
 _OTHER_METHODS = {9: "Deflate64", 12: "bzip2", 14: "LZMA", 93: "Zstandard", 95: "xz", 98: "PPMd"}
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 """Others (bzip2, LZMA) unpack a few hundred bytes to a gigabyte in one step, before anybody can stop them."""
 _DEEPEST = 3
 """Archives in an archive that a student has handed in, one in the other."""
+_DEEPEST_FOLDER = 100
+"""Folders in each other; Python looks into no more than some hundreds."""
 _NOBODYS = ("__MACOSX", ".git", ".ipynb_checkpoints", "__pycache__", ".DS_Store")
 """Files that systems and editors leave beside somebody's own."""
 _LEADS_OUT = "its name leads out of the archive"
+_LONGEST_NAME = 1_000
+"""Characters of a path; a zip may have 65,535, whose printing alone would be a flood."""
+_TOO_LONG = f"its name has more than {_LONGEST_NAME} characters"
 
 
 class NotTaken(ValueError):
@@ -76,32 +79,42 @@ class File:
 
 
 @dataclass
-class _Room:
-    """The room that archives in each other still have together.
+class Room:
+    """The room that all archives of one student in a download still have together.
 
     Attributes:
         files: How many files.
         unpacked: How many bytes, as far as the archives say so themselves.
-        largest_list: Bytes of the list of files of each.
     """
 
-    files: int
-    unpacked: int
-    largest_list: int
+    files: int = 5_000
+    unpacked: int = 1_000_000_000
 
 
-def files_of(source: Path) -> Iterator[File]:
+def files_of(source: Path, *, opened: bool = True) -> Iterator[File]:
     """The files of an archive, of a folder, or the file itself; one that cannot be read says so when it is read.
 
     Args:
         source: What the instructor named. Links are followed there and nowhere below.
+        opened: Whether an archive is opened here; otherwise it is a file, as in a download.
     """
-    source = source.absolute()
+    counts: Counter[tuple[str, ...]] = Counter()
+    for file in _of_source(source.absolute(), opened=opened):
+        folder = file.parts[:2]
+        counts[folder] += 1
+        if counts[folder] <= MOST_FILES:
+            yield file
+        elif counts[folder] == MOST_FILES + 1:
+            reason = f"it has more than {MOST_FILES} files; the others in it were not looked at"
+            yield File(file.source, folder, _refusing(reason))
+
+
+def _of_source(source: Path, *, opened: bool) -> Iterator[File]:
     if source.is_dir():
         yield from _of_folder(source)
         return
     alone = File(source.parent, (source.name,), functools.partial(_read_file, source))
-    if source.suffix.lower() != ".zip":
+    if source.suffix.lower() != ".zip" or not opened:
         yield alone
         return
     try:
@@ -109,69 +122,63 @@ def files_of(source: Path) -> Iterator[File]:
     except OSError as error:
         yield replace(alone, read=_refusing(f"it cannot be read: {error.strerror}"))
     else:
-        room = _Room(MOST_FILES, _MOST_UNPACKED, _LARGEST_LIST)
-        yield from _of_zip(File(source, (), alone.read), file, room)
+        yield from _of_zip(File(source, (), alone.read), file, _LARGEST_LIST)
 
 
-def within(file: File, data: bytes) -> Iterator[tuple[File, bytes]]:
+def within(file: File, data: bytes, room: Room, depth: int = 1) -> Iterator[tuple[File, bytes]]:
     """The files of an archive that a student has handed in with what they hold, those of archives in it, too."""
-    room = _Room(_MOST_FILES_OF_ONE, _MOST_UNPACKED_OF_ONE, _LARGEST_LIST_OF_ONE)
-    yield from _within(file, data, room, 1)
-
-
-def _within(file: File, data: bytes, room: _Room, depth: int) -> Iterator[tuple[File, bytes]]:
-    for inner in _of_zip(file, io.BytesIO(data), room):
+    for inner in _of_zip(file, io.BytesIO(data), _LARGEST_LIST_OF_ONE, room):
         try:
             held = inner.read()
         except NotTaken:
             yield inner, b""
             continue
         if is_zip(inner.name, held) and depth < _DEEPEST:
-            yield from _within(inner, held, room, depth + 1)
+            yield from within(inner, held, room, depth + 1)
         else:
             yield inner, held
 
 
 def _of_folder(source: Path) -> Iterator[File]:
-    above, count = source.parent, 0
+    above = source.parent
     for folder, folders, names in os.walk(source):
+        here = tuple(map(name_as_text, Path(folder).relative_to(above).parts))
         folders[:] = sorted(name for name in folders if name not in _NOBODYS)
         for name in sorted(names):
             path = Path(folder) / name
             if name in _NOBODYS or name.startswith("._"):
                 continue
-            count += 1
-            if count > MOST_FILES:
-                reason = f"it has more than {MOST_FILES} files; the others were not looked at"
-                yield File(above, (source.name,), _refusing(reason))
-                return
-            yield File(above, path.relative_to(above).parts, functools.partial(_read_file, path))
+            yield File(above, (*here, name_as_text(name)), functools.partial(_read_file, path))
         for name in folders:
             if (Path(folder) / name).is_symlink():
-                parts = (Path(folder) / name).relative_to(above).parts
-                yield File(above, parts, _refusing("it is a link"))
+                yield File(above, (*here, name_as_text(name)), _refusing("it is a link"))
+        if folders and len(here) > _DEEPEST_FOLDER:
+            folders.clear()
+            reason = f"more than {_DEEPEST_FOLDER} folders are in each other; the others were not looked at"
+            yield File(above, here, _refusing(reason))
 
 
-def _of_zip(outer: File, data: BinaryIO, room: _Room) -> Iterator[File]:
+def _of_zip(outer: File, data: BinaryIO, largest_list: int, room: Room | None = None) -> Iterator[File]:
     """The files of an archive; one that says why where it cannot be read."""
     try:
-        bounded = _Bounded(data, room.largest_list)
+        bounded = _Bounded(data, largest_list)
         archive = zipfile.ZipFile(bounded)
         bounded.most = MAX_BYTES + 1  # from here on, the files themselves
         entries = [entry for entry in archive.infolist() if not entry.is_dir()]
     except (NotTaken, zipfile.BadZipFile, ValueError, NotImplementedError, OSError, EOFError) as error:
         yield replace(outer, read=_refusing(f"it is no zip file that can be read: {error}"))
         return
-    size = sum(entry.file_size for entry in entries)
-    room.files -= len(entries)
-    room.unpacked -= size
-    if min(room.files, room.unpacked) < 0:
-        reason = (
-            f"it has {len(entries)} files that unpack to {size / 1e6:.0f} MB: with what else is in that archive, "
-            "more than there may be"
-        )
-        yield replace(outer, read=_refusing(reason))
-        return
+    if room is not None:
+        size = sum(entry.file_size for entry in entries)
+        if len(entries) > room.files or size > room.unpacked:
+            reason = (
+                f"it has {len(entries)} files that unpack to {size / 1e6:.0f} MB: with the student's other archives, "
+                f"more than {Room.files} files or {Room.unpacked / 1e6:.0f} MB. Ask for the notebook alone"
+            )
+            yield replace(outer, read=_refusing(reason))
+            return
+        room.files -= len(entries)
+        room.unpacked -= size
     for entry in entries:
         name = _name_of(entry)
         parts = tuple(part for part in name.replace("\\", "/").split("/") if part not in ("", "."))
@@ -180,7 +187,7 @@ def _of_zip(outer: File, data: BinaryIO, room: _Room) -> Iterator[File]:
         reason = _reason_against(entry, name, parts)
         # The archive stays open as long as any of its files may be read.
         read = _refusing(reason) if reason else functools.partial(_read_entry, archive, entry)
-        parts = (name,) if reason == _LEADS_OUT else parts
+        parts = (name[:_LONGEST_NAME],) if reason in (_LEADS_OUT, _TOO_LONG) else parts
         if outer.parts:
             yield File(outer.source, outer.parts, read, (*outer.inner, *parts))
         else:
@@ -255,6 +262,8 @@ def _name_of(entry: zipfile.ZipInfo) -> str:
 
 def _reason_against(entry: zipfile.ZipInfo, name: str, parts: tuple[str, ...]) -> str:
     mode = entry.external_attr >> 16
+    if len(name) > _LONGEST_NAME:
+        return _TOO_LONG
     if not parts or ".." in parts or name.startswith(("/", "\\")) or (parts and parts[0].endswith(":")):
         return _LEADS_OUT
     if stat.S_IFMT(mode) not in (0, stat.S_IFREG):

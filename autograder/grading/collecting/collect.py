@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+import zlib
+from collections import defaultdict
 from dataclasses import replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import ClassDirectory, reason_against_name
-from autograder.grading.collecting.archives import File, NotTaken, files_of, is_zip, within
+from autograder.grading.collecting.archives import File, NotTaken, Room, files_of, is_zip, within
 from autograder.grading.collecting.assignment_of import AssignmentOf, NoTarget, is_notebook, stem_of
 from autograder.grading.collecting.forms import FORMS, plain, read_path
 from autograder.grading.collecting.lists import GRADESCOPE, Entry, is_unread, read_list
@@ -105,14 +106,19 @@ class _Collecting:
         self._assignment_from = AssignmentOf(directory, assignment)
         self._candidates: list[Candidate] = []
         self._outcomes: list[Outcome] = []
+        self._handed_in_alone: set[Path] = set()
         self._unread: list[str] = []
 
     def run(self, sources: Sequence[Path], times: Sequence[Path]) -> CollectReport:
         """Read everything that is there, put it in its place, and write down what has none."""
-        downloads = {source: list(files_of(source)) for source in sources}
+        self._handed_in_alone = {source for source in sources if self._is_handed_in(source)}
+        downloads = {
+            source: list(files_of(source, opened=source not in self._handed_in_alone)) for source in sources
+        }
         self._learn(downloads, times)
         for source, files in downloads.items():
-            self._take([file for file in files if not self._is_list(source, file)], source)
+            depth = _depth(files)
+            self._take([file for file in files if not self._is_list(source, file, depth)], source, depth)
         placing = Placing(self._directory)
         self._outcomes += placing.place(self._candidates)
         work = {(one.student, one.assignment) for one in self._directory.submissions()[0]}
@@ -165,8 +171,9 @@ class _Collecting:
         entries: list[Entry] = []
         told: list[Entry] = []
         for source, files in downloads.items():
+            depth = _depth(files)
             for file in files:
-                if self._is_list(source, file):
+                if self._is_list(source, file, depth):
                     entries += self._entries(file)
         for path in times:
             try:
@@ -183,10 +190,21 @@ class _Collecting:
         self._unread += [one.time for one in (*entries, *told) if is_unread(one)]
         self._student_of = StudentOf(self._roster, entries, told)
 
-    def _is_list(self, source: Path, file: File) -> bool:
-        return (len(file.parts) <= 2 and file.name == GRADESCOPE) or (
-            source.suffix.lower() == ".csv" and file.parts == (source.name,)
-        )
+    def _is_list(self, source: Path, file: File, depth: int) -> bool:
+        """True if a file is a list of the instructor's: no student's of that name is ever opened as one."""
+        if file.name == GRADESCOPE and len(file.parts) <= depth:
+            return read_path(file.parts, "gradescope", self._assignment_from.is_notebook) is None
+        is_csv = source.suffix.lower() == ".csv" and file.parts == (source.name,)
+        return is_csv and source not in self._handed_in_alone
+
+    def _is_handed_in(self, source: Path) -> bool:
+        """True if a file that the instructor names is one student's: a system has called it so.
+
+        As with ``download/*``: who hands in an archive or a table must not have it read as the instructor's.
+        """
+        ways = (read_path((source.name,), form, self._assignment_from.is_notebook) for form in FORMS)
+        known = self._roster.students and source.is_file()
+        return bool(known and any(way is not None and self._student_of.find(way) for way in ways))
 
     def _entries(self, file: File) -> list[Entry]:
         try:
@@ -206,10 +224,9 @@ class _Collecting:
             self._outcomes.append(Outcome(file.label, State.BESIDE, "it was read as a list"))
         return found or []
 
-    def _take(self, files: list[File], source: Path) -> None:
-        # Folders deeper than what all have in common are the students' own: their names say nothing.
-        depth = 2 if len({file.parts[0] for file in files if file.parts}) == 1 else 1
+    def _take(self, files: list[File], source: Path, depth: int) -> None:
         form = self._form or self._likely_form(files, depth)
+        rooms: dict[tuple[str, ...], Room] = defaultdict(Room)
         for file in files:
             found = (
                 read_path(file.parts, form, self._assignment_from.is_notebook)
@@ -225,7 +242,8 @@ class _Collecting:
             if not is_zip(file.name, data) or not data:
                 self._take_file(file, data, who, found, source)
                 continue
-            for inner, held in within(file, data):
+            whose = tuple(one.id for students in who[1] for one in students) if who else file.parts[:depth]
+            for inner, held in within(file, data, rooms[whose]):
                 self._take_file(inner, held, who, found, source)
 
     def _likely_form(self, files: Sequence[File], depth: int) -> str:
@@ -234,17 +252,18 @@ class _Collecting:
         A student chooses the names of files in such a folder, and might choose one that another system would give
         to somebody else's.
         """
-        counts: Counter[str] = Counter()
+        votes: dict[str, set[tuple[str, ...]]] = {form: set() for form in FORMS}
+        in_folders = set()
         for file in files:
-            for form in FORMS:
-                if file.parts and read_path(file.parts, form, self._assignment_from.is_notebook) is not None:
-                    counts[form] += 1
+            folder = file.parts[:depth]  # which has one vote, however many files its student puts into it
+            if folder and any(map(self._student_of.find, plain(file.parts)[:depth])):
+                in_folders.add(folder)
+            for form in FORMS if folder else ():
+                if read_path(file.parts, form, self._assignment_from.is_notebook) is not None:
+                    votes[form].add(folder)
                     break
-        likely = max(FORMS, key=lambda form: counts[form]) if counts else ""
-        in_folders = sum(
-            any(map(self._student_of.find, plain(file.parts)[:depth])) for file in files if file.parts
-        )
-        return likely if counts[likely] > in_folders else ""
+        likely = max(FORMS, key=lambda form: len(votes[form]))
+        return likely if len(votes[likely]) > len(in_folders) else ""
 
     def _take_file(
         self, file: File, data: bytes, who: _Who | None, found: Found | None, source: Path
@@ -270,6 +289,7 @@ class _Collecting:
         way, members = who
         # Of what is in a student's own zip the name says which notebook it is, though not whose.
         name = file.name if file.inner else way.file
+        packed = zlib.compress(data, 1)
         for (student,) in members:
             try:
                 (assignment, notebook), is_named = self._assignment_from.target(name, data)
@@ -290,7 +310,7 @@ class _Collecting:
                     student.id,
                     assignment,
                     notebook,
-                    data,
+                    packed,
                     when,
                     stem_of(name)[1],
                     is_named,
@@ -350,15 +370,23 @@ class _Collecting:
     def _in_utc(self, when: datetime | None) -> datetime | None:
         if when is None:
             return None
-        if when.tzinfo is None:
-            when = when.replace(tzinfo=self._zone) if self._zone else when.astimezone()
-        return when.astimezone(UTC)
+        try:
+            if when.tzinfo is None:
+                when = when.replace(tzinfo=self._zone) if self._zone else when.astimezone()
+            return when.astimezone(UTC)
+        except (OverflowError, ValueError):
+            return None  # the year 1 or 9999, beyond which a zone leads
 
 
 def _alone(one: Outcome) -> Outcome:
     """The outcome of a file that came without its student's notebook of that assignment: it needs a place."""
     reason = f"{one.reason}: {one.what_to_do}" if one.what_to_do else one.reason
     return replace(one, state=State.NOT_PLACED, reason=reason)
+
+
+def _depth(files: Sequence[File]) -> int:
+    """How many parts of a path may say whose it is: below what all have in common all is the students' own."""
+    return 2 if len({file.parts[0] for file in files if file.parts}) == 1 else 1
 
 
 def _only(who: _Who | None) -> Student | None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.grading.table.roster import Identity
+from autograder.regular_files import name_as_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -47,7 +48,9 @@ _MOST_MARKS = 10
 """Of a name that can be read in several ways; nobody's has more."""
 # What browsers, Canvas and Drive add to a name that is there already, and file managers to a copy.
 _COPY_OF = "Copy of "
-_NUMBERED = re2.compile(r"^(?P<base>.+?)(?: ?\((?P<in_brackets>\d{1,6})\)|-(?P<behind>\d{1,6})| - [Cc]opy)$")
+_MARK = r" ?\((\d{1,6})\)|-(\d{1,6})| - [Cc]opy"
+_MARKED = re2.compile(rf"^(?P<base>.+?)(?P<marks>(?:{_MARK})+)$")
+_MARKS = re2.compile(_MARK)
 
 
 @dataclass(frozen=True)
@@ -93,12 +96,12 @@ def read_path(parts: Sequence[str], form: str, is_notebook: Callable[[str], bool
 
 def base_and_number(stem: str) -> tuple[str, int]:
     """A name without what was added because there was one already, and the number that was added."""
-    number = 0
+    stem, number = name_as_text(stem), 0
     while stem.startswith(_COPY_OF) and stem != _COPY_OF:
         stem, number = stem.removeprefix(_COPY_OF), 1
-    while (found := _NUMBERED.match(stem)) is not None:
+    if (found := _MARKED.match(stem)) is not None:
         stem = found["base"]
-        number = max(number, int(found["in_brackets"] or found["behind"] or 1))
+        number = max(number, *(int(one[1] or one[2] or 1) for one in _MARKS.finditer(found["marks"])))
     return stem, number
 
 

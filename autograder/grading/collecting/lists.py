@@ -157,27 +157,33 @@ def _entries(form: _Form, records: list[dict[str, str]]) -> Iterator[Entry]:
 def _of_gradescope(text: str) -> list[Entry] | None:
     """``submission_metadata.yml``: of each submission's folder who handed it in, and when."""
     try:
-        found = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+        # Every word stays a text: no number loses its zeros, and nothing becomes longer than it was typed.
+        found = yaml.load(text, Loader=getattr(yaml, "CBaseLoader", yaml.BaseLoader))
     except (yaml.YAMLError, ValueError, RecursionError):
         return None
     if not isinstance(found, dict):
         return None
     entries = []
     for folder, about in found.items():
-        number = _NUMBER.search(str(folder))
+        number = _NUMBER.search(_word(folder))
         if number is not None and isinstance(about, dict):
             members = tuple(_member(one) for one in about.get(":submitters") or () if isinstance(one, dict))
-            created = about.get(":created_at", "")
-            when = created if isinstance(created, datetime) else read_time(str(created))
+            created = _word(about.get(":created_at"))
+            when = read_time(created)
             when = when.replace(tzinfo=UTC) if when and when.tzinfo is None else when
-            entries.append(Entry("gradescope", number[1], members, when, str(created)))
+            entries.append(Entry("gradescope", number[1], members, when, created))
     return entries
 
 
 def _member(submitter: Mapping[str, Any]) -> tuple[Identity, ...]:
-    values = {name: str(submitter.get(f":{name}") or "").strip() for name in ("sid", "email", "name")}
+    values = {name: _word(submitter.get(f":{name}")) for name in ("sid", "email", "name")}
     logins = [Identity("gradescope", login=values[name]) for name in ("sid", "email") if values[name]]
     return (*logins, Identity("gradescope", name=values["name"])) if values["name"] else tuple(logins)
+
+
+def _word(value: object) -> str:
+    """A word of the list; empty for a list in its place, which few bytes can make longer than any memory."""
+    return value.strip() if isinstance(value, str) else ""
 
 
 def is_unread(entry: Entry) -> bool:
@@ -188,6 +194,7 @@ def is_unread(entry: Entry) -> bool:
 def read_time(text: str) -> datetime | None:
     """A time as lists have it; None where nobody can read it."""
     text = text.strip().removesuffix(" UTC") + (" +0000" if text.strip().endswith(" UTC") else "")
+    text = text.replace(" Z", "Z")  # as YAML writes it
     try:
         return datetime.fromisoformat(text)
     except ValueError:

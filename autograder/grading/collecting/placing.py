@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import zlib
 from collections import defaultdict
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
@@ -21,9 +22,14 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.grading.collecting.forms import Found
+    from autograder.grading.table.roster import Identity
 
     _Others = list[tuple["Candidate", Outcome]]
     """The files that do not count, and what became of them."""
+
+
+_ONE_NUMBER = ("canvas", "moodle")
+"""The systems that give a person one number in a download, and in which people may change their names."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +44,8 @@ class Candidate:
         student: Whose it is.
         assignment: Which it is for.
         notebook: Which notebook of that.
-        data: Its bytes.
+        packed: Its bytes, compressed: all files of a download are held at once, and a few bytes of a student's archive
+            may unpack to gigabytes.
         when: When it was handed in, in UTC; None where nothing says so.
         number: What a browser or a system has added to its name.
         is_named: Whether it is called as the notebook is.
@@ -51,10 +58,15 @@ class Candidate:
     student: str
     assignment: str
     notebook: str
-    data: bytes
+    packed: bytes
     when: datetime | None
     number: int
     is_named: bool
+
+    @property
+    def data(self) -> bytes:
+        """Its bytes."""
+        return zlib.decompress(self.packed)
 
     @functools.cached_property
     def content(self) -> str:
@@ -181,11 +193,20 @@ class Placing:
 def _newest(group: list[Candidate]) -> tuple[Candidate | None, _Others]:
     """The file of a student's that counts, and the outcomes of the others; None where nothing says which.
 
-    Of files that were handed in together the one counts that is called as the notebook is.
+    Of files that were handed in together the one counts that is called as the notebook is. What is in a folder of
+    another name, from which the student may only have been guessed, is not together with it: no number that its owner
+    gave to a file puts it before.
     """
-    together: dict[tuple[Path, datetime | None], list[Candidate]] = defaultdict(list)
+    if people := _people(group):
+        student = group[0].student
+        reason = (
+            f"there are several people who are read as {student}, of the numbers {people}: put the number of each "
+            "into students.csv, or collect it together with that system's list"
+        )
+        return None, [(one, one.outcome(State.NOT_PLACED, reason)) for one in group]
+    together: dict[tuple[Path, datetime | None, tuple[Identity, ...]], list[Candidate]] = defaultdict(list)
     for one in group:
-        together[one.download, one.when].append(one)
+        together[one.download, one.when, one.found.readings[:1]].append(one)
     firsts: list[Candidate] = []
     outcomes: _Others = []
     for files in together.values():
@@ -193,10 +214,25 @@ def _newest(group: list[Candidate]) -> tuple[Candidate | None, _Others]:
         outcomes += others
         firsts += [first] if first else []
     timed = all(one.when is not None for one in firsts)
+    alike = len({one.found.readings[:1] for one in firsts}) == 1
     newest, others = _best(
-        firsts, lambda one: (one.when.timestamp() if timed and one.when else 0.0, one.found.order, one.number)
+        firsts,
+        lambda one: (
+            one.when.timestamp() if timed and one.when else 0.0,
+            one.found.order,
+            one.number if alike else 0,
+        ),
     )
     return newest, outcomes + others
+
+
+def _people(group: Iterable[Candidate]) -> str:
+    """The numbers of the people whose files have come in one download as one student's; empty where it is one."""
+    numbers: dict[Path, set[str]] = defaultdict(set)
+    for one in group:
+        if one.found.identity.lms in _ONE_NUMBER:
+            numbers[one.download].add(one.found.identity.number)
+    return next((", ".join(sorted(several)) for several in numbers.values() if len(several) > 1), "")
 
 
 def _best(

@@ -108,7 +108,8 @@ class CollectedRecords:
         Raises:
             OSError: They could not be written.
         """
-        write_whole(self._folder / assignment / student / f"{content[:16]}.ipynb", data)
+        # No student's record is called so, whatever the student is called.
+        write_whole(self._folder / assignment / f"{student}.kept" / f"{content[:16]}.ipynb", data)
 
     def _path(self, assignment: str, student: str) -> Path:
         return self._folder / assignment / f"{student}.json"

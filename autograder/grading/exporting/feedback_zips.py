@@ -12,6 +12,7 @@ import zipfile
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
+from autograder.grading.collecting.forms import read_path
 from autograder.grading.exporting.forms import known_there
 
 if TYPE_CHECKING:
@@ -53,12 +54,18 @@ def feedback_zip(
                 continue
             for page in pages:
                 if lms == "canvas" and there is not None:
-                    called = f"{PurePosixPath(there.file).stem}.html"
+                    called = f"{_canvas(there.file)}.html"
                 else:
                     called = _moodle(table.roster.students[student].name or student, number, page.name)
                 # The same class gives the same zip: no time of this machine is in it.
                 archive.writestr(zipfile.ZipInfo(called, _MADE), page.read_bytes(), zipfile.ZIP_DEFLATED)
     return (data.getvalue() if archive.namelist() else b""), unknown
+
+
+def _canvas(file: str) -> str:
+    """The name that Canvas gave: of a zip that was unpacked the folder's, since what is in it the student has named."""
+    parts = PurePosixPath(file).parts
+    return PurePosixPath(next(one for one in parts if read_path((one,), "canvas", lambda _: False))).stem
 
 
 def _moodle(name: str, number: str, page: str) -> str:

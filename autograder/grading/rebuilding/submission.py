@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import json
 import os
 import stat
@@ -12,7 +13,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 from autograder.boxes.execution import CellType
 from autograder.grading.collector import without_collector
-from autograder.regular_files import opened
+from autograder.regular_files import files_below, opened
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -130,8 +131,9 @@ def _is_somebody_elses(path: Path, status: os.stat_result) -> bool:
     the class are a backup's.
     """
     submitted = next((folder for folder in path.parents if folder.name == "submitted"), path.parent)
-    places = [*submitted.rglob(f"*{path.suffix}"), *(submitted.parent / "source").rglob(f"*{path.suffix}")]
-    names = [place for place in places if place != path and _same_file(place, status)]
+    places = itertools.chain(files_below(submitted), files_below(submitted.parent / "source"))
+    alike = (place for place in places if place.suffix == path.suffix and place != path)
+    names = [place for place in alike if _same_file(place, status)]
     first = min((name.parent.stat().st_ctime_ns for name in names), default=None)
     in_source = any("source" in name.relative_to(submitted.parent).parts[:1] for name in names)
     return in_source or (first is not None and first < path.parent.stat().st_ctime_ns)

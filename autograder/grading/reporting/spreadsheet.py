@@ -12,9 +12,11 @@ import re2
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+# A list of an LMS's has in it what students have typed there, which may be long.
+csv.field_size_limit(50_000_000)
 _FORMULA = frozenset("=+-@\N{MINUS SIGN}")
 # Where a spreadsheet may be set to split a line; behind it, a formula could begin.
-_BEHIND_A_SEPARATOR = re2.compile(r"([;|]\s*)([=+@-])")
+_SEPARATOR = re2.compile(r"([;|])")
 _SPACES = frozenset({"Cc", "Zl", "Zp", "Zs"})
 
 
@@ -47,16 +49,18 @@ def original(cell: str) -> str:
 def defused(cell: str) -> str:
     """A cell that no spreadsheet takes for a formula (OWASP, "CSV Injection").
 
-    Where one would begin, an apostrophe is put in front, which spreadsheets read as "this is text". Full-width
-    signs count: some programs fold them. Tabs, line breaks and other control characters become blanks, and what
-    is not seen (such as a change of the writing direction) is left out.
+    Where one would begin, at the start or where some split a line, an apostrophe is put in front, and spreadsheets read
+    that as "this is text". Full-width signs count: some programs fold them. Tabs, line breaks and other control
+    characters become blanks, and what is not seen (such as a change of the writing direction) is left out.
 
     Args:
         cell: Any text.
     """
     kinds = ((character, unicodedata.category(character)) for character in cell)
     cell = "".join(" " if kind in _SPACES else character for character, kind in kinds if kind != "Cf")
-    folded = unicodedata.normalize("NFKC", cell).lstrip()
-    if folded[:1] in _FORMULA and folded:
-        cell = f"'{cell}"
-    return _BEHIND_A_SEPARATOR.sub(r"\1'\2", cell)
+    return "".join(f"'{part}" if _is_formula(part) else part for part in _SEPARATOR.split(cell))
+
+
+def _is_formula(text: str) -> bool:
+    folded = unicodedata.normalize("NFKC", text).lstrip()
+    return folded[:1] in _FORMULA and folded != ""

@@ -179,7 +179,9 @@ class BoxedProgram:
 
     def interrupt(self) -> None:
         """Ctrl-C at everything below the first process of the box, which only waits for the others."""
-        for pid in descendants(self.pid):
+        for pid in (
+            [] if self._ended else descendants(self.pid)
+        ):  # its number may be another program's by then
             with contextlib.suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGINT)
 

@@ -17,6 +17,10 @@ if TYPE_CHECKING:
 
 LOOK_EVERY = 0.05
 """Seconds between two looks at the launch's processes."""
+MAX_COMMAND_LINE = 32_000
+"""Bytes of a command line that are read: a process can give itself one of megabytes, and another one at each look."""
+MAX_COMMAND_LINES = 500
+"""Command lines that are reported of one launch, which has some ten."""
 
 
 def descendants(pid: int) -> list[int]:
@@ -32,7 +36,8 @@ def descendants(pid: int) -> list[int]:
 def _arguments_of(pid: int) -> list[str]:
     """The words that a process was started with; none where it is gone."""
     try:
-        words = Path(f"/proc/{pid}/cmdline").read_bytes().rstrip(b"\0")
+        with Path(f"/proc/{pid}/cmdline").open("rb", buffering=0) as file:
+            words = file.read(MAX_COMMAND_LINE).rstrip(b"\0")
     except OSError:
         return []
     return [word.decode("utf-8", "replace") for word in words.split(b"\0")] if words else []
@@ -124,6 +129,6 @@ def _watch(pid: int, ended: threading.Event, report: Callable[[str], None]) -> N
     while not ended.wait(LOOK_EVERY):
         for child in descendants(pid):
             argv = tuple(_arguments_of(child))
-            if argv and (child, argv) not in known:
+            if argv and (child, argv) not in known and len(known) < MAX_COMMAND_LINES:
                 known.add((child, argv))
                 report(process_line(Process(_own_id(child), _own_id(_parent_of(child)), argv)))

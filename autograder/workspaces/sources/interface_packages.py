@@ -62,12 +62,17 @@ def _simple(source: Source) -> bytes | None:
 
 
 def simple_definition(text: str) -> str:
-    """A definition without comments and needless spaces; a line with a quoted text in it stays as it is."""
+    """A definition without comments and needless spaces; a line that is more than words and these stays as it is.
+
+    To rosidl a blank behind ``---``, in front of a type, or one that is none of ASCII's, is an error.
+    """
     lines = []
     for line in text.splitlines():
-        bare = line if re2.search("[\"']", line) else " ".join(line.partition("#")[0].split())
-        if bare.strip():
-            lines.append(bare)
+        code = line.partition("#")[0]
+        if re2.fullmatch(r"[!-~]+([ \t]+[!-~]+)+[ \t]*", code) and not re2.search("[\"']", line):
+            lines.append(" ".join(code.split()))
+        elif code.strip(" \t"):
+            lines.append(line)
     return "\n".join(lines) + "\n"
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import struct
+import tracemalloc
 import unicodedata
 import zipfile
 from datetime import UTC, datetime
@@ -248,7 +249,7 @@ def test_the_newest_counts_also_later_and_nothing_is_lost(klass: TinyClass, tmp_
     assert (len(first.having(State.EARLIER)), first.exit_code, lies(klass, "ada")) == (1, 0, two)
     last = collect(klass.path, [blackboard("c.zip", 16, three)])
     assert (last.having(State.PLACED)[0].replaced, lies(klass, "ada")) == (True, three)
-    kept = list((klass.path / ".autograder" / "collected" / "lab_1_2" / "ada").iterdir())
+    kept = list((klass.path / ".autograder" / "collected" / "lab_1_2" / "ada.kept").iterdir())
     assert sorted(path.read_text() for path in kept) == sorted([one, two])
     assert collect(klass.path, [second]).having(State.EARLIER)
     assert lies(klass, "ada") == three
@@ -415,6 +416,31 @@ def test_what_would_unpack_to_a_gigabyte_in_one_step_is_not_unpacked(
     assert f"{member}: it is packed with {name}" in why(report)
     inner = {"Ada Lovelace_1_assignsubmission_file_lab.zip": (tmp_path / "m.zip").read_bytes()}
     assert f"packed with {name}" in why(collect(klass.path, [write_zip(tmp_path / "n.zip", inner)]))
+
+
+def test_what_unpacks_to_gigabytes_is_held_as_small_as_it_came(klass: TinyClass, tmp_path: Path) -> None:
+    """16 kB, handed in by one student, took 4 GB of the grader's memory with files of 49 MB."""
+    inner = zipped({f"{number}/lab_1_2.ipynb": b" " * 4_000_000 for number in range(10)})
+    files = {f"Ben Bär_2_assignsubmission_file_/{number}.zip": inner for number in range(4)}
+    files["Ada Lovelace_1_assignsubmission_file_/lab_1_2.ipynb"] = work(klass).encode()
+    download = write_zip(tmp_path / "d.zip", files)
+    tracemalloc.start()
+    try:
+        assert placed(collect(klass.path, [download])).keys() == {"ada", "ben"}
+        assert tracemalloc.get_traced_memory()[1] < 40_000_000
+    finally:
+        tracemalloc.stop()
+
+
+def test_no_students_name_takes_the_place_of_anothers_record(tiny: TinyClass, tmp_path: Path) -> None:
+    """Without students.csv students have the names that they gave themselves: one is called as ada's record was."""
+    for number in (1, 2):
+        files = {f"{who} - lab_1_2.ipynb": work(tiny, number) for who in ("ada", "ada.json", "ada.kept")}
+        report = collect(tiny.path, [write_zip(tmp_path / f"{number}.zip", files)], form="google")
+        assert placed(report).keys() == {"ada", "ada.json", "ada.kept"}
+        when = tmp_path / "times.csv"
+        when.write_text(f"id,handed_in\nada,2025-10-0{number}T12:00Z\n")
+        collect(tiny.path, [], times=[when])
 
 
 def with_two_ends(archive: bytes, form: str) -> bytes:

@@ -107,6 +107,26 @@ def test_canvas_takes_the_pages_under_the_names_of_its_files(graded: TinyClass) 
         assert found is not None
 
 
+def test_no_name_in_an_unpacked_zip_sends_a_page_to_somebody_else(
+    tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path
+) -> None:
+    """Ada calls the notebook in her zip as Canvas calls Ben's, and an instructor unpacks what was handed in as zips."""
+    download = tmp_path / "download"
+    for name in (
+        "lovelaceada_101_9001_work/barben_102_9002_lab_1_2.ipynb",
+        "barben_102_9002_w.x/lab_1_2.ipynb",
+    ):
+        (download / name).parent.mkdir(parents=True)
+        shutil.copy(tiny.submit("x"), download / name)
+    shutil.rmtree(tiny.path / "submitted" / "x")
+    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
+    assert {one.student for one in collect(tiny.path, [download]).outcomes} == {"ada", "ben"}
+    tiny.grade(feedback=True)
+    export(tiny.path, "canvas")
+    with zipfile.ZipFile(tiny.path / "export" / "feedback-canvas-lab_1_2.zip") as archive:
+        assert archive.namelist() == ["lovelaceada_101_9001_work.html", "barben_102_9002_w.html"]
+
+
 def test_moodle_takes_points_and_pages(graded: TinyClass) -> None:
     done = export(graded.path, "moodle")
     header, *students = rows(graded.path / "export" / "moodle.csv")

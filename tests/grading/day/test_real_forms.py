@@ -173,6 +173,46 @@ def test_gradescopes_export_is_collected_with_its_times_and_groups(tiny: TinyCla
     assert len(report.having(State.NOT_PLACED)) == 1
 
 
+STEALS = """\
+submission_409194023:
+  :submitters:
+  - :name: Ben Baer
+    :email: ben@uni.example
+  :created_at: 2026-04-28 08:00:00.000000000 Z
+"""
+
+
+@pytest.mark.parametrize("root", ["", "assignment_8046601_export/"])
+def test_no_student_hands_in_the_list_that_says_whose_work_is_whose(
+    tiny: TinyClass, tmp_path: Path, root: str
+) -> None:
+    """Without the folder around it the list of a student was read, and Ada's work was Ben's."""
+    (tiny.path / "students.csv").write_text(ROSTER)
+    one, two = work(tiny, 1), work(tiny, 2)
+    files = {
+        f"{root}submission_metadata.yml": METADATA,
+        f"{root}submission_409194023/lab_1_2.ipynb": one,
+        f"{root}submission_500000001/lab_1_2.ipynb": two,
+        f"{root}submission_500000001/submission_metadata.yml": STEALS,
+    }
+    collect(tiny.path, [write_zip(tmp_path / "export.zip", files)], zone=UTC)
+    assert [lies(tiny, student) for student in ("ada", "ben")] == [one, two]
+    assert stamp(tiny, "ben").startswith("2026-04-27")
+
+
+def test_no_list_becomes_longer_than_it_was_typed() -> None:
+    """Each line has nine times the one above: as a text the last one took all memory."""
+    rows = ["a0: &a0 [x, x, x, x, x, x, x, x, x]"]
+    rows += [f"a{number}: &a{number} [{', '.join([f'*a{number - 1}'] * 9)}]" for number in range(1, 10)]
+    rows += ["submission_1:", "  :submitters:", "  - :name: *a9", "    :sid: 0x7", "    :email: 007"]
+    rows += ["  :created_at: *a9"]
+    entries = read_list("submission_metadata.yml", "\n".join(rows).encode())
+    assert entries is not None
+    (entry,) = entries
+    assert [name.login for name in entry.members[0]] == ["0x7", "007"]
+    assert entry.when is None
+
+
 @pytest.mark.parametrize(
     ("text", "expected"),
     [

@@ -188,7 +188,7 @@ def test_of_two_notebooks_the_one_with_the_exact_name_counts(klass: TinyClass, t
         assert named(report, State.EARLIER) == [(MOODLE.format("Ada Lovelace", name), "ada")]
         (kept,) = report.having(State.EARLIER)
         assert kept.reason.endswith("to let it count, put it at submitted/ada/lab_1_2/lab_1_2.ipynb")
-    folder = klass.path / ".autograder" / "collected" / "lab_1_2" / "ada"
+    folder = klass.path / ".autograder" / "collected" / "lab_1_2" / "ada.kept"
     assert [path.read_text() for path in folder.iterdir()] == [work(klass, 4)]
 
 
@@ -201,7 +201,7 @@ def test_two_files_of_one_name_in_an_archive_are_told_apart(klass: TinyClass, tm
     report = collect(klass.path, [tmp_path / "c.zip"])
     assert lies(klass, "ada") == work(klass, 0)
     assert len(report.having(State.EARLIER)) == 2
-    kept = klass.path / ".autograder" / "collected" / "lab_1_2" / "ada"
+    kept = klass.path / ".autograder" / "collected" / "lab_1_2" / "ada.kept"
     assert {path.read_text() for path in kept.iterdir()} == {work(klass, 1), work(klass, 2)}
 
 

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from rosidl_adapter.parser import InvalidSpecification, parse_service_string
 
 from autograder.workspaces.sources.interface_packages import (
     holds_only_interfaces,
@@ -75,13 +76,34 @@ def test_quoted_texts_keep_their_spaces_and_signs() -> None:
 @pytest.mark.parametrize(
     ("text", "simple"),
     [
-        ("# TODO\n int64   a # first\n\nint64 b\n---\nint64 sum", DEFINITION),
-        ("int64 a\nint64 b\n--- \nint64 sum\n", DEFINITION),
+        ("# TODO\nint64 \t a # first\n\nint64 b\n---\nint64 sum", DEFINITION),
         ('string name "a # b"  \n', 'string name "a # b"  \n'),
     ],
 )
 def test_definitions_lose_comments_and_needless_spaces(text: str, simple: str) -> None:
     assert simple_definition(text) == simple
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        DEFINITION.replace("---", "--- "),
+        DEFINITION.replace("---", "---# the answer"),
+        DEFINITION.replace("---", " ---"),
+        DEFINITION.replace("int64 b", " int64 b"),
+        DEFINITION.replace("int64 b", "int64\u00a0b"),
+        DEFINITION.replace("int64 b", "\u3000int64 b"),
+    ],
+)
+def test_a_definition_that_rosidl_refuses_never_becomes_one_that_it_takes(text: str) -> None:
+    """The student's own would not build; an equal one of somebody else's did, and was taken for it."""
+    for one, takes in ((DEFINITION, True), (text, False), (simple_definition(text), False)):
+        try:
+            parse_service_string("my_robot_interfaces", "AddTwoInts", one)
+        except (InvalidSpecification, IndexError):
+            assert not takes
+        else:
+            assert takes
 
 
 @pytest.mark.parametrize(

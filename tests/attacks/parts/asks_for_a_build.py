@@ -1,0 +1,16 @@
+# Ask the grader to build the package with more sources than the workspace has by then: a cell has few seconds.
+import os
+
+from autograder.messages.lines import Lines
+from autograder.messages.workspaces import Build, BuildAnswer
+from autograder.workspaces.sources.collecting import collect_workspace
+
+
+def ask(sources):
+    """Let it be built, and print the beginning of the answer."""
+    if "AUTOGRADER_BUILDS" in os.environ:
+        lines = Lines.to(os.environ["AUTOGRADER_BUILDS"], 60.0)
+        lines.say(Build(len(sources), "ros2_ws", ["my_robot_pkg"]))
+        for source in sources:
+            lines.say(source)
+        print(str(lines.hear(BuildAnswer))[:200], flush=True)

@@ -1,0 +1,225 @@
+"""One student fills a download, or names files as no text can be: the others' work comes to its place all the same."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import time
+from typing import TYPE_CHECKING
+
+import pytest
+from conftest import LISTENER, TALKER
+from downloads import ROSTER, write_zip, zipped
+from test_collect import placed, why, work
+
+from autograder.grading.collecting import archives
+from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.forms import base_and_number
+from autograder.grading.collecting.outcomes import State
+from autograder.grading.rebuilding.submission import read_bytes
+from autograder.regular_files import remove_unfinished
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from conftest import FakeEngine, TinyClass
+
+NO_TEXT = os.fsdecode(b"lab_1_2 \xff.ipynb")
+MB = 1_000_000
+
+
+@pytest.fixture
+def klass(tiny: TinyClass) -> TinyClass:
+    """A tiny class with a roster."""
+    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
+    return tiny
+
+
+@pytest.fixture
+def deep(tmp_path: Path) -> Iterator[Path]:
+    """A folder with more folders in each other than Python has room for calls."""
+    folder = tmp_path / "deep"
+    folder.mkdir()
+    here = os.open(folder, os.O_RDONLY)
+    for _ in range(1500):
+        os.mkdir("d", dir_fd=here)
+        inside = os.open("d", os.O_RDONLY, dir_fd=here)
+        os.close(here)
+        here = inside
+    os.close(here)
+    yield folder
+    subprocess.run(["rm", "-rf", folder], check=True)  # shutil.rmtree is among what does not come back
+
+
+def cloned(klass: TinyClass, folder: Path) -> Path:
+    """A download with a folder for each of two students."""
+    for student in ("ada", "zoe"):
+        (folder / student).mkdir(parents=True)
+        (folder / student / "lab_1_2.ipynb").write_text(work(klass))
+    return folder
+
+
+def in_moodle(klass: TinyClass, path: Path, of_ben: dict[str, bytes]) -> Path:
+    files = {f"Ben Bär_2_assignsubmission_file_/{name}": data for name, data in of_ben.items()}
+    return write_zip(path, {**files, "Zoë Zuse_3_assignsubmission_file_/lab_1_2.ipynb": work(klass)})
+
+
+def test_the_archives_of_one_student_have_one_room(
+    klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(archives.Room.__init__, "__defaults__", (100, 10 * MB))
+    blanks = zipped({f"{number}.txt": b" " * (4 * MB) for number in range(1)})
+    of_ben = {f"{number}.zip": blanks for number in range(4)}
+    report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", of_ben)])
+    assert placed(report).keys() == {"zoe"}
+    assert report.exit_code == 2
+    refused = [one for one in report.having(State.NOT_PLACED) if one.label.endswith(".zip")]
+    assert [(one.student, one.label[-5:]) for one in refused] == [("ben", "2.zip"), ("ben", "3.zip")]
+    assert "it has 1 files that unpack to 4 MB: with the student's other archives, more than" in why(report)
+
+
+def test_many_small_archives_have_no_more_room_than_one(
+    klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(archives.Room.__init__, "__defaults__", (50, MB))
+    small = zipped({f"{number}.txt": "" for number in range(10)})
+    of_ben = {f"{number}.zip": small for number in range(7)} | {"w.zip": zipped({"a.zip": small})}
+    report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", of_ben)])
+    assert placed(report).keys() == {"zoe"}
+    assert [one.label[-5:] for one in report.having(State.NOT_PLACED) if one.label.endswith(".zip")] == [
+        "5.zip", "6.zip", "w.zip",
+    ]  # fmt: skip
+
+
+def test_a_name_longer_than_any_floods_nobody(klass: TinyClass, tmp_path: Path) -> None:
+    long = zipped({f"lab_1_2{'(1)' * 20_000}.ipynb": work(klass), "lab_1_2.ipynb": work(klass)})
+    report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", {"w.zip": long})])
+    assert placed(report).keys() == {"ben", "zoe"}
+    (refused,) = (one for one in report.outcomes if one.reason == "its name has more than 1000 characters")
+    assert (refused.student, len(refused.label) < 1200) == ("ben", True)
+
+
+def test_a_name_with_many_numbers_is_read_in_a_moment() -> None:
+    began = time.process_time()
+    assert base_and_number("lab" + "-1 (2)" * 10_000) == ("lab", 2)
+    assert time.process_time() - began < 10
+
+
+def test_what_a_class_hands_in_together_is_in_nobodys_room(
+    klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(archives.Room.__init__, "__defaults__", (20, MB))
+    ids = [f"s{number:03}" for number in range(30)]
+    (klass.path / "students.csv").write_text("\n".join(["id", *ids]))
+    archive = zipped({"lab_1_2.ipynb": work(klass), "bag.db3": bytes(MB // 3)})
+    files = {f"{id_}/{attempt}.zip": archive for id_ in ids for attempt in range(2)}
+    assert placed(collect(klass.path, [write_zip(tmp_path / "m.zip", files)])).keys() == set(ids)
+
+
+@pytest.mark.parametrize("form", ["folder", "zip"])
+def test_who_has_too_many_files_hides_nobody_behind(
+    klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, form: str
+) -> None:
+    monkeypatch.setattr(archives, "MOST_FILES", 20)
+    download = cloned(klass, tmp_path / "download")
+    for number in range(30):
+        (download / "ben" / "node_modules").mkdir(parents=True, exist_ok=True)
+        (download / "ben" / "node_modules" / f"{number}.js").write_text("x")
+    label = "download/ben"
+    if form == "zip":
+        files = {str(path.relative_to(tmp_path)): path.read_bytes() for path in download.rglob("*.*")}
+        download, label = write_zip(tmp_path / "download.zip", files), "download.zip/download/ben"
+    report = collect(klass.path, [download])
+    assert placed(report).keys() == {"ada", "zoe"}
+    assert f"{label}: it has more than 20 files; the others in it were not looked at" in why(report)
+    assert report.exit_code == 2
+
+
+def test_a_name_that_is_no_text_keeps_nobodys_work_from_being_collected(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    download = cloned(klass, tmp_path / "download")
+    (download / "ben").mkdir()
+    (download / "ben" / NO_TEXT).write_text(work(klass, 3))
+    (download / "ben" / os.fsdecode(b"\xff")).mkdir()
+    (download / "ben" / os.fsdecode(b"\xff") / "a.zip").write_bytes(b"no zip")
+    report = collect(klass.path, [download])
+    assert placed(report) == {"ada": "lab_1_2.ipynb", "zoe": "lab_1_2.ipynb", "ben": "lab_1_2 ?.ipynb"}
+    assert "download/ben/?/a.zip: " in why(report)
+    assert collect(klass.path, [download]).having(State.UNCHANGED)
+
+
+@pytest.mark.parametrize("where", ["lab_1_2", "."])
+def test_a_name_that_is_no_text_keeps_nobodys_work_from_being_graded(
+    tiny: TinyClass, fake_engine: FakeEngine, where: str
+) -> None:
+    tiny.submit("ada", 4, 7)
+    folder = tiny.submit("ben", 10, 10).parent.parent / where
+    (folder / NO_TEXT).write_text("{}")
+    tiny.grade()
+    assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
+    assert tiny.scores("ben") == {TALKER: 10, LISTENER: 10}
+
+
+def test_folders_without_end_keep_nobodys_work_from_being_collected(
+    klass: TinyClass, tmp_path: Path, deep: Path
+) -> None:
+    download = cloned(klass, tmp_path / "download")
+    (download / "ben").mkdir()
+    deep.rename(download / "ben" / "deep")
+    try:
+        report = collect(klass.path, [download])
+    finally:
+        (download / "ben" / "deep").rename(deep)
+    assert placed(report).keys() == {"ada", "zoe"}
+    assert "more than 100 folders are in each other" in why(report)
+    assert report.exit_code == 2
+
+
+def test_what_a_killed_run_left_is_found_beside_names_and_folders_of_any_kind(
+    tmp_path: Path, deep: Path
+) -> None:
+    left, other = deep / ".lab_1_2.ipynb.123.new", deep / NO_TEXT
+    left.touch()
+    other.touch()
+    remove_unfinished(tmp_path)
+    assert (left.exists(), other.exists()) == (False, True)
+
+
+def test_folders_without_end_keep_nobodys_work_from_being_read_where_a_backup_has_links(
+    tiny: TinyClass, tmp_path: Path, deep: Path
+) -> None:
+    path = tiny.submit("ada", 4, 7)
+    (tmp_path / "backup.ipynb").hardlink_to(path)
+    deep.rename(tiny.path / "submitted" / "ben")
+    try:
+        assert read_bytes(path) == path.read_bytes()
+    finally:
+        (tiny.path / "submitted" / "ben").rename(deep)
+
+
+@pytest.mark.parametrize("when", ["9999-12-31T23:59:59-05:00", "0001-01-01T00:00:00+05:00"])
+def test_a_time_that_no_clock_shows_is_none(klass: TinyClass, tmp_path: Path, when: str) -> None:
+    times = tmp_path / "times.csv"
+    times.write_text(f"id,handed_in\nben,{when}\nzoe,2025-10-03T12:00Z\n")
+    report = collect(
+        klass.path, [in_moodle(klass, tmp_path / "m.zip", {"lab_1_2.ipynb": b"{}"})], times=[times]
+    )
+    assert {one.student: one.when and one.when.year for one in report.having(State.PLACED)} == {
+        "ben": None,
+        "zoe": 2025,
+    }
+
+
+def test_a_long_text_in_an_lmss_list_keeps_nobodys_time_from_being_read(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    worksheet = tmp_path / "Grades.csv"
+    worksheet.write_text(
+        "Identifier,Full name,Grade,Last modified (submission),Online text\n"
+        f"Participant 2,Ben Bär,,-,{'x' * 200_000}\n"
+        'Participant 3,Zoë Zuse,,"Friday, 3 October 2025, 2:05 PM",\n'
+    )
+    report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", {}), worksheet])
+    assert [one.when and one.when.year for one in report.having(State.PLACED)] == [2025]

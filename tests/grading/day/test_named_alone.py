@@ -1,0 +1,116 @@
+"""Files of a download that an instructor names one by one, as with ``download/*``: each is one student's own work."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from downloads import ROSTER, write_zip, zipped
+from test_collect import lies, placed, why, work
+
+from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.outcomes import State
+from autograder.grading.collecting.records import CollectedRecords
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import TinyClass
+
+
+@pytest.fixture
+def klass(tiny: TinyClass) -> TinyClass:
+    """A tiny class with a roster."""
+    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
+    return tiny
+
+
+def test_a_students_zip_is_no_download_whose_names_are_believed(klass: TinyClass, tmp_path: Path) -> None:
+    """Ada's zip holds a file that is called as Canvas calls a newer one of Ben's."""
+    forged = {"barben_102_99999_lab_1_2.ipynb": work(klass, 1), "lab_1_2.ipynb": work(klass, 2)}
+    (tmp_path / "lovelaceada_101_9001_work.zip").write_bytes(zipped(forged))
+    (tmp_path / "barben_102_9002_lab_1_2.ipynb").write_text(work(klass, 3))
+    report = collect(klass.path, sorted(tmp_path.glob("*_9*")))
+    assert placed(report).keys() == {"ada", "ben"}
+    assert (lies(klass, "ada"), lies(klass, "ben")) == (work(klass, 2), work(klass, 3))
+    assert not any("99999" in one.label for one in report.outcomes if one.student == "ben")
+
+
+def test_a_students_table_is_no_list_of_the_instructors(klass: TinyClass, tmp_path: Path) -> None:
+    """Ada's table says that Ben handed in years later, and that what has her number is his."""
+    table = "user_id,submitted_at,login_id\n102,2030-01-01T00:00:00Z,ben\n101,2020-01-01T00:00:00Z,ben\n"
+    (tmp_path / "lovelaceada_101_9001_grades.csv").write_text(table)
+    (tmp_path / "lovelaceada_101_9003_lab_1_2.ipynb").write_text(work(klass, 2))
+    (tmp_path / "barben_102_9002_lab_1_2.ipynb").write_text(work(klass, 3))
+    report = collect(klass.path, sorted(tmp_path.glob("*_9*")))
+    assert placed(report).keys() == {"ada", "ben"}
+    history = CollectedRecords(klass.path / ".autograder").get("lab_1_2", "ben")
+    assert history is not None
+    assert history.when is None
+    (beside,) = report.having(State.BESIDE)
+    assert (beside.student, beside.reason) == ("ada", "it is no notebook")
+
+
+def test_a_download_and_a_list_are_still_what_they_are(klass: TinyClass, tmp_path: Path) -> None:
+    files = {"barben_102_9002_lab_1_2.ipynb": work(klass, 3)}
+    (tmp_path / "Grades - CS_101.csv").write_text(
+        "user_id,login_id,submitted_at\n102,ben,2025-01-01T00:00Z\n"
+    )
+    sources = [write_zip(tmp_path / "CS_7_2_submissions.zip", files), tmp_path / "Grades - CS_101.csv"]
+    report = collect(klass.path, sources)
+    assert placed(report).keys() == {"ben"}
+    assert report.having(State.PLACED)[0].when is not None
+
+
+def test_who_is_in_no_list_cannot_have_names_read_as_another_systems(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    """Of repositories, the one of a student whom nobody knows by that name holds many files of Canvas's form."""
+    files = {f"lab/{student}/lab_1_2.ipynb": work(klass, 3) for student in ("ada", "eve", "zoe")}
+    files |= {f"lab/stranger/barben_102_{number}_lab_1_2.ipynb": work(klass, 1) for number in range(9)}
+    report = collect(klass.path, [write_zip(tmp_path / "repositories.zip", files)])
+    assert placed(report).keys() == {"ada", "eve", "zoe"}
+    assert len(report.having(State.NOT_PLACED)) == 9
+
+
+@pytest.mark.parametrize("form", ["lab-1-2-{}", "lab-1-2-submissions/lab-1-2-{}"])
+@pytest.mark.parametrize("login", ["x-adalove", "adalove-1"])
+def test_no_login_that_ends_as_anothers_has_the_others_work_replaced(
+    klass: TinyClass, tmp_path: Path, form: str, login: str
+) -> None:
+    """Who takes such a login, which is in no list, and numbers the notebook, would hand in for Ada."""
+    folders = {"adalove": "lab_1_2.ipynb", login: "lab_1_2 (9).ipynb", "josen": "lab_1_2.ipynb"}
+    for place, (who, name) in enumerate(folders.items()):
+        folder = tmp_path / "repositories" / form.format(who)
+        folder.mkdir(parents=True)
+        (folder / name).write_text(work(klass, place))
+    report = collect(klass.path, [tmp_path / "repositories"])
+    assert placed(report).keys() == {"jose"} or lies(klass, "ada") == work(klass, 0)
+    assert report.exit_code == 2
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("lovelaceada_101_9001_lab_1_2.ipynb", "lovelaceada_999_9999_lab_1_2.ipynb"),
+        (
+            "Ada Lovelace_1_assignsubmission_file_/lab_1_2.ipynb",
+            "Ada Lovelace_2_assignsubmission_file_/lab_1_2 (9).ipynb",
+        ),
+    ],
+)
+def test_who_is_called_as_another_hands_in_nothing_for_the_other(
+    tiny: TinyClass, tmp_path: Path, names: tuple[str, str]
+) -> None:
+    """In some systems one may change one's name: without the system's ids, both are read as Ada's."""
+    (tiny.path / "students.csv").write_text("id,first_name,last_name\nada,Ada,Lovelace\neve,Eve,Mallory\n")
+    download = write_zip(tmp_path / "m.zip", {name: work(tiny, place) for place, name in enumerate(names)})
+    report = collect(tiny.path, [download])
+    assert placed(report) == {}
+    assert [one.student for one in report.having(State.NOT_PLACED)] == ["ada", "ada"]
+    assert "several people who are read as ada" in why(report)
+    if "101" in names[0]:
+        (tiny.path / "students.csv").write_text(
+            "id,first_name,last_name,canvas\nada,Ada,Lovelace,101\neve,,,999\n"
+        )
+        assert placed(collect(tiny.path, [download])).keys() == {"ada", "eve"}
