@@ -180,8 +180,8 @@ def went_deaf(role: str) -> Mistake:
         if not _silent_node(evidence, role) or not (_worked(part, role) or something_spins(part)):
             return None
         return Advice(
-            "Your node did its work once and then went deaf: something took it away from the executor that "
-            "spun it."
+            "Your node did its work once and then received nothing more: something took it away from the executor "
+            "that spun it."
             if _worked(part, role)
             else "Your program spins, but not this node: it was taken away from the executor, or never added to it.",
             "Spin a node in one place only. rclpy.spin_once or spin_until_future_complete, called in a "
@@ -287,7 +287,7 @@ def _returned_silently(evidence: Evidence) -> Advice | None:
     if not evidence.main.events:
         return None
     return Advice(
-        "Your function comes back at once, with nothing, and nobody was asked for anything: a step is not written yet.",
+        "Your function comes back at once, with nothing, and called no server: a step is not written yet.",
         "Find the TODO in your solution cell and write that step; the hints below it open one at a time.",
     )
 

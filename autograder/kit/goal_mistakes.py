@@ -93,7 +93,7 @@ def wrong_order(evidence: Evidence) -> Advice | None:
     return Advice(
         f"The judge got {wrong}.",
         "Send one goal, once, with the order that your function or program was given (sys.argv[1] on a command line). "
-        "A timer that sends it has to be switched off when it has done so.",
+        "If a timer sends the goal, switch the timer off after that: timer.cancel().",
     )
 
 
@@ -113,7 +113,7 @@ def never_spun(evidence: Evidence) -> Advice | None:
     if not asked_for(part) or part.first("result_request") is not None or not part.of("unanswered"):
         return None
     return Advice(
-        "Your client sent its goal, but it takes in nothing that comes back: no callback of it is called any more.",
+        "Your client sent its goal, but it receives no answer: none of its callbacks is called any more.",
         "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future, timeout_sec=5.0), in one "
         "place.",
     )
@@ -161,8 +161,8 @@ def never_ended(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         "Your client says that the goal was rejected, and then waits for ever for a result that will not come.",
-        "End it there, too: shut down where you found `not goal_handle.accepted`, or spin until a future of your own "
-        "is complete and set its result.",
+        "End the program there, too: shut down where you found `not goal_handle.accepted`, or spin until a future "
+        "of your own is complete and set its result.",
     )
 
 
@@ -230,8 +230,8 @@ def result_repeated(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         f"Your client asked for the result of one goal {asked} times.",
-        "Ask once, when the goal is accepted, and wait for the future that you get. A timer that looks whether "
-        "something is there has to be switched off (timer.cancel()) when it is.",
+        "Ask once, when the goal is accepted, and wait for the future that you get. If a timer checks whether the "
+        "result is there, switch the timer off when it is: timer.cancel().",
     )
 
 

@@ -317,7 +317,7 @@ def given_up(evidence: Evidence) -> str:
         or (late.traceback and not raised_on_purpose(late) and any(map(asked_for, evidence)))
         or looks_elsewhere(evidence, part, "action_client")
     )
-    return objection(part) if asked or not part.events else "never sent a goal to anybody"
+    return objection(part) if asked or not part.events else "never sent a goal to any server"
 
 
 # --- criteria -----------------------------------------------------------------------------------------------

@@ -171,8 +171,8 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
     (
         "call_never_spun",
         lambda found: any(map(_blocks, found)),
-        "A blocking call waits for ever: the answer has come, but nothing spins the node, so nobody takes "
-        "it.",
+        "A blocking call waits for ever: the answer has come, but nothing spins the node, so the node "
+        "does not take it.",
         "Use call_async and rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), or spin the node in a "
         "background executor "
         "while you use call().",

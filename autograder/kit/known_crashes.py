@@ -123,14 +123,14 @@ KNOWN = (
         "callback_signature",
         r"^ +.*(?:add_done_callback|create_(?:timer|subscription|service)|ActionServer|\w*callback=).*\.\w+\(\)[,)].*\n"
         r"(?:[ ~^]*\n)?TypeError: (?:[\w.<>]+\.)?(?P<method>\w+)\(\) missing \d+ required positional arguments?: ",
-        "The parentheses after {method} call it on the spot, without what ROS would give it. It is not handed over.",
+        "The parentheses after {method} call it at once, without the arguments that ROS would give it.",
         "Write the name without parentheses, as in add_done_callback(self.{method}): ROS calls it when it is time.",
     ),
     Crash(
         "callback_signature",
         r"create_subscription\([^,\n]*,[^,\n]*, *(?:callback *= *)?(?P<name>[\w.]+)\(\)(?:.*\n)+"
         r".*callback should be either",
-        "{name}() calls the method on the spot, so the subscription was given what it returned, and not the method.",
+        "{name}() calls the method at once, so the subscription got what the method returned, and not the method.",
         "Pass the method itself, without parentheses after it: {name}.",
     ),
     Crash(
@@ -152,7 +152,7 @@ KNOWN = (
     Crash(
         "callback_signature",
         r"Expected .* callback|[Cc]allback should be either|callback.*(?:takes|missing) .*positional argument",
-        "A callback has the wrong form: it was called on the spot (cb() instead of cb), or it takes the "
+        "A callback has the wrong form: it was called at once (cb() instead of cb), or it takes the "
         "wrong number "
         "of arguments.",
         "Pass the function itself, without parentheses after it. Besides self, a timer's callback takes nothing and a "
@@ -233,7 +233,7 @@ KNOWN = (
         r"The '(?P<field>\w+)' field must be of type 'float'",
         "The field {field} of a message takes a decimal number, and got something else.",
         "Write the number with a point and without quotation marks: 0.5, and 1.0 in place of 1. "
-        "float(...) makes one of a text.",
+        "float(...) makes a number of a string.",
     ),
     Crash(
         "field_type",
@@ -242,7 +242,7 @@ KNOWN = (
         r"|SystemError: <(?:function|class|built-in).*returned (?:a result with an exception|NULL)",
         "A field of a message got a value of the wrong type.",
         "Convert it before you assign: int(...) for an int64, str(...) for a string. Command-line arguments "
-        "are text.",
+        "are strings.",
     ),
     Crash(
         "field_typo",
@@ -280,7 +280,7 @@ KNOWN = (
     Crash(
         "executor_not_kept",
         r"'NoneType' object has no attribute '(?:spin\w*|add_node|create_task)'",
-        "node.executor is None: a node holds its executor only weakly, and nobody else kept this one.",
+        "node.executor is None: a node does not keep its executor, and no variable of yours kept it either.",
         "Keep the executor in a variable, executor = SingleThreadedExecutor(), and call executor.spin() on "
         "that.",
     ),

@@ -58,18 +58,18 @@ READING: Sequence[Row] = (
     ),
     (
         rf"{_READS}unexpected indent",
-        "That line begins further to the right than the one above it, and nothing above it opens a block.",
-        "Let it begin below the first letter of the line above.",
+        "That line is indented further than the line above it, and nothing above it opens a block.",
+        "Indent it like the line above.",
     ),
     (
         rf"{_READS}unindent does not match",
         "That line begins between two levels of indentation.",
-        "Let it begin exactly below the line that it belongs to: four spaces for each level.",
+        "Indent it like the other lines of its block: by four spaces for each level.",
     ),
     (
         rf"{_READS}inconsistent use of tabs",
         "Some lines begin with tabs and others with spaces.",
-        "Delete what that line begins with, and indent by four spaces for each level.",
+        "Delete the spaces and tabs at the beginning of that line, and indent it by four spaces for each level.",
     ),
     (
         rf"{_READS}'(?P<sign>.)' was never closed",
@@ -94,11 +94,11 @@ READING: Sequence[Row] = (
     (
         rf"{_READS}.*Maybe you meant '=='",
         "One = gives a variable a value; to compare takes two.",
-        "Write == in a condition. Left of a single = stands the name that is to get the value.",
+        "Write == in a condition. Left of a single = is the name that gets the value.",
     ),
     (
         rf"{_READS}.*forgot a comma",
-        "Two things stand beside each other, and nothing joins them.",
+        "Two values are side by side, and nothing joins them.",
         "Write a comma between them, or close the bracket or the quotation mark before.",
     ),
     (
@@ -149,8 +149,8 @@ RUNNING: Sequence[Row] = (
     (
         r"AttributeError: '(?P<class>list|dict|tuple|set|str|bytes|bool|int|float|\w+GoalHandle|Publisher|Subscription"
         r"|Timer|Client|Service|ActionClient|ActionServer|RcutilsLogger)' object has no attribute '(?P<name>\w+)'",
-        "What stands before .{name} is a {class} here, which has nothing called {name}.",
-        "Look where it gets its value: is it the thing that you mean? Then compare the name, letter by letter.",
+        "The value before .{name} is a {class} here, which has nothing called {name}.",
+        "Look where it gets its value: is it the value that you mean? Then compare the name, letter by letter.",
     ),
     (
         r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>(?:create|declare|get)_\w+)'",
@@ -161,8 +161,8 @@ RUNNING: Sequence[Row] = (
     (
         rf"^ +.*(?:create_\w+|ActionServer|ActionClient|\w*callback\w*)\(?.*self\..*{_MARKS}{_OWN}",
         "{class} has no method {name} at this line.",
-        "Does def {name} stand in the class, spelled the same? Let it begin below the d of def __init__, four spaces "
-        "from the margin: further to the right it is only a part of the method above.",
+        "Is def {name} in the class, spelled the same? Indent it by four spaces, like def __init__: indented further, "
+        "it is only a part of the method above.",
     ),
     (
         r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute 'publish'",
@@ -178,12 +178,12 @@ RUNNING: Sequence[Row] = (
     ),
     (
         r"AttributeError: '(?:builtin_function_or_method|function|method)' object has no attribute '(?P<name>\w+)'",
-        "Before .{name} stands a method that was not called.",
+        "Before .{name} is a method that was not called.",
         "Write the parentheses after it, as in self.get_logger().info(...).",
     ),
     (
         r"AttributeError: 'NoneType' object has no attribute '(?P<name>\w+)'",
-        "What stands before .{name} is None: it was not filled yet, or a function that should give it has no return.",
+        "The value before .{name} is None: it was not set yet, or the function that should give it has no return.",
         "Look where it gets its value, and whether that line has run before this one.",
     ),
     (
@@ -288,8 +288,8 @@ RUNNING: Sequence[Row] = (
     ),
     (
         r"^ValueError: (?:not enough|too many) values to unpack \(expected (?P<names>\d+)",
-        "Left of the = are {names} names, and the value has another number of parts.",
-        "Print the value above that line and count its parts: a text without a space, for example, has one.",
+        "Left of the = are {names} names, but the value has another number of parts.",
+        "Print the value above that line and count its parts: a string without a space, for example, has one part.",
     ),
     (
         r"^ValueError: (?:invalid literal for int\(\) with base \d+|could not convert string to float): (?P<text>.+)",
@@ -315,8 +315,8 @@ RUNNING: Sequence[Row] = (
     (
         r"",
         "",
-        "Read the traceback from the bottom: the last line says what, the lines above it where. Mend the line that is "
-        "yours.",
+        "Read the traceback from the bottom: the last line says what, the lines above it where. Correct the line "
+        "that is yours.",
     ),
 )
 """Python's words about a program that runs."""

@@ -143,7 +143,7 @@ def braces_left(part: Part) -> Advice | None:
     if line is None:
         return None
     return Advice(
-        f"Your program said “{line}”: Python did not fill in the braces, because there is no f in front of the text.",
+        f"Your program said “{line}”: Python did not fill in the braces, because there is no f in front of the string.",
         'Write f directly before the quotation mark: f"...". Python then puts the number where the braces are.',
     )
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import math
-from collections import Counter
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
@@ -155,14 +154,17 @@ def repeated(part: Part, sent: Sequence[str]) -> dict[str, int]:
     """Texts that were said more often than they were sent, in the same words and in the same way: how often for each.
 
     A log line and a printed one are two ways, and so are two loggers. Only the words count in which a text is said
-    first: a line of another kind may name it again.
+    first: a line of another kind may name it again. The number of a line and its time make it no other kind.
     """
-    channels: dict[tuple[str, ...], Counter[str]] = {}
+    channels: dict[tuple[str, ...], list[str]] = {}
     for channel, line in _by_channel(part):
-        channels.setdefault(channel, Counter())[line] += 1
+        channels.setdefault(channel, []).append(line)
     spoken = part.said()
-    claims = {text: claim for text in sent if (claim := _claim(spoken, text)) is not None}
-    often = {text: max(lines[claim] for lines in channels.values()) for text, claim in claims.items()}
+    claims = {text: _kind(claim, text) for text in sent if (claim := _claim(spoken, text)) is not None}
+    often = {
+        text: max(sum(_kind(line, text) == claim for line in lines) for lines in channels.values())
+        for text, claim in claims.items()
+    }
     each = {text: math.ceil(times / sent.count(text)) for text, times in often.items()}
     many = {text: times for text, times in each.items() if times > 1}
     # A program may say at its end once more what it said last.
@@ -173,6 +175,12 @@ def repeated(part: Part, sent: Sequence[str]) -> dict[str, int]:
 def _claim(lines: Sequence[str], text: str) -> str | None:
     """The line in which a text is said first."""
     return next((line for line in lines if tells(line, text)), None)
+
+
+def _kind(line: str, text: str) -> tuple[str, ...] | None:
+    """The words around a text, with every number in them the same; None where the text is not there."""
+    frame = _frame(line, text)
+    return tuple(re2.sub(r"[0-9]+", "0", words) for words in (frame.before, frame.after)) if frame else None
 
 
 def _by_channel(part: Part) -> Iterator[tuple[tuple[str, ...], str]]:

@@ -42,7 +42,7 @@ def _bad_package(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         f"A package cannot be used: {report.line}.",
-        "Mend package.xml. colcon takes a package whose package.xml is not valid for something else, without a word.",
+        "Correct package.xml. colcon does not say that it is not valid, and treats the package as another kind.",
     )
 
 

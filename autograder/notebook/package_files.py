@@ -145,7 +145,7 @@ def _no_entry_point(entry: object) -> str:
     """The advice on something that has not the form of an entry point."""
     if isinstance(entry, str) and entry.count("=") > 1 and entry.count(":") > 1:
         return (
-            f"Two entry points have run together: {entry!r}. A comma is missing between them: Python joins two texts "
+            f"Two entry points have run together: {entry!r}. A comma is missing between them: Python joins two strings "
             "with nothing between. Write a comma after each entry point, behind its closing quotation mark."
         )
     what = _what_is_wrong(entry) if isinstance(entry, str) else ""
@@ -155,7 +155,7 @@ def _no_entry_point(entry: object) -> str:
 def _what_is_wrong(entry: str) -> str:
     """The slip in what was meant for an entry point, as a sentence and a space; empty where none is known."""
     if len(entry.strip()) <= 1:
-        return "It is a single letter: put the text into a list, in square brackets. "
+        return "It is a single letter: put the string into a list, in square brackets. "
     if "(" in entry:
         return "Leave out the parentheses: the function is named here and not called. "
     if "/" in entry:

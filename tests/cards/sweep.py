@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 _NO_WORDS = re2.compile(r"\x1b|\[\d+(?:;\d+)*m|\[[A-Z]\]\{|\(\?[:P<]|\\[dws][+*]|%\(|  ---|--- ;")
 """What comes of a terminal's colours, a pattern, or a value that is empty."""
-_NOBODY = re2.compile(r"nobody (?:subscribed|published)|no (?:subscription|publisher)\b")
+_NO_NODE = re2.compile(r"no node (?:subscribed|published)|no (?:subscription|publisher)\b")
 _MEETS = re2.compile(r"^(?:Subscribes|Publishes) ")
 _SINGULAR = re2.compile(r"\b1 (?:\w+ )?(?:messages|calls|goals|times|numbers|runs)\b")
 _RAISED = re2.compile(r"\b([A-Z]\w*(?:Error|Exception)): ")
@@ -38,7 +38,7 @@ def objection(verdict: Verdict) -> str:
         for criterion in verdict.criteria
         if criterion.passed and _MEETS.search(criterion.title)
     ]
-    if held and _NOBODY.search(words):
+    if held and _NO_NODE.search(words):
         return f"its card says that {held[0]!r} holds, beside: {words}"
     if _POINTS_AT.search(words) and not (place(verdict.detail) or "(line " in words):
         return f"its card points at a line and names none: {words}"

@@ -352,7 +352,7 @@ def test_a_screen_reader_is_told_the_result(verdict: Verdict) -> None:
 
 
 def test_texts_that_differ_are_shown_as_a_difference(load: Callable[[str], Verdict]) -> None:
-    text = Criterion("text", "Says the right text", 2.0, False, "“Hello, world! 0”, …", "“Hello world 0”")
+    text = Criterion("text", "Says the right string", 2.0, False, "“Hello, world! 0”, …", "“Hello world 0”")
     tree = Tree(card_html(replace(load("talker_wrong_topic"), criteria=(text,)))).root
     (shown,) = tree.all(css_class="agc-difference")
     assert "".join(words(shown).split()) == "thedifference:Hello[,]world[!]0"

@@ -26,11 +26,11 @@ def card(text: str, *, seen: str = "2 messages", held: str = "Builds", detail: s
         (card("It sent 1 feedback messages."), "its card says"),
         (card("It has the fields  --- ;"), "its card says"),
         (
-            card("Nothing came.", held="Subscribes to /chatter", seen="nobody subscribed to /chatter"),
+            card("Nothing came.", held="Subscribes to /chatter", seen="no node subscribed to /chatter"),
             "holds, beside",
         ),
         (card("That line has no colon."), "names none"),
-        (card("Mend the line that is yours.", detail=RAISED), "names no fix"),
+        (card("Correct the line that is yours.", detail=RAISED), "names no fix"),
         (card("It stopped with TypeError: no.", detail=RAISED), "of a TypeError"),
         (card("It stopped.", seen="the program did nothing", detail=RAISED), "that raised"),
         (card("It said “one text”.", seen="“another one” 2 times"), "its criteria “another one”"),

@@ -150,7 +150,7 @@ PUBLISHED = "TypeError: Expected <class 'std_msgs.msg._string.String'>, got <cla
         (
             "callback_signature",
             [line.format("self.on_message()") for line in HANDED],
-            "on the spot",
+            "at once",
             "parentheses after it: self.on_message.",
             "number",
         ),
@@ -159,15 +159,15 @@ PUBLISHED = "TypeError: Expected <class 'std_msgs.msg._string.String'>, got <cla
             [line.format("self.on_message") for line in HANDED],
             "on_message takes the wrong number",
             "def on_message(self, message)",
-            "on the spot",
+            "at once",
         ),
-        ("callback_signature", [line.format("None") for line in HANDED], "on the spot", "Besides self", "X"),
+        ("callback_signature", [line.format("None") for line in HANDED], "at once", "Besides self", "X"),
         (
             "callback_signature",
             [*EXECUTED, "TypeError: TalkerNode.tick() missing 1 required positional argument: 'msg'"],
             "arguments: TalkerNode.tick() missing 1",
             "a timer's callback takes nothing",
-            "on the spot",
+            "at once",
         ),
     ],
 )

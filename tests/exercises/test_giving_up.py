@@ -88,10 +88,20 @@ def test_a_client_that_looks_once_is_told_so_whenever_it_met_the_service(
 
 
 def _waits(
-    *lines: tuple[float, str], told: float | None = None, ends: float | None = None, spared: float = 0.0
+    *lines: tuple[float, str],
+    told: float | None = None,
+    ends: float | None = None,
+    spared: float = 0.0,
+    looks_at: float | None = None,
 ) -> Part:
-    """A run without a server: what was said when, how long it was told to wait, when it ended."""
+    """A run without a server: what was said when, how long it was told to wait, when it ended, when it was seen."""
     events = [Event(0.0, "subject", "started", {"accepted": ["patience_sec"] if told else []})]
+    if looks_at is not None:
+        surveys: list[dict[str, dict[str, str]]] = [
+            {"client": {}},
+            {"client": {"/add_two_ints": "AddTwoInts"}},
+        ]
+        events += [Event(looks_at, "interface", "", survey) for survey in surveys]
     events += [Event(0.0, "spared", "a wait for a server", {"seconds": spared})] if spared else []
     events += [Event(t, "output", "stdout", {"text": text}) for t, text in lines]
     events += [Event(ends, "subject", "returned", {"value": None})] if ends is not None else []
@@ -144,6 +154,16 @@ AT_ONCE = tuple((0.1 + t / 1000, "waiting") for t in range(200))
             _waits(*EACH_SECOND[4::5], (11.9, "waiting, try 3")), "", id="says so every five seconds"
         ),
         pytest.param(_waits((0.1, "waiting")), "still waiting after 12 s", id="says so once"),
+        pytest.param(
+            _waits((6.5, "waiting"), (7.5, "waiting"), (8.5, "waiting"), looks_at=5.5),
+            "still waiting after 12 s",
+            id="starts slowly on a busy machine and says so three times",
+        ),
+        pytest.param(
+            _waits(*((5.5 + t, "waiting") for t in range(12)), looks_at=5.5),
+            "",
+            id="starts slowly and says so on",
+        ),
         pytest.param(
             _waits(*AT_ONCE), "still waiting after 12 s", id="says so many times at once and never again"
         ),

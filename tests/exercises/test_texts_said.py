@@ -53,6 +53,13 @@ def test_a_log_line_and_a_print_are_no_repetition(seen: object) -> None:
     assert repeated(Part("p", {}, [*events, *events]), SENT) == dict.fromkeys(SENT, 2)
 
 
+def test_a_line_with_a_number_is_a_repetition_too() -> None:
+    """Two subscriptions and a counter in the callback: each text is said twice, under another number."""
+    lines = [f"#{2 * place + turn}: {text} (3 words)" for place, text in enumerate(SENT) for turn in (1, 2)]
+    assert repeated(Part("p", {}, [*map(_log, lines)]), SENT) == dict.fromkeys(SENT, 2)
+    assert not repeated(Part("p", {}, [*map(_log, lines[::2])]), SENT)
+
+
 def test_the_last_text_may_be_said_once_more_at_the_end() -> None:
     first, last = (_log(f"I heard: {text}") for text in SENT)
     assert not repeated(Part("p", {}, [first, last, last]), SENT)

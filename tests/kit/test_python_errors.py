@@ -55,7 +55,7 @@ def test_a_method_that_is_not_found_where_it_is_handed_over_may_be_indented_too_
     code = "self.timer = self.create_timer(0.5, self.tick)\n                                        ^^^^^^^^^"
     frames = f'Traceback (most recent call last):\n  File "talker.py", line 3, in __init__\n    {code}\n'
     words = told(f"{frames}AttributeError: 'Talker' object has no attribute 'tick'")
-    assert "Let it begin below the d of def __init__" in words
+    assert "Indent it by four spaces, like def __init__" in words
 
 
 def told(traceback: str) -> str:

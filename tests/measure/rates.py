@@ -23,7 +23,7 @@ from autograder.verdict import from_json
 from benchmarks.machine import Machine, machine
 from benchmarks.results import replace_between
 from tests.measure.ends import Repeated, in_words
-from tests.mutation.report import Report, Tally
+from tests.mutation.report import Report
 
 if TYPE_CHECKING:
     import argparse
@@ -128,10 +128,11 @@ def measured(part: str, form: Form) -> Any:
     Raises:
         NotMeasured: It could not be.
     """
+    seed = str(secrets.randbelow(100_000))
     options: dict[str, list[str]] = {
         "bank": ["--lines", "--warm", *form.bank],
-        "mutants": ["--sample", str(form.mutants), "--seed", str(secrets.randbelow(100_000)), "--json"],
-        "soak": ["--judgements", str(form.judgements), "--json", *form.bank],
+        "mutants": ["--sample", str(form.mutants), "--seed", seed, "--json"],
+        "soak": ["--judgements", str(form.judgements), "--seed", seed, "--json", *form.bank],
         "steady_class": ["--times", str(form.times), "--json"],
     }
     command = ["-m", "tests.measure", part, *options[part]]
@@ -228,8 +229,7 @@ def markdown(rates: Rates) -> str:
             beside = f"{how.command}: {ends.judgements} judgements, {ends.how}"
             lines.append(_row(what, same, replace(how, command=beside)))
             details += [f"- changed: {name}: {in_words(counts)}" for name, counts in ends.changed.items()]
-    if rates.mutants:
-        lines += ["", *_by_exercise(rates.mutants[1].tallies)]
+            details += [f"- not as expected: {name}: {why}" for name, why in ends.unexpected.items()]
     return "\n".join([*lines, *(["", *details] if details else [])]) + "\n"
 
 
@@ -240,18 +240,6 @@ def _row(what: str, rate: str, how: Measured) -> str:
 
 def _of(some: int, all_: int) -> str:
     return f"{some} of {all_} ({some / all_:.1%})" if all_ else "none was judged"
-
-
-def _by_exercise(tallies: dict[str, Tally]) -> list[str]:
-    rows = [
-        f"| {name} | {tally.killed} | {tally.told} | {tally.survived} | {tally.equivalent} | {tally.share:.1%} |"
-        for name, tally in tallies.items()
-    ]
-    return [
-        "| mutants of | rejected | specific diagnosis | survived | equivalent | share rejected |",
-        "| --- | --- | --- | --- | --- | --- |",
-        *rows,
-    ]
 
 
 def write(rates: Rates, path: Path) -> None:

@@ -47,8 +47,14 @@ def _busy() -> None:
         pass
 
 
+EACH = 4
+"""Times that an answer is judged at least: one that was judged once shows no change."""
+
+
 def drawn(wanted: Sequence[Answer], number: int, seed: int, *, same_inputs: bool) -> list[Turn[Answer]]:
     """Turns in random order, of each answer as many as of any other, give or take one.
+
+    Where there are too many answers to judge each again and again, some are drawn.
 
     Args:
         wanted: The answers.
@@ -57,11 +63,12 @@ def drawn(wanted: Sequence[Answer], number: int, seed: int, *, same_inputs: bool
         same_inputs: Give all turns of an answer the same inputs.
     """
     random = Random(seed)
+    wanted = random.sample(wanted, min(len(wanted), -(-number // EACH)))
     turns: list[Turn[Answer]] = []
     while wanted and len(turns) < number:
         lap = len(turns) // len(wanted)
         inputs = f"soak {seed}" if same_inputs else f"soak {seed}, lap {lap}"
-        turns += [Turn(answer, inputs) for answer in random.sample(list(wanted), len(wanted))]
+        turns += [Turn(answer, inputs) for answer in random.sample(wanted, len(wanted))]
     turns = turns[:number]
     random.shuffle(turns)
     return turns
@@ -96,7 +103,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--judgements", type=int, default=1_000, help="how many there are in all")
     parser.add_argument("--repeat", type=int, help="judge each answer so often, instead of a number in all")
     parser.add_argument("--busy", type=int, default=2, help="busy loops beside them")
-    parser.add_argument("--seed", type=int, default=0, help="what order and inputs are drawn from")
+    parser.add_argument("--seed", type=int, default=0, help="what answers, order and inputs are drawn from")
     parser.add_argument("--same-inputs", action="store_true", help="the same inputs for an answer each time")
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
 

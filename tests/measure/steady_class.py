@@ -93,7 +93,9 @@ def grade(path: Path, *options: str) -> dict[str, str]:
         check=False,
     )
     if done.returncode not in (0, 2) or not done.stdout:
-        raise RuntimeError(f"the class could not be graded:\n{done.stderr[-2000:]}")
+        raise RuntimeError(
+            f"the class could not be graded (exit code {done.returncode}):\n{done.stderr[-2000:]}"
+        )
     report: dict[str, Any] = msgspec.json.decode(done.stdout)
     return {
         f"{one['student']} {verdict['exercise']}": in_one_line(

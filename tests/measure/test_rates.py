@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
@@ -85,13 +86,19 @@ def test_the_page_quotes_the_rates_that_are_kept() -> None:
 @pytest.mark.parametrize("same_inputs", [True, False])
 def test_a_soak_draws_every_answer_as_often(same_inputs: bool) -> None:
     wanted = list(answers())[:7]
-    turns = soak.drawn(wanted, 21, 0, same_inputs=same_inputs)
-    assert turns == soak.drawn(wanted, 21, 0, same_inputs=same_inputs)
-    assert turns != soak.drawn(wanted, 21, 1, same_inputs=same_inputs)
+    turns = soak.drawn(wanted, 35, 0, same_inputs=same_inputs)
+    assert turns == soak.drawn(wanted, 35, 0, same_inputs=same_inputs)
+    assert turns != soak.drawn(wanted, 35, 1, same_inputs=same_inputs)
     for answer in wanted:
         seeds = {turn.seed for turn in turns if turn.subject == answer}
-        assert sum(turn.subject == answer for turn in turns) == 3
-        assert len(seeds) == (1 if same_inputs else 3)
+        assert sum(turn.subject == answer for turn in turns) == 5
+        assert len(seeds) == (1 if same_inputs else 5)
+
+
+def test_a_soak_of_many_answers_judges_some_of_them_again_and_again() -> None:
+    """A bank of more answers than there were judgements had each judged once, and nothing could change."""
+    turns = soak.drawn(list(answers())[:50], 40, 0, same_inputs=False)
+    assert set(Counter(turn.subject.name for turn in turns).values()) == {soak.EACH}
 
 
 def test_a_class_knows_what_is_to_be_expected() -> None:

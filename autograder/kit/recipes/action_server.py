@@ -86,7 +86,7 @@ class SendsGoals:
             return None
         return Advice(
             "The goal ended as ABORTED (6) although the work was done: rclpy assumes so when the execute callback "
-            "returns without a word.",
+            "returns without saying how the goal ended.",
             "Call goal_handle.succeed() before you return the result.",
         )
 

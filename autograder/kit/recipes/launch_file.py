@@ -234,8 +234,8 @@ class LaunchFile:
 _TODO = (
     (
         r"remappings",
-        "remappings takes a list of pairs: square brackets outside, and in them a pair of two texts in parentheses, as "
-        'in remappings=[("image", "/left/image")].',
+        "remappings takes a list of pairs: square brackets outside, and in them a pair of two strings in parentheses, "
+        'as in remappings=[("image", "/left/image")].',
     ),
     (
         r"must return|NoneType",

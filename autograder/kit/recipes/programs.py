@@ -299,7 +299,7 @@ class Programs:
             f"{lost[0]}.py is still in the package, but setup.py has no entry point for it any more: "
             f"`ros2 run {self._name} {lost[0]}` does not work.",
             f"Put '{lost[0]} = {self._name}.{lost[0]}:main' back into the list console_scripts, beside the new ones. "
-            "All programs of a package stand in one list.",
+            "All entry points of a package share one list.",
         )
 
     def _traceback_at_the_end(self, evidence: Evidence) -> str:

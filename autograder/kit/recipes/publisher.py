@@ -301,7 +301,7 @@ class Hears:
         if not seen.at_once(self.expected(evidence)):
             return None
         return Advice(
-            "Your program published everything in its first moment and ended before anybody could be connected to it.",
+            "Your program published everything in its first moment and ended before a subscriber was connected.",
             "Publish from a timer and keep the program spinning: it takes a moment until publisher and subscription "
             "have found each other.",
         )

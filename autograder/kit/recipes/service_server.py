@@ -212,8 +212,8 @@ class Asks:
             return None
         return Advice(
             f"Your server answered {counted(len(seen.answers), 'call')} and then no more: its callback "
-            f"{stuck[0][0].function} was called and never came back.",
-            "A callback has to come to its end at each call. Look for a wait, a loop or a lock in it.",
+            f"{stuck[0][0].function} was called and never returned.",
+            "A callback must return each time that it is called. Look for a wait, a loop or a lock in it.",
         )
 
 

@@ -164,7 +164,7 @@ class ServiceType:
                 return Advice(
                     f"{file} has {number - 1} lines of three dashes; a service has exactly one, between request "
                     "and response.",
-                    "Write --- on a line of its own after the request's fields. Below it stand the response's.",
+                    "Write --- on a line of its own after the request's fields. Below it come the response's.",
                 )
         return None
 
@@ -258,7 +258,7 @@ class ServiceType:
             )
         return Advice(
             f"package.xml of {holder.name} does not name {name}. It works here, because this computer has it; "
-            "elsewhere nobody would know that it has to be installed.",
+            "on another computer it would not be installed.",
             f"Add {line} above <export>: {reason}.",
         )
 

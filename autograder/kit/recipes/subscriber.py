@@ -146,7 +146,7 @@ class Speaks:
         if all(is_said(_text(event), evidence.main) for event in missing):
             return None  # only texts that came once more are missing
         return Advice(
-            f"At the pace of {self._paced_by}, a text every {self._pace:g} s, your listener misses some, such as "
+            f"At the pace of {self._paced_by}, a string every {self._pace:g} s, your listener misses some, such as "
             f"“{_text(missing[0])}”; when it is given more time, it says all.",
             "Let the callback only log and return, without time.sleep: while it runs, new messages wait, and no more "
             "of them than the depth of the queue.",
@@ -275,12 +275,12 @@ def says_every_text(evidence: Evidence) -> Finding:
     """Each text that was sent is said afterwards."""
     sent, missing = _sent(evidence), _missing(evidence)
     topic, _ = evidence.reference.only("subscription")
-    nobody = f"nobody subscribed to {topic}, so nothing was sent"
-    seen = f"{len(sent) - len(missing)} of {len(sent)} said" if sent else nobody
+    no_subscriber = f"no node subscribed to {topic}, so nothing was sent"
+    seen = f"{len(sent) - len(missing)} of {len(sent)} said" if sent else no_subscriber
     if missing:
         seen += f"; not “{_text(missing[0])}”"
     complete = len(sent) >= _expected_texts(evidence) and not missing
-    return Finding(complete, "every text in its log", seen)
+    return Finding(complete, "every string in its log", seen)
 
 
 def says_nothing_else(evidence: Evidence) -> Finding:
@@ -293,7 +293,7 @@ def says_nothing_else(evidence: Evidence) -> Finding:
     elif again:
         seen = "“{}” {} times".format(*_most_often(again))
     else:
-        seen = "only what was sent" if heard_any else "it said none of the texts"
+        seen = "only what was sent" if heard_any else "it said none of the strings"
     return Finding(heard_any and not made_up and not again, "only what was sent, and once", seen)
 
 
@@ -309,18 +309,18 @@ def _said_again(evidence: Evidence) -> Advice | None:
     text, times = _most_often(again)
     if len(again) > 2 and all(b > a for a, b in pairwise(again.values())):
         return Advice(
-            f"Each text was sent once, and your program says each more often than the one before, “{text}” {times} "
+            f"Each string was sent once, and your program says each more often than the one before, “{text}” {times} "
             "times: with each message there is one more subscription.",
             "Call create_subscription once, in __init__, and not in a callback.",
         )
     if len(again) > 1 and min(again.values()) == times:
         return Advice(
-            f"Each text was sent once, and your program says it {times} times, such as “{text}”.",
+            f"Each string was sent once, and your program says it {times} times, such as “{text}”.",
             "One subscription is enough: is create_subscription called twice, or is there a second node, or a second "
             "log line? In a notebook, an earlier run of the cell may have left a node of its own.",
         )
     return Advice(
-        f"Your program says “{text}” {times} times for one message: it repeats it without a new one.",
+        f"Your program says “{text}” {times} times for one message: it repeats the string without a new message.",
         "Log in the subscription's callback, once for each message; a timer cannot know whether a message came.",
     )
 
@@ -335,7 +335,7 @@ def _changed_text(evidence: Evidence) -> Advice | None:
         made_up = [line for line in changed(part, _sent_texts(evidence), _text(event)) if line in lines]
         if made_up:
             return Advice(
-                f"When “{_text(event)}” was sent, your node said “{made_up[0]}”: that is not the text as it came.",
+                f"When “{_text(event)}” was sent, your node said “{made_up[0]}”: that is not the string as it came.",
                 "Log msg.data as it is, without strip, replace, slices or other changes.",
             )
     return None
@@ -352,32 +352,32 @@ def _not_logged(evidence: Evidence) -> Advice | None:
     bytes_said = next((line for line in words if _text(silent) in line), None)
     if bytes_said is not None:
         return Advice(
-            f"Your node said “{bytes_said}”: these are the bytes of the message as they travel, not its text.",
-            "Leave raw=True out of create_subscription: the callback then gets a message with its text in msg.data.",
+            f"Your node said “{bytes_said}”: these are the bytes of the message as they travel, not its string.",
+            "Leave raw=True out of create_subscription: the callback then gets a message with its string in msg.data.",
         )
     if is_said(_text(silent), part):
         return Advice(
             f"“{_text(silent)}” was sent twice, one after the other, and your node said it once.",
-            "Log every message that the callback is given, also one with the same text as the one before.",
+            "Log every message that the callback is given, also one with the same string as the one before.",
         )
     if silent is not sent[0] and len(part.said(after=sent[0])) == len(words):
         return Advice(
-            f"When “{_text(silent)}” was sent, your node said “{words[0]}”: it says each text only when the next one "
-            "arrives.",
-            "Log the text of the message that the callback was just given, not one that you kept before.",
+            f"When “{_text(silent)}” was sent, your node said “{words[0]}”: it says each string only when the next "
+            "one arrives.",
+            "Log the string of the message that the callback was just given, not one that you kept before.",
         )
     if silent is not sent[0]:
         return Advice(
-            f"Your node said the first texts, but not “{_text(silent)}”.",
+            f"Your node said the first strings, but not “{_text(silent)}”.",
             "Log every message that the callback is given, without `once`, throttling or a condition.",
         )
     if len(part.said(after=sent[0])) == 0:
         return Advice(
-            f"Your node is subscribed to {topic}, but when a text arrives it says nothing.",
-            "In the callback, log the text: self.get_logger().info(f'I heard: \"{msg.data}\"'). Is the node spun?",
+            f"Your node is subscribed to {topic}, but when a string arrives it says nothing.",
+            "In the callback, log the string: self.get_logger().info(f'I heard: \"{msg.data}\"'). Is the node spun?",
         )
     return Advice(
-        f"When “{_text(sent[0])}” was sent, your node said “{part.said(after=sent[0])[0]}”: the text that arrived is "
+        f"When “{_text(sent[0])}” was sent, your node said “{part.said(after=sent[0])[0]}”: the string that arrived is "
         "not in it.",
         "Put msg.data into the line that you log.",
     )
@@ -389,6 +389,6 @@ def _invented_text(evidence: Evidence) -> Advice | None:
     if not made_up:
         return None
     return Advice(
-        f"Your node said “{made_up[0]}”, but nobody sent that.",
-        "Log only in the subscription's callback, and only the text of the message that it was given.",
+        f"Your node said “{made_up[0]}”, but no node sent that.",
+        "Log only in the subscription's callback, and only the string of the message that it was given.",
     )

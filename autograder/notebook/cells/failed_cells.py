@@ -78,7 +78,9 @@ class FailedCells:
             return ""
         why = self.why_missing(name)
         if why:
-            return f"NameError: there is no {name} yet. {why} Mend that cell and run it, then run this one again."
+            return (
+                f"NameError: there is no {name} yet. {why} Fix that cell and run it, then run this one again."
+            )
         first = f"NameError: there is no {name} yet. Run the cell that defines {name} first, then run this one again."
         return f"{first} If you did, compare the two names letter by letter."
 
@@ -121,5 +123,5 @@ def raise_if_stale(subject: Any) -> None:
     why = _cells.why_missing(name) if _cells is not None else ""
     if why:
         raise StaleCodeError(
-            f"{why} The {name} that is there is older code. Mend that cell and run it, then check again."
+            f"{why} The {name} that is there is older code. Fix that cell and run it, then check again."
         )

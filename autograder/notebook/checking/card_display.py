@@ -100,9 +100,7 @@ class CardDisplay:
         shell = notebook_shell()
         earlier = _shown.get(self.exercise)
         before = earlier.verdict.score if earlier else None
-        # Never in a grader's kernel: what a student hands in would carry it.
-        solution = solution_of(self.exercise) if verdict.passed and is_live() else None
-        card = bundle.mimebundle(verdict, before=before, solution=solution)
+        card = _full_card(verdict, before)
         if shell is None:
             print(card["text/plain"])
         elif self._handle is not None:
@@ -138,9 +136,14 @@ def renew_card(verdict: Verdict, subject: Any) -> None:
     shell, earlier = notebook_shell(), _shown.get(verdict.exercise)
     if shell is not None and earlier is not None:
         before = earlier.verdict.score
-        solution = solution_of(verdict.exercise) if verdict.passed else None
-        update_card(earlier.handle, bundle.mimebundle(verdict, before=before, solution=solution))
+        update_card(earlier.handle, _full_card(verdict, before))
         _remember(shell, verdict.exercise, subject, _Shown(verdict, before, earlier.handle, "", None))
+
+
+def _full_card(verdict: Verdict, before: float | None) -> dict[str, str]:
+    # No solution in a grader's kernel: what a student hands in would carry it.
+    solution = solution_of(verdict.exercise) if verdict.passed and is_live() else None
+    return bundle.mimebundle(verdict, before=before, solution=solution)
 
 
 def is_live() -> bool:

@@ -72,12 +72,16 @@ class Watch:
         self._say("Is checked as soon as the cell that runs now has ended.")
 
     def show(self, verdict: Verdict) -> None:
-        """Show the result in the card's place."""
+        """Show the result of its own check, here and in the card of the check cell."""
+        self.settle(verdict)
+        self._here.run(renew_card, verdict, self.subject)
+        self._here.run(keep, verdict)
+
+    def settle(self, verdict: Verdict) -> None:
+        """Show a result in the card's place; nothing is due then."""
         before = self._verdict.score if self._verdict else None
         self._verdict, self.due = verdict, False
         self._here.run(update_card, self._handle, bundle.mimebundle(verdict, before=before, short=True))
-        self._here.run(renew_card, verdict, self.subject)
-        self._here.run(keep, verdict)
 
     def _say(self, words: str) -> None:
         self._here.run(update_card, self._handle, self._card(words))
@@ -217,7 +221,13 @@ def switch(exercise: str, subject: Callable[..., Any]) -> str:
 
 
 def watch_after(verdict: Verdict, subject: Any) -> None:
-    """Begin to watch after a check that showed something to mend, unless the student has ended that."""
+    """Take what a check by hand has found: it need not be found again, and what is left to mend is watched from now on.
+
+    Nothing begins by itself once the student has ended it.
+    """
+    watched = _watches.all.get(verdict.exercise) if _watches is not None else None
+    if watched is not None and watched.due and watched.subject is subject:
+        watched.settle(verdict)
     is_code = inspect.isclass(subject) or inspect.isfunction(subject)
     if is_live() and verdict.state is State.FAILED and is_code and not _ended_by_the_student:
         watch(verdict.exercise, subject)

@@ -76,7 +76,7 @@ def spin_in_background(node: Node, *more: Node, name: str | None = None, threads
     check_threads(threads)
     if name is not None:
         if not isinstance(name, str) or not name:
-            raise SettingError(f'name must be a text, such as name="talker", not {name!r}')
+            raise SettingError(f'name must be a string, such as name="talker", not {name!r}')
         replace_named(name, keep=nodes)
     check_nodes("spin_in_background", nodes)
     background = Background(nodes, threads=threads, name=name)

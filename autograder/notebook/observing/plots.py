@@ -56,7 +56,7 @@ def plot(topic: str, field: str, minutes: float = 10.0) -> LivePicture:
     """
     if not _FIELD.fullmatch(field):
         raise ValueError(
-            f'field is where the number stands in a message, such as "pose.pose.position.x", not {field!r}'
+            f'field is the path of a number in a message, such as "pose.pose.position.x", not {field!r}'
         )
     shown = LivePicture(_Plots(topic if topic.startswith("/") else f"/{topic}", field), minutes)
     shown.start()

@@ -42,9 +42,9 @@ def listener(seen: Launched, _: Launched) -> Finding:
     return Finding(seen.says_what_it_hears, f"the listener says what is sent on {seen.topic}", found)
 
 
-@remap.criterion("nothing_left", 1, "Nobody is under the old name")
+@remap.criterion("nothing_left", 1, "No node uses the old name")
 def nothing_left(seen: Launched, _: Launched) -> Finding:
-    """Nobody is left under the old name."""
+    """No node of the subject's uses the old name."""
     there = f"only {seen.topic}" if seen.publishers or seen.subscriptions else "nothing"
     right = not seen.elsewhere and bool(seen.publishers) and bool(seen.subscriptions)
     found = f"{', '.join(seen.elsewhere)} as well" if seen.elsewhere else there
@@ -72,8 +72,8 @@ def only_one_remapped(seen: Launched, _: Launched) -> Advice | None:
     there = names(seen.subscriptions if talks else seen.publishers)
     return Advice(
         f"The {moved} is on {seen.topic}, but the {left} is still on {there}: the two do not meet.",
-        f"Give the {left}'s node in the launch file the same remapping. A rule holds for the one node that it is given "
-        "to; nobody follows by itself.",
+        f"Give the {left}'s node in the launch file the same remapping. A rule holds only for the node that it is "
+        "given to.",
     )
 
 
@@ -92,7 +92,7 @@ def not_remapped(seen: Launched, _: Launched) -> Advice | None:
     return Advice(
         f"Your nodes use {names(there)}; the task asks for {seen.topic}.",
         f"In Python: remappings=[('chatter', '{seen.topic}')]. In XML, inside <node>: <remap from=\"chatter\" "
-        f'to="{seen.topic}"/>. The name as it stands in the code comes first.',
+        f'to="{seen.topic}"/>. The name in the code comes first.',
     )
 
 
@@ -145,7 +145,7 @@ def one_node_only(seen: Launched, _: Launched) -> Advice | None:
         return None
     there, missing = ("talker", "listener") if seen.publishers else ("listener", "talker")
     return Advice(
-        f"Only the {there} is there; no {missing} was started, or it did not stay.",
+        f"Only the {there} is there; no {missing} was started, or it ended.",
         f"The launch file must start both programs. Is the {missing} in the list that it returns?",
     )
 

@@ -73,8 +73,7 @@ def never_spun(evidence: Evidence) -> Advice | None:
     if not goals(part) or part.first("cancel") is not None or not part.of("unanswered"):
         return None
     return Advice(
-        "Your client sent its goal, but it takes in nothing that comes back: no callback of it is called "
-        "any more.",
+        "Your client sent its goal, but it receives no answer: none of its callbacks is called any more.",
         "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future, timeout_sec=5.0), in one "
         "place, and never "
         "inside a callback.",
@@ -155,7 +154,7 @@ def cancel_repeated(evidence: Evidence) -> Advice | None:
         return Advice(
             f"The server refused to cancel the goal, and your client asked {total} times in all; the task asks for one "
             "request.",
-            "A server may say no. Leave it at that, wait for the result, and report how the goal really ended.",
+            "A server may say no. Do not ask again: wait for the result, and report how the goal really ended.",
         )
     total = len(evidence.main.of("cancel"))
     if total < 2:

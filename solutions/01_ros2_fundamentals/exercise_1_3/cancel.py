@@ -149,7 +149,7 @@ EXERCISE = cancel.exercise(
     text={
         "After the **third** feedback message, ask to cancel the goal "
         "(after the fourth or the fifth is accepted as well)": "cancel",
-        "ask **once** in all, also when more feedback arrives or the server refuses to cancel": "once late_feedback",
+        "Ask only **once**, even if more feedback arrives or the server refuses to cancel": "once late_feedback",
         "Send a goal of order 20": "goal",
         "Send the goal: call `send_goal`": "goal",
         "If it was not accepted (`client.goal_handle.accepted`), raise a `RuntimeError` that says so.": "refused",

@@ -357,8 +357,8 @@ def _crashed(part: Part) -> bool:
 question.knows(
     "looked_once",
     lambda seen, _: gave_up_at_once(seen.part(LATE)) and not _crashed(seen.part(LATE)),
-    "You looked only once. A node that was just made knows hardly anything of the graph, and a service may "
-    "start later than whoever looks for it.",
+    "You looked only once. A new node knows almost nothing of the graph, and a service may start later "
+    "than your function.",
     "Look again and again, with a short pause, until the service is there or patience_sec seconds have "
     "passed.",
     certain=True,

@@ -211,7 +211,7 @@ mismatched.asks("type_subscribed", 2.5, "Finds the listener's type", _finds("typ
 @mismatched.mistake(
     "looked_too_early",
     before="syntax_error",
-    says="Your function asked the graph before it had met the two nodes: a node that was just made knows nobody yet.",
+    says="Your function asked the graph before it had met the two nodes: a new node knows no other node yet.",
     next_step="Wait, with a limit, until both names are in node.get_node_names_and_namespaces(); then ask what they "
     "have.",
 )
@@ -236,7 +236,7 @@ def invented_answer(seen: Evidence, _: Evidence) -> bool:
     "not_written",
     certain=True,
     says="Your function ends and returns nothing: a step is not written yet.",
-    next_step="Do you make a dictionary and not return it? Then write return before it. Else find the TODO in your "
+    next_step="If you make a dictionary, write return before it. Otherwise find the TODO in your "
     "solution cell and write that step; the hints below the cell open one at a time.",
 )
 def not_written(seen: Evidence, _: Evidence) -> bool:
@@ -253,9 +253,8 @@ def gave_up(seen: Evidence, _: Evidence) -> Advice | None:
         if given is None and found:
             return Advice(
                 f"Your function gave up waiting in one of the three runs, although both nodes were there: {found[0]}",
-                "If it names the talker or the listener: does own_topic go on to the next topic after one that every "
-                "node has? Then: do you ask for the publishers of the talker, and for the subscriptions of the "
-                "listener?",
+                "Two questions: does own_topic go on to the next topic after one that every node has? Do you ask for "
+                "the publishers of the talker, and for the subscriptions of the listener?",
             )
     return None
 
@@ -329,7 +328,7 @@ def type_missing(seen: Evidence, _: Evidence) -> Advice | None:
         if given and all(_same(key, given.get(key), str(part.inputs[key])) for key in KEYS[:2]):
             return Advice(
                 f"The topics are right, but not the types: you give {given.get(KEYS[2])} and {given.get(KEYS[3])}.",
-                "A topic's type stands beside its name, in get_publisher_names_and_types_by_node as in `ros2 topic "
+                "A topic's type is beside its name, in get_publisher_names_and_types_by_node as in `ros2 topic "
                 "list -t`. The two sides may have different ones.",
             )
     return None

@@ -6,18 +6,18 @@ from autograder.kit.recipes.subscriber import Speaks, says_every_text, says_noth
 listener = Draft(
     "lab_1_2.listener",
     "Lab 1.2 · The listener",
-    "Say every text that arrives on the topic.",
+    "Say every string that arrives on the topic.",
     Speaks(pace=0.5, paced_by="the lab's talker"),
 )
 listener.asks("topic", 3, "Subscribes to the right topic and type", subscribes)
-listener.asks("says", 5, "Says every text it hears", says_every_text)
+listener.asks("says", 5, "Says every string it hears", says_every_text)
 listener.asks("honest", 2, "Says only what it heard", says_nothing_else)
 
 EXERCISE = listener.exercise(
     limit=120.0,
     text={
         "The listener subscribes to the topic.": "topic",
-        "Let it log each string once, and nothing that did not arrive": "says honest",
+        "Let the method log each string that arrives, once, and no other string": "says honest",
         "Logs every string that arrives on the topic chatter.": "says honest",
     },
 )

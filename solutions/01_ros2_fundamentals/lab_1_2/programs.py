@@ -6,8 +6,8 @@ from autograder.kit.recipes.programs import Program, Programs
 
 EXERCISE = Programs(
     "my_robot_pkg",
-    Program("talker", talker.EXERCISE, "The talker publishes its texts at their pace", 3),
-    Program("listener", listener.EXERCISE, "The listener says every text it hears", 3),
+    Program("talker", talker.EXERCISE, "The talker publishes its strings at the right rate", 3),
+    Program("listener", listener.EXERCISE, "The listener says every string it hears", 3),
     keeps=("simple_node",),
 ).exercise(
     "lab_1_2.programs",

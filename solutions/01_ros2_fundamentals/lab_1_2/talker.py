@@ -27,7 +27,7 @@ talker.asks("type", 1, "Publishes the right message type", heard.has_type)
 
 
 @heard.each_text
-@talker.criterion("text", 2, "Says the right text")
+@talker.criterion("text", 2, "Says the right string")
 def text(seen: Publisher, expected: Publisher) -> Finding:
     """Every text is the reference's, the number aside."""
     odd = [
@@ -78,7 +78,7 @@ def around(numbers: list[int], place: int) -> str:
 talker.knows(
     "field_typo",
     lambda seen, _: bool(seen.texts) and not any(seen.texts),
-    "Your messages arrive, but their text is empty: the field was never filled.",
+    "Your messages arrive, but their string is empty: the field was never set.",
     "A String has one field, data. Write msg.data = ...; String(...) ignores a misspelt keyword silently.",
     certain=True,
 )
@@ -101,7 +101,7 @@ def wrong_text(seen: Publisher, expected: Publisher) -> Advice | None:
         return None
     if blank := re2.search(r"\{[^{}]*\}|%[ds]", finding.seen):
         return Advice(
-            f"Your talker says {finding.seen}: {blank[0]} is sent as it stands, Python put no number in its place.",
+            f"Your talker says {finding.seen}: {blank[0]} is sent as it is, Python put no number in its place.",
             "Put an f in front of the opening quotation mark: f'Hello, world! {self.count}'.",
         )
     if re2.search(r"\d[.,]\d", finding.seen):
@@ -112,7 +112,7 @@ def wrong_text(seen: Publisher, expected: Publisher) -> Advice | None:
     return Advice(
         f"Your talker says {finding.seen}; the task asks for {finding.expected}",
         f"{first_difference(odd, expected.templates[0])} (N is the number.) Every letter counts, because other nodes "
-        "read this text.".replace("#", "N"),
+        "read this string.".replace("#", "N"),
     )
 
 
@@ -138,13 +138,13 @@ def counter_step(seen: Publisher, _: Publisher) -> Advice | None:
     came = f"After {numbers[place - 1]} comes {numbers[place]} ({around(numbers, place)})."
     if seen.begun >= MANY:
         return Advice(
-            f"{came} Your node makes a new publisher again and again, and a new one is not connected to anybody yet.",
+            f"{came} Your node makes a new publisher again and again, and a new one has no subscriber yet.",
             "Call create_publisher once, in __init__, keep what it returns (self.publisher = …) and publish with that.",
         )
     others = sorted(name for name, kind in seen.endpoints.items() if kind == TYPE)
     if len(others) > 1:
         return Advice(
-            f"{came} Your node publishes texts on {' and '.join(others)}. What goes elsewhere is missing here.",
+            f"{came} Your node publishes strings on {' and '.join(others)}. What goes elsewhere is missing here.",
             "One publisher is enough: let it publish every message.",
         )
     return Advice(

@@ -137,7 +137,7 @@ def goals_mixed_up(seen: Evidence, _: Evidence) -> Advice | None:
         return Advice(
             f"When one goal was canceled, another one did not come to its end ({wrong[0]}).",
             "Ask the goal handle of each goal: goal_handle.is_cancel_requested is True only for the goal that is to "
-            "stop. A flag in self belongs to all goals, and stays up for those that come later.",
+            "stop. A flag in self belongs to all goals, and stays True for later ones.",
         )
     return Advice(
         f"One goal alone is right, but of two at once one is not ({wrong[0]}): they disturb each other.",
@@ -181,7 +181,7 @@ def wrong_feedback(seen: Evidence, _: Evidence) -> Advice | None:
         return None
     if tells_at_the_end(seen.part(GOALS)):
         return Advice(
-            "All feedback of a goal came at once, when its work was done: nobody could follow it.",
+            "All feedback of a goal came at once, when its work was done: the client could not follow the work.",
             "Call goal_handle.publish_feedback(feedback) inside the loop, in each turn, right after you have appended "
             "the number and before you sleep.",
         )

@@ -56,7 +56,7 @@ def test_a_class_whose_newest_code_did_not_run_is_not_judged(said: Callable[...,
     told = said(*((RIGHT, cell, CHECK) for cell in broken))
     for number, (words, error) in enumerate(zip(told, broken.values(), strict=True)):
         assert f"Your cell that defines Talker{number} did not run to its definition: {error}" in words
-        assert "Mend that cell and run it" in words
+        assert "Fix that cell and run it" in words
         assert "the judge was asked" not in words
         assert "Traceback" not in words
 

@@ -26,7 +26,7 @@ scores, meanwhile = [], lambda place: None
 def verdict(exercise, subject, place):
     meanwhile(place)
     score = scores.pop(0)
-    text = Criterion("text", "Says the right text", 10.0, score == 10, "a", "b")
+    text = Criterion("text", "Says the right string", 10.0, score == 10, "a", "b")
     state = State.PASSED if score == 10 else State.FAILED
     return Verdict(exercise, "The talker", state, score, 10.0, (text,), Diagnosis("text", "It says b.", "Say a."))
 
@@ -120,5 +120,5 @@ def test_validate_says_what_the_card_says(tmp_path: Path) -> None:
     error = " ".join(failed[0]["error"].split())
     assert "Partial credit" not in error
     assert "The talker: Not yet, 0 of 10 points" in error
-    assert "[ ] Says the right text (0 of 10 points)" in error
+    assert "[ ] Says the right string (0 of 10 points)" in error
     assert "Say a." in error

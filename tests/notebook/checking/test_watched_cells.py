@@ -39,7 +39,7 @@ def converse(link, exercise, subject, place):
         raise JudgeUnreachable("hung up")
     score = scores.pop(0)
     state = State.PASSED if score == 10 else State.FAILED
-    text = Criterion("text", "Says the right text", 10.0, score == 10, "a", "b")
+    text = Criterion("text", "Says the right string", 10.0, score == 10, "a", "b")
     return Verdict(exercise, "The talker", state, score, 10.0, (text,), Diagnosis("text", "It says b.", "Say a."))
 
 watched_cells.JudgeLink, watched_cells.converse = Link, converse
@@ -197,4 +197,20 @@ def test_the_card_of_the_check_cell_follows_what_is_watched(notebook: Any) -> No
     while "10 of 10 points, 5 before" not in found.cards[checked][-1]:
         found._hear("")
     assert "has changed since this check" not in found.cards[checked][-1]
-    found.run("unwatch()", "end")
+    found.run(
+        "unwatch()\nfrom autograder.notebook.checking import card_display\ncard_display._shown.clear()", "end"
+    )
+
+
+def test_what_a_check_by_hand_has_found_is_not_looked_for_again(watched: Watched) -> None:
+    watched.run("patient.set()", "other")
+    watched.run(TALKER.format("two"), "talker")
+    watched.wait_for("run 1 of two")
+    by_hand = """
+patient.clear()
+scores[:] = [7.0]
+watched_cells.watch_after(converse(None, "lab", Talker, SimpleNamespace(doing=str)), Talker)
+"""
+    watched.run("from types import SimpleNamespace" + by_hand, "check")
+    assert "7 of 10 points" in watched.wait_for("7 of 10 points")
+    watched.run("assert watched_cells._watches._thread is None", "other")

@@ -131,7 +131,7 @@ def test_impossible_numbers_of_threads(nodes: Any, threads: Any) -> None:
 
 @pytest.mark.parametrize("name", ["", 7])
 def test_impossible_names(nodes: Any, name: Any) -> None:
-    with pytest.raises(SettingError, match="name must be a text"):
+    with pytest.raises(SettingError, match="name must be a string"):
         spin_in_background(nodes.Ticker(), name=name)
 
 
