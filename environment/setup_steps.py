@@ -6,6 +6,7 @@ Only the standard library is used: this runs before anything is installed.
 from __future__ import annotations
 
 import contextlib
+import os
 import shlex
 import shutil
 import subprocess
@@ -32,8 +33,6 @@ if TYPE_CHECKING:
 
     # A program and its arguments.
     Command = Sequence[str | Path]
-    # Installs packages; takes the options that pip and uv both have.
-    Installer = Callable[..., None]
 
 
 class SetupError(Exception):
@@ -81,7 +80,7 @@ class Setup:
         steps = [
             Step("environment", f"making .venv with {python}", kind, self._make_environment),
             Step("uv", "fetching uv, which installs the packages", (place.lock("uv"),), self._get_uv),
-            Step("packages", self._what_is_installed(), tuple(locks), lambda: self._install(locks)),
+            Step("packages", self._what_is_installed(), tuple(locks), lambda: self._install_packages(locks)),
             Step("imports", "making imports lighter", lighter, self._make_imports_lighter),
             Step("fast_dds", "repairing how a node ends", fast_dds, self._repair_fast_dds),
             Step(
@@ -92,14 +91,19 @@ class Setup:
             Step("jupyter", "configuring JupyterLab", jupyter, self._configure_jupyter),
             Step("project", "installing the autograder", project, self._install_project),
         ]
-        wanted = {"dev": "the tests need"} if with_tests else {}
-        wanted |= {name: f"the extra {name} needs" for name in EXTRAS if with_tests or name in extras}
-        steps += [self._extra(name, f"installing what {what}") for name, what in wanted.items()]
+        if with_tests:
+            extras = (
+                "dev",
+                *EXTRAS,
+            )  # each is installed together with them: a call of an installer takes seconds
+            steps.append(self._extra("dev", "installing what the tests need", extras))
+        else:
+            steps += [self._extra(name, f"installing what the extra {name} needs", [name]) for name in extras]
         return steps
 
-    def _extra(self, name: str, doing: str) -> Step:
-        lock = self.place.lock(name)
-        return Step(name, doing, (lock,), lambda: self._install([lock]))
+    def _extra(self, name: str, doing: str, extras: Collection[str]) -> Step:
+        locks = tuple(map(self.place.lock, extras))
+        return Step(name, doing, locks, lambda: self._install(*locks))
 
     def _what_is_installed(self) -> str:
         if self.ros.is_sourced:
@@ -161,25 +165,30 @@ class Setup:
         except SetupError:
             self.say("uv cannot be had here: pip installs the packages, which takes longer")
 
-    def _install(self, locks: Sequence[Path]) -> None:
-        if self._uv_program.exists():
-            try:
-                self._install_with(self._uv, locks)
-            except SetupError:
-                self.say("uv could not install the packages: pip tries, which takes longer")
-            else:
-                return
-        self._install_with(self._pip, locks)
-
-    def _install_with(self, installer: Installer, locks: Sequence[Path]) -> None:
+    def _install_packages(self, locks: Sequence[Path]) -> None:
         # One requirement exists as source only. It is built by the setuptools of the lock, which is installed
         # first for that: a build in isolation would fetch one that nobody pinned.
         blocks = split_blocks(self.place.lock("course").read_text(encoding="utf-8"))
         backend = self.place.notes / "build-backend.lock"
         backend.write_text("\n".join(block for name, block in blocks if name == "setuptools") + "\n", "utf-8")
-        for chosen in ([backend], locks):
-            files = [word for lock in chosen for word in ("-r", str(lock))]
-            installer("--require-hashes", "--no-deps", "--only-binary=:all:", "--no-binary=empy", *files)
+        self._install(backend)
+        self._install(*locks)
+
+    def _install(self, *locks: Path) -> None:
+        files = [word for lock in locks for word in ("-r", str(lock))]
+        self._uv_or_pip("--require-hashes", "--no-deps", "--only-binary=:all:", "--no-binary=empy", *files)
+
+    def _uv_or_pip(self, *arguments: str) -> None:
+        """Install with options that pip and uv both have."""
+        if os.access(self._uv_program, os.X_OK):
+            try:
+                self._uv(*arguments)
+            except SetupError:
+                self.say("uv could not install the packages: pip tries, which takes longer")
+                self._uv_program.unlink()  # what it could not do here it cannot do in the next step
+            else:
+                return
+        self._pip(*arguments)
 
     @property
     def _uv_program(self) -> Path:
@@ -273,7 +282,7 @@ class Setup:
     def _install_project(self) -> None:
         # "compat" puts the folder itself on the path, so that `environment` can be imported too.
         compat = ("--config-settings", "editable_mode=compat")
-        self._pip("--no-deps", "--no-index", *compat, "--editable", str(self.place.root))
+        self._uv_or_pip("--no-deps", "--no-index", *compat, "--editable", str(self.place.root))
 
 
 def _empty(folder: Path, keep: Path) -> None:

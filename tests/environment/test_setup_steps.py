@@ -36,7 +36,6 @@ def test_the_order() -> None:
     assert list(steps(with_tests=True)) == [
         *("environment", "uv", "packages", "imports", "fast_dds", "interfaces", "start", "ros2", "jupyter"),
         *("project", "dev"),
-        *("cluster", "postgresql"),
     ]
 
 
@@ -47,6 +46,7 @@ def test_without_tests_their_tools_are_not_installed() -> None:
 def test_an_extra_is_installed_where_it_is_asked_for() -> None:
     assert list(steps(extras=("cluster",)))[-1] == "cluster"
     assert PLACE.lock("cluster") in steps(extras=("cluster",))["cluster"].inputs
+    assert PLACE.lock("cluster") in steps(with_tests=True)["dev"].inputs
 
 
 def test_an_extra_that_was_asked_for_once_stays(tmp_path: Path) -> None:
@@ -184,7 +184,7 @@ echo "{name} $*" >>{called}
 
 def test_uv_installs_with_hashes_from_where_pip_would(calls: tuple[Setup, list[str], Path]) -> None:
     setup, said, called = calls
-    setup._install([setup.place.lock("course")])
+    setup._install_packages([setup.place.lock("course")])
     lines = called.read_text().splitlines()
     assert [line.partition(" ")[0] for line in lines] == ["uv", "uv"]
     for line in lines:
@@ -200,7 +200,7 @@ def test_uv_installs_with_hashes_from_where_pip_would(calls: tuple[Setup, list[s
 def test_where_uv_cannot_pip_installs_the_same_and_it_is_said(calls: tuple[Setup, list[str], Path]) -> None:
     setup, said, called = calls
     (setup.place.root / "no-uv").touch()
-    setup._install([setup.place.lock("course")])
+    setup._install_packages([setup.place.lock("course")])
     assert [line.partition(" ")[0] for line in called.read_text().splitlines()] == ["uv", "python", "python"]
     assert "--require-hashes" in called.read_text().splitlines()[-1]
     assert said == ["uv could not install the packages: pip tries, which takes longer"]
@@ -213,7 +213,7 @@ def test_a_uv_that_cannot_be_had_is_no_failure(calls: tuple[Setup, list[str], Pa
     assert said == ["uv cannot be had here: pip installs the packages, which takes longer"]
     (setup.place.prefix / "bin/uv").unlink()
     with pytest.raises(SetupError, match="installing packages failed"):
-        setup._install([setup.place.lock("course")])
+        setup._install_packages([setup.place.lock("course")])
     assert "uv " not in {line[:3] for line in called.read_text().splitlines()}
 
 
