@@ -211,7 +211,9 @@ def _told(what: str) -> Iterator[None]:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure, print, keep."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    parser.add_argument("--short", action="store_true", help="a minute instead of ten; nothing is kept")
+    parser.add_argument(
+        "--short", action="store_true", help="a minute instead of half an hour; nothing is kept"
+    )
     parser.add_argument("--students", type=int, help="students in the class that is graded")
     parser.add_argument(
         "--profile", action="store_true", help=f"only write {PROFILE.name}, of the grader's own process"

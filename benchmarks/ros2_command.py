@@ -71,7 +71,7 @@ class Figure:
     misses: tuple[str, ...]
 
     def row(self) -> str:
-        """A row of the table in ``docs/performance.md``."""
+        """A row of the printed table, in Markdown."""
         median, longest = statistics.median(self.seconds), max(self.seconds)
         return f"| `{self.command}` | {len(self.seconds)} | {len(self.misses)} | {median:.2f} s | {longest:.2f} s |"
 
