@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import select
+import signal
 import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
+import psutil
+
 if TYPE_CHECKING:
-    from autograder.boxes.sandbox import Enclosure
+    from autograder.boxes.forked import ForkedProcess
+    from autograder.boxes.sandbox import Box, Enclosure
 
 ANSWER_SECONDS = 30.0
 """Seconds of wall time in which the supervisor of the boxes answers."""
+_ITS_TIME = 1e6
+"""Seconds, more than any check lasts: a program runs as long as the judge wants it to."""
 
 
 @dataclass(frozen=True)
@@ -81,8 +88,28 @@ class Running:
         if running:
             self._enclosure.end(self._name)
             return self._finished(None)
-        status = self._enclosure.wait_end(self._name, ANSWER_SECONDS)
-        return self._finished(status if status < 128 else 128 - status)
+        return self._finished(_returncode(self._enclosure.wait_end(self._name, ANSWER_SECONDS)))
+
+    def next_output(self, within: float) -> bytes | None:
+        """Its output since the last call, which is not kept; None for nothing yet, no bytes at its end.
+
+        Args:
+            within: Seconds to wait for something.
+        """
+        if not select.select([self._output], [], [], within)[0]:
+            return None
+        return os.read(self._output, 1 << 16)
+
+    def exit_code(self) -> int | None:
+        """Wait for the end of the box, once there is no more output; as ``Finished.returncode``."""
+        return self.wait(_ITS_TIME).returncode
+
+    def interrupt(self) -> None:
+        """Ctrl-C at everything below the first process of the box, which only waits for the others."""
+        with contextlib.suppress(psutil.Error):
+            for process in psutil.Process(self.pid).children(recursive=True):
+                with contextlib.suppress(psutil.Error):
+                    process.send_signal(signal.SIGINT)
 
     def end(self) -> None:
         """Kill it and all that it has started; may be called twice."""
@@ -99,3 +126,53 @@ class Running:
 
     def __exit__(self, *_: object) -> None:
         self.end()
+
+
+class WarmCommand:
+    """A command that a fork server has forked into a box of its own.
+
+    Args:
+        enclosure: Has the box.
+        box: The box, with nothing in it but the command.
+        process: The command.
+        output: What it says, readable.
+    """
+
+    def __init__(self, enclosure: Enclosure, box: Box, process: ForkedProcess, output: int) -> None:
+        self._enclosure, self._name, self._process, self._output = enclosure, box.name, process, output
+        self.pid = box.pid
+        """The first process of the box, as the host counts."""
+
+    def next_output(self, within: float) -> bytes | None:
+        """See :meth:`Running.next_output`. What the command has started and left ends with it."""
+        process = self._process.fileno()
+        ready = select.select([self._output, process], [], [], within)[0]
+        if ready == [process]:
+            self._enclosure.end(self._name)  # what is left of it may hold its output
+        return os.read(self._output, 1 << 16) if ready else None
+
+    def exit_code(self) -> int | None:
+        """Wait for its end, once there is no more output; as ``Finished.returncode``, None where nobody can tell it."""
+        self._process.wait(_ITS_TIME)
+        status = self._process.status
+        if status is None:
+            return None
+        code = os.waitstatus_to_exitcode(status)
+        return _returncode(code) if code >= 0 else code
+
+    def interrupt(self) -> None:
+        """Ctrl-C, as a terminal sends it to all of a process group."""
+        self._process.interrupt()
+
+    def end(self) -> None:
+        """Kill it and all that it has started; may be called twice."""
+        if self._output >= 0:
+            self._enclosure.end(self._name)
+            self._process.close()
+            os.close(self._output)
+            self._output = -1
+
+
+def _returncode(status: int) -> int:
+    """As :class:`subprocess.Popen` has it, where a signal's number comes as 128 and more."""
+    return status if status < 128 else 128 - status

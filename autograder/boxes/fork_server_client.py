@@ -1,4 +1,4 @@
-"""Starting and asking the fork servers: one for supervisors, one for kernels, one for judges."""
+"""Starting and asking the fork servers: one each for supervisors, kernels, judges, and students' programs."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 SUPERVISOR_MODULE = "autograder.boxes.supervisor"
 KERNEL_MODULE = "autograder.boxes.kernel_process"
+PROGRAM_MODULE = "autograder.boxes.program_process"
 _GOODBYE_SECONDS = 3.0
 
 
@@ -105,11 +106,13 @@ class Addresses:
         supervisors: For :class:`autograder.boxes.sandbox.Enclosure`. Empty where there is no sandbox.
         kernels: For :class:`autograder.boxes.kernel.Kernel`.
         judges: For the judge.
+        programs: For :meth:`autograder.boxes.sandbox.Enclosure.ros2`. Empty where there is no sandbox.
     """
 
     supervisors: str
     kernels: str
     judges: str
+    programs: str = ""
 
 
 class ForkServers:
@@ -117,9 +120,9 @@ class ForkServers:
 
     Args:
         judge_module: What the judges' process serves; it is named here because boxes know no judge.
-        boxed: Start one for supervisors too.
+        boxed: Start those for supervisors and for programs, too.
         log: Takes what they say on standard error.
-        environment: More variables for the processes of kernels and judges. Libraries read some when they are loaded.
+        environment: More variables for the processes of all but supervisors. Libraries read some when they are loaded.
         of_judges: More variables for the processes of judges alone, such as where the course is.
         interfaces: The modules with the course's interfaces, which a kernel finds imported. It is told no more of the
             course.
@@ -140,13 +143,15 @@ class ForkServers:
         of_judges = {**(environment or {}), **(of_judges or {})}
         self._kernels = ForkServer(INSIDE, KERNEL_MODULE, place / "kernels", log, environment, interfaces)
         self._judges = ForkServer(INSIDE, judge_module, place / "judges", log, of_judges)
-        self._supervisors = (
-            ForkServer(BESIDE, SUPERVISOR_MODULE, place / "supervisors", log) if boxed else None
-        )
+        self._supervisors = self._programs = None
+        if boxed:
+            self._supervisors = ForkServer(BESIDE, SUPERVISOR_MODULE, place / "supervisors", log)
+            self._programs = ForkServer(INSIDE, PROGRAM_MODULE, place / "programs", log, environment)
         self.addresses = Addresses(
             self._supervisors.address if self._supervisors else "",
             self._kernels.address,
             self._judges.address,
+            self._programs.address if self._programs else "",
         )
 
     @property
@@ -167,4 +172,5 @@ class ForkServers:
         self.stop()
 
     def _all(self) -> list[ForkServer]:
-        return [*([self._supervisors] if self._supervisors else []), self._kernels, self._judges]
+        every = (self._supervisors, self._kernels, self._judges, self._programs)
+        return [server for server in every if server is not None]

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import atexit
 import contextlib
-import ctypes
 import importlib.util
 import os
 import random
@@ -22,6 +21,7 @@ from ipykernel.kernelapp import IPKernelApp
 from traitlets.config import Config
 
 from autograder.boxes.kernel import IOPUB, SHELL
+from autograder.boxes.preloading import INTERFACES, RCLPY, preload, preload_ros
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -35,14 +35,6 @@ _PRELOADED = (
     "matplotlib_inline",
     "importlib.resources.readers",
     "numpy.random",
-    "rclpy",
-    "rclpy.action",
-    "rclpy.callback_groups",
-    "rclpy.executors",
-    "rclpy.node",
-    "rclpy.parameter",
-    "rclpy.qos",
-    "rclpy.task",
     "autograder.notebook",
     "autograder.notebook.checking.check",
     "autograder.notebook.robot.starting",
@@ -51,20 +43,6 @@ _PRELOADED = (
 )
 _PREPARED = ("autograder.cards.bundle",)
 """The modules of these that have a function ``prepare`` to be called."""
-_INTERFACES = (
-    "action_msgs.msg",
-    "action_msgs.srv",
-    "geometry_msgs.msg",
-    "nav_msgs.msg",
-    "rcl_interfaces.msg",
-    "rcl_interfaces.srv",
-    "rosgraph_msgs.msg",
-    "sensor_msgs.msg",
-    "std_msgs.msg",
-    "std_srvs.srv",
-    "type_description_interfaces.msg",
-)
-_MIDDLEWARE = "librmw_fastrtps_cpp.so"
 
 
 def prepare(*interfaces: str) -> None:
@@ -76,24 +54,11 @@ def prepare(*interfaces: str) -> None:
     # JupyterLab's debugger is of no use where nobody sits before the notebook, and a seventh of what a kernel imports.
     # ipykernel does without where it is not installed (ipykernel/debugger.py).
     sys.modules.setdefault("debugpy", None)  # type: ignore[arg-type]
-    for name in (*_PRELOADED, *_rehearsed()):
+    preload((*RCLPY, *_PRELOADED, *_rehearsed()))
+    for name in _PREPARED:
         with contextlib.suppress(Exception):
-            module = importlib.import_module(name)
-            if name in _PREPARED:
-                module.prepare()
-    for name in (*_INTERFACES, *interfaces):
-        with contextlib.suppress(ImportError):
-            for kind in list(vars(importlib.import_module(name)).values()):
-                load = getattr(type(kind), "__import_type_support__", None)
-                if load is not None:
-                    load()
-    with contextlib.suppress(OSError):
-        # rclpy.init loads it, and finds it here already.
-        ctypes.CDLL(_MIDDLEWARE)
-    with contextlib.suppress(ImportError):
-        # A first log line looks for its caller among the files of all modules (rclpy/impl/rcutils_logger.py, and
-        # inspect.getmodule, which remembers them): 46 ms of processor time in each kernel, 8 where it was done here.
-        importlib.import_module("rclpy.impl.rcutils_logger").CallerId()
+            importlib.import_module(name).prepare()
+    preload_ros((*INTERFACES, *interfaces))
 
 
 def _rehearsed() -> list[str]:

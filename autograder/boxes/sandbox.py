@@ -21,10 +21,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from autograder.boxes.boxed_command import ANSWER_SECONDS, Finished, Running
+from autograder.boxes.boxed_command import ANSWER_SECONDS, Finished, Running, WarmCommand
 from autograder.boxes.channel import Channel, ChannelClosed, close_all
+from autograder.boxes.entering import Entrance
+from autograder.boxes.environment import base_environment, box_environment
 from autograder.boxes.fork_server import BESIDE
 from autograder.boxes.fork_server_client import SUPERVISOR_MODULE, ForkServer
+from autograder.boxes.forked import ForkedProcess
 from autograder.boxes.held_folder import HeldFolder
 from autograder.boxes.mounts import HOME, WORK, Bind, box_arguments
 from autograder.boxes.scratch import write_files
@@ -180,11 +183,7 @@ class Enclosure:
         rlimits: Mapping[str, int] | None = None,
     ) -> Running:
         """Start a command in a box of its own; leaving the result's context ends it. See :meth:`run`."""
-        from autograder.boxes.environment import box_environment
-
-        with self._turn:
-            self._commands += 1
-            name = f"command {self._commands}"
+        name = self._next_name()
         words = box_arguments(self._scratch, binds, scratch_visible=scratch)
         for variable, value in (box_environment() if environment is None else environment).items():
             words += ["--setenv", variable, value]
@@ -207,6 +206,44 @@ class Enclosure:
             close_all([nothing, writing])
         close_all(descriptors)
         return Running(self, name, message["pid"], reading, output_bytes)
+
+    def ros2(
+        self,
+        programs: str,
+        words: Sequence[str],
+        *,
+        binds: Sequence[Bind],
+        environment: Mapping[str, str],
+        cwd: Path = WORK,
+    ) -> WarmCommand:
+        """Start `ros2` with these words in a box of its own without the scratch, from the fork server of programs.
+
+        Args:
+            programs: Where that fork server listens.
+            words: Beginning with ``run``.
+            binds: See :meth:`run`.
+            environment: Its whole environment.
+            cwd: Where it starts.
+        """
+        name = self._next_name()
+        box = self.box(name, binds, scratch=False, guarded=True)
+        entrance = Entrance(
+            cwd=str(cwd),
+            environment={**environment, "PWD": str(cwd)},
+            boxed=True,
+            call={"words": list(words), "path": base_environment().get("PYTHONPATH", "")},
+            **self._guarded(),
+        )
+        reading, writing = os.pipe()
+        try:
+            process = ForkedProcess(programs, entrance, [box.pidfd, writing])
+        except BaseException:
+            os.close(reading)
+            self.end(name)
+            raise
+        finally:
+            os.close(writing)
+        return WarmCommand(self, box, process, reading)
 
     @property
     def lost(self) -> bool:
@@ -256,6 +293,11 @@ class Enclosure:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+    def _next_name(self) -> str:
+        with self._turn:
+            self._commands += 1
+            return f"command {self._commands}"
 
     def _guarded(self, rlimits: Mapping[str, int] | None = None) -> dict[str, Any]:
         if self._guard is None:

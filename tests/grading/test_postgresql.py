@@ -6,6 +6,7 @@ import getpass
 import os
 import pwd
 import shutil
+import stat
 import subprocess
 import sys
 import tempfile
@@ -51,6 +52,8 @@ def server() -> Iterator[str]:
     with tempfile.TemporaryDirectory(prefix="pg-") as name:
         folder, data = Path(name), Path(name) / "data"
         os.chown(folder, owner.pw_uid, owner.pw_gid)
+        # The suite's own folder for temporary files lets in nobody else (tests/nothing_left.py).
+        folder.parent.chmod(stat.S_IMODE(folder.parent.stat().st_mode) | 0o011)
 
         def run(program: str, *arguments: str) -> None:
             command: list[str | Path] = [programs / program, "-D", data, *arguments]

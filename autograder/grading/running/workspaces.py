@@ -101,7 +101,7 @@ def served(
     folder.mkdir()
     jobs: BoxedJobs | PlainJobs
     if isinstance(place, BoxedPlace):
-        jobs = BoxedJobs(addresses.supervisors, place.programs, folder)
+        jobs = BoxedJobs(addresses.supervisors, place.programs, folder, addresses.programs)
         ros = boxed_ros_environment()
         _furnish(place.shared, robot=arrangement.robot)
         sockets = ServiceSockets(arrangement.judges_socket, place.shared / _BUILDS)

@@ -5,10 +5,8 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import os
-import select
 import shlex
 import shutil
-import signal
 import tempfile
 import time
 from dataclasses import replace
@@ -22,12 +20,12 @@ from autograder.boxes.limits import Limits
 from autograder.boxes.mounts import HOME, WORK
 from autograder.boxes.sandbox import Bind, Enclosure
 from autograder.workspaces.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, Built
-from autograder.workspaces.running.processes import descendants
+from autograder.workspaces.running.plans import ros2
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from autograder.boxes.boxed_command import Running
+    from autograder.boxes.boxed_command import Running, WarmCommand
     from autograder.workspaces.building.cache import Entry
     from autograder.workspaces.jobs import BuildOrder, ProgramJob
 
@@ -57,12 +55,14 @@ class BoxedJobs:
         supervisors: Where the fork server of supervisors listens.
         network: Where programs run; what is asked of it here comes from another thread.
         folder: Ours alone, for what is made on the way.
+        programs: Where the fork server of programs listens; without one, each program starts by itself.
     """
 
-    def __init__(self, supervisors: str, network: Enclosure, folder: Path) -> None:
+    def __init__(self, supervisors: str, network: Enclosure, folder: Path, programs: str = "") -> None:
         self._supervisors = supervisors
         self._network = network
         self._folder = folder
+        self._programs = programs
 
     @property
     def environment(self) -> Mapping[str, str]:
@@ -135,9 +135,14 @@ class BoxedJobs:
             shutil.rmtree(folder, ignore_errors=True)
 
     def start(self, job: ProgramJob) -> BoxedProgram:
-        """Start it in a box of that network."""
+        """Start it in a box of that network; a `ros2 run` from the fork server of programs."""
         binds = [Bind(job.sources, WORK)]
         binds += [Bind(entry / "install", HOME / name / "install") for name, entry in job.entries.items()]
+        command, *words = job.command
+        if self._programs and command == ros2() and words[:1] == ["run"] and not job.hidden:
+            return BoxedProgram(
+                self._network.ros2(self._programs, words, binds=binds, environment=job.environment)
+            )
         running = self._network.start(
             job.command,
             binds=[*binds, *_covers(job.hidden, self._folder)],
@@ -151,7 +156,7 @@ class BoxedJobs:
 class BoxedProgram:
     """Implements :class:`autograder.workspaces.jobs.Program`."""
 
-    def __init__(self, running: Running) -> None:
+    def __init__(self, running: Running | WarmCommand) -> None:
         self._running = running
         self._ended = False
         self._code: int | None = None
@@ -165,25 +170,20 @@ class BoxedProgram:
             self._ended = True
         if self._ended:
             return b""
-        if not select.select([self._running], [], [], within)[0]:
-            return None
-        data = os.read(self._running.fileno(), 1 << 16)
-        if not data:
+        data = self._running.next_output(within)
+        if data == b"":
             self._ended = True
-            self._code = self._running.wait(_ITS_TIME).returncode
+            self._code = self._running.exit_code()
         return data
 
     def exit_code(self) -> int | None:
-        """Of the first process of the box."""
+        """Of the first program of the box."""
         return self._code
 
     def interrupt(self) -> None:
-        """Ctrl-C at everything below the first process of the box, which only waits for the others."""
-        for pid in (
-            [] if self._ended else descendants(self.pid)
-        ):  # its number may be another program's by then
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(pid, signal.SIGINT)
+        """Ctrl-C, while it runs: its number may be another program's afterwards."""
+        if not self._ended:
+            self._running.interrupt()
 
     def end(self) -> None:
         """Kill the box."""

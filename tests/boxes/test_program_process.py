@@ -1,0 +1,177 @@
+"""Students' programs from the fork server: nobody can tell them from those that `ros2 run` starts."""
+
+from __future__ import annotations
+
+import re
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.boxes.environment import box_environment
+from autograder.boxes.mounts import HOME, Bind
+from autograder.boxes.sandbox import Enclosure
+from autograder.judge.settings import boxed_ros_environment
+from autograder.workspaces.running.plans import ros2
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from autograder.boxes.boxed_command import Running, WarmCommand
+    from autograder.boxes.fork_server_client import Addresses
+
+PACKAGE = "some_pkg"
+READY = "ready"
+"""A program that says this gets a Ctrl-C."""
+
+PROGRAMS = {
+    "says_hello": "print('hello')",
+    "has_arguments": "import sys; print(sys.argv, sys.stdin.read(), __name__, __file__, sys.path[0])",
+    "exits_with_three": "import sys; print('x'); sys.exit(3)",
+    "exits_with_words": "import sys; sys.exit('bad')",
+    "raises": "def f():\n    raise ValueError('no')\nf()",
+    "raises_from": "try:\n    1 / 0\nexcept ZeroDivisionError as e:\n    raise ValueError('no') from e",
+    "has_no_syntax": "def f(:\n",
+    "needs_no_future": "def f(x: Nowhere): pass\nprint('never')",
+    "aborts": "import os; os.abort()",
+    "is_killed": "import os, signal; os.kill(os.getpid(), signal.SIGKILL)",
+    "reads_address_zero": "import ctypes; ctypes.string_at(0)",
+    "has_a_thread": "import threading, time\n"
+    "threading.Thread(target=lambda: (time.sleep(0.1), print('late'))).start()",
+    "has_an_exit_handler": "import atexit; atexit.register(print, 'bye')",
+    "has_a_destructor": "class A:\n    def __del__(self):\n        print('gone')\na = A()",
+    "has_an_exception_hook": "import sys\nsys.excepthook = lambda *a: print('mine', a[0])\n1 / 0",
+    "has_a_node": "import rclpy\nrclpy.init()\nnode = rclpy.create_node('x')\nnode.get_logger().info('hi')\n"
+    "print(sorted(node.get_topic_names_and_types()))\nrclpy.shutdown()",
+    "leaves_its_node": "import rclpy\nrclpy.init()\nnode = rclpy.create_node('x')\nprint('end')",
+    "spins": "import rclpy\nrclpy.init()\nnode = rclpy.create_node('x')\n"
+    f"timer = node.create_timer(0.1, lambda: (print('{READY}'), timer.cancel()))\nrclpy.spin(node)",
+    "sleeps": f"import time\nprint('{READY}')\ntime.sleep(60)",
+    "catches_ctrl_c": f"import time\ntry:\n    print('{READY}')\n    time.sleep(60)\n"
+    "except KeyboardInterrupt:\n    print('ok')",
+    "starts_python": "import subprocess, sys\n"
+    "print(subprocess.run([sys.executable, '-c', 'import sys; print(sys.path)'], capture_output=True).stdout)",
+    "leaves_a_process": "import subprocess; subprocess.Popen(['sleep', '60']); print('left')",
+    "has_streams": "import sys\nfor s in (sys.stdout, sys.stderr):\n"
+    "    print(s.encoding, s.errors, s.line_buffering, s.write_through)\nsys.stdout.buffer.write(b'raw')",
+    "has_an_environment": "import os; print(sorted(os.environ.items()))",
+    "is_main": "import __main__, pickle\nclass C: pass\nprint(__main__.C is C, pickle.loads(pickle.dumps(C)) is C)",
+    "has_a_module_of_its_own": "import random; print(random.MINE)",
+    "closes_its_descriptors": "import os; os.closerange(0, 1000); os._exit(4)",
+}
+"""The programs by name; what they show is that name."""
+UNEQUAL = re.compile(
+    r"\[\d+\.\d+\]"  # the time of a log line
+    r"|0x[0-9a-f]+"
+    r"|(?m:^Extension modules: .*\n)"
+    # A crash shows the calls that a fork began with, after the program's own.
+    r'|  File "(?:[^"]*/(?:autograder/boxes|environment/ros2_command)/[^"]*|<frozen runpy>)", .*\n'
+)
+
+
+def comparable(text: str) -> list[str]:
+    """The lines that must be equal; the line at which Ctrl-C met a program is chance."""
+    lines = [line for line in UNEQUAL.sub("", text).splitlines() if line]
+    return [line for line in lines if not line.startswith(" ")] if READY in text else lines
+
+
+@dataclass(frozen=True)
+class Run:
+    output: str
+    code: int | None
+
+
+@pytest.fixture
+def enclosure(boxed: Addresses, tmp_path: Path) -> Iterator[Enclosure]:
+    with Enclosure(boxed.supervisors, tmp_path / "enclosure") as made:
+        yield made
+
+
+@pytest.fixture
+def start(enclosure: Enclosure, tmp_path: Path, boxed: Addresses) -> Callable[..., Running | WarmCommand]:
+    """Starts a program of the package, from the fork server unless it is to be cold."""
+    install = tmp_path / "install"
+    folder = install / "lib" / PACKAGE
+    folder.mkdir(parents=True)
+    marker = install / "share/ament_index/resource_index/packages" / PACKAGE
+    marker.parent.mkdir(parents=True)
+    marker.touch()
+    place = HOME / "install"
+    of_the_class = {"LANG": "C.UTF-8", "PYTHONUNBUFFERED": "1", "PYTHONFAULTHANDLER": "1"}
+    environment = box_environment(
+        {**boxed_ros_environment(), **of_the_class, "AMENT_PREFIX_PATH": str(place)}
+    )
+
+    def start(name: str, text: str, *, cold: bool = False) -> Running | WarmCommand:
+        program = folder / name
+        program.write_text(f"#!{sys.executable}\n{text}\n")
+        program.chmod(0o755)
+        words, binds = ["run", PACKAGE, name, "one", "--two"], [Bind(install, place)]
+        if cold:
+            return enclosure.start(
+                [ros2(), *words], binds=binds, environment=environment, cwd=HOME, scratch=False
+            )
+        return enclosure.ros2(boxed.programs, words, binds=binds, environment=environment, cwd=HOME)
+
+    return start
+
+
+def end_of(running: Running | WarmCommand) -> Run:
+    output, asked = b"", False
+    while (data := running.next_output(30.0)) != b"":
+        assert data is not None, f"it says no more than {output!r} and does not end"
+        output += data
+        if f"{READY}\n".encode() in output and not asked:
+            running.interrupt()
+            asked = True
+    code = running.exit_code()
+    running.end()
+    return Run(output.decode(), code)
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_it_is_as_ros2_run_starts_it(
+    start: Callable[..., Running | WarmCommand], tmp_path: Path, name: str
+) -> None:
+    if name == "has_a_module_of_its_own":
+        (tmp_path / "install" / "lib" / PACKAGE / "random.py").write_text("MINE = 1\n")
+    cold = end_of(start(name, PROGRAMS[name], cold=True))
+    warm = end_of(start(name, PROGRAMS[name]))
+    assert comparable(warm.output) == comparable(cold.output)
+    assert warm.code == cold.code
+
+
+def test_it_finds_rclpy_imported(start: Callable[..., Running | WarmCommand]) -> None:
+    assert end_of(start("a", "import sys; print('rclpy' in sys.modules)")) == Run("True\n", 0)
+
+
+@pytest.mark.parametrize(
+    "attack",
+    [
+        "import os, signal; os.kill(os.getppid(), signal.SIGKILL)",
+        "import os, signal; os.kill(-1, signal.SIGKILL)",
+        "import os\nif not os.fork():\n    os.setsid()\n    os.closerange(0, 3)\n    while True: pass",
+        "import rclpy, sys\nrclpy.init = print\nsys.modules['json'] = None\n",
+        "import socket\nfor n in range(3, 50):\n    try:\n        socket.socket(fileno=n).shutdown(2)\n"
+        "    except OSError:\n        pass",
+    ],
+    ids=["kills_its_parent", "kills_all", "stays", "replaces_modules", "shuts_every_socket"],
+)
+def test_it_does_nothing_to_the_next_one(start: Callable[..., Running | WarmCommand], attack: str) -> None:
+    running = start("attack", attack)
+    end_of(running)
+    assert not list(_members(running.pid)), "nothing of its box is alive"
+    following = start("next", "import json, rclpy; rclpy.init(); print('well'); rclpy.shutdown()")
+    assert end_of(following) == Run("well\n", 0)
+
+
+def _members(first: int) -> Iterator[int]:
+    """The processes of the box that began with a process, as far as they live."""
+    from pathlib import Path
+
+    try:
+        yield from (int(p.name) for p in Path(f"/proc/{first}/root/proc").iterdir() if p.name.isdecimal())
+    except OSError:
+        return
