@@ -191,12 +191,13 @@ def test_a_new_exercise_works_and_shows_what_its_author_got_wrong(root: Path) ->
 def test_a_judge_that_dies_of_the_exercise_is_a_surprise(root: Path) -> None:
     new_exercise(root, ID, "publisher")
     file = root / "solutions/01_first/lab_9_1/battery_of_mine.py"
-    broken = file.read_text().replace("start, second = expected.counters[:2]", 'raise RuntimeError("mine")')
+    # In a known mistake: the criteria are asked of the solution, too.
+    broken = file.read_text().replace("len(seen.counters) > 2 and seen", "1 / 0 and seen")
     assert broken != file.read_text()
     file.write_text(broken)
     tried = autograder(root, "try-exercise", ID, "--only", "counter_step")
     assert tried.returncode == 1, tried.stdout + tried.stderr
-    assert "RuntimeError: mine" in tried.stderr
+    assert "ZeroDivisionError" in tried.stderr
     assert "wrong/counter_step.py: no verdict: the judge's process ended" in tried.stdout
     assert "1 answer, 1 not as expected" in tried.stdout
 
