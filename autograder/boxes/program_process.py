@@ -195,6 +195,7 @@ def _exit_code(script: str, interrupted: int) -> int:
     main.__dict__.update(
         __file__=script,
         __builtins__=builtins,
+        __annotations__={},
         __cached__=None,
         __loader__=SourceFileLoader("__main__", script),
     )
