@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Self
 import psutil
 
 if TYPE_CHECKING:
-    from autograder.boxes.forked import ForkedProcess
-    from autograder.boxes.sandbox import Box, Enclosure
+    from autograder.boxes.forked import PlacedProcess
+    from autograder.boxes.sandbox import Enclosure
 
 ANSWER_SECONDS = 30.0
 """Seconds of wall time in which the supervisor of the boxes answers."""
@@ -132,23 +132,20 @@ class WarmCommand:
     """A command that a fork server has forked into a box of its own.
 
     Args:
-        enclosure: Has the box.
-        box: The box, with nothing in it but the command.
-        process: The command.
+        process: The command; its box ends with it.
         output: What it says, readable.
+        pid: The first process of the box, as the host counts.
     """
 
-    def __init__(self, enclosure: Enclosure, box: Box, process: ForkedProcess, output: int) -> None:
-        self._enclosure, self._name, self._process, self._output = enclosure, box.name, process, output
-        self.pid = box.pid
-        """The first process of the box, as the host counts."""
+    def __init__(self, process: PlacedProcess, output: int, pid: int) -> None:
+        self._process, self._output, self.pid = process, output, pid
 
     def next_output(self, within: float) -> bytes | None:
         """See :meth:`Running.next_output`. What the command has started and left ends with it."""
         process = self._process.fileno()
         ready = select.select([self._output, process], [], [], within)[0]
         if ready == [process]:
-            self._enclosure.end(self._name)  # what is left of it may hold its output
+            self._process.end_box()  # what is left of it may hold its output
         return os.read(self._output, 1 << 16) if ready else None
 
     def exit_code(self) -> int | None:
@@ -167,8 +164,7 @@ class WarmCommand:
     def end(self) -> None:
         """Kill it and all that it has started; may be called twice."""
         if self._output >= 0:
-            self._enclosure.end(self._name)
-            self._process.close()
+            self._process.end()
             os.close(self._output)
             self._output = -1
 

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from autograder.boxes.entering import Entrance
+    from autograder.boxes.sandbox import Enclosure
 
 _START_SECONDS = 60.0
 
@@ -102,3 +103,54 @@ class ForkedProcess:
             self._status = int(self._channel.receive()[0]["status"])
         except ChannelClosed:
             self._lost = True
+
+
+class PlacedProcess:
+    """A process in its place; ends with all that it has started.
+
+    Args:
+        process: The process.
+        enclosure: Has the box that it is in; None where it is in none.
+        box: The name of that box.
+    """
+
+    def __init__(self, process: ForkedProcess, enclosure: Enclosure | None = None, box: str = "") -> None:
+        self._process, self._enclosure, self._box = process, enclosure, box
+
+    def fileno(self) -> int:
+        """Readable when the process has ended."""
+        return self._process.fileno()
+
+    @property
+    def alive(self) -> bool:
+        """True if it still runs."""
+        return self._process.alive
+
+    @property
+    def lost(self) -> bool:
+        """True if nobody can tell any more what became of it, as its box went away under it."""
+        return self._process.lost or (self._enclosure is not None and self._enclosure.lost)
+
+    def interrupt(self) -> None:
+        """SIGINT to its process group."""
+        self._process.interrupt()
+
+    def wait(self, within: float) -> bool:
+        """Wait so many seconds for its end; whether it came."""
+        return self._process.wait(within)
+
+    @property
+    def status(self) -> int | None:
+        """Its wait status (wait(2)); None while it runs, and where nobody can tell any more."""
+        return self._process.status
+
+    def end_box(self) -> None:
+        """Kill all that is in its box, and keep its status."""
+        if self._enclosure is not None:
+            with contextlib.suppress(OSError):
+                self._enclosure.end(self._box)
+
+    def end(self) -> None:
+        """Kill it and all that it has started; may be called twice."""
+        self.end_box()
+        self._process.close()

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Self
 
 from autograder.boxes.entering import Entrance
 from autograder.boxes.environment import box_environment, kernel_environment
-from autograder.boxes.forked import ForkedProcess
+from autograder.boxes.forked import ForkedProcess, PlacedProcess
 from autograder.boxes.guards import BoxGuard, NoGuard
 from autograder.boxes.mounts import HOME, WORK, Bind
 from autograder.boxes.sandbox import Enclosure
@@ -118,19 +118,14 @@ class BoxedPlace:
         """Let a fork of the fork server enter the student's box."""
         box = self.enclosure.box(_STUDENT, [Bind(self._shared, SHARED_FOLDER)], guarded=True)
         self.guard.watch(box.pid)
-        entrance = Entrance(
-            cwd=str(WORK),
+        return self.enclosure.enter(
+            box,
+            self._addresses.kernels,
+            [channels.shell, channels.iopub, channels.log],
+            cwd=WORK,
             environment=box_environment(self._variables),
-            boxed=True,
-            cgroups=self.guard.cgroups,
-            rlimits=self.guard.rlimits,
-            hidden_memory=self.guard.hidden_memory,
             call={"key": channels.key, "address": channels.address},
         )
-        process = ForkedProcess(
-            self._addresses.kernels, entrance, [box.pidfd, channels.shell, channels.iopub, channels.log]
-        )
-        return PlacedProcess(process, self.enclosure, _STUDENT)
 
     def start_judge(self, listener: int, orders: int, *, of_programs: bool = False) -> PlacedProcess:
         """Let a fork of the judges' fork server enter a box of its own.
@@ -143,15 +138,12 @@ class BoxedPlace:
         enclosure = self.programs if of_programs else self.enclosure
         name = f"{_JUDGE} {next(self._judges)}"
         box = enclosure.box(name, [Bind(path) for path in self._judge.readable], scratch=False)
-        entrance = Entrance(
-            cwd=str(HOME),
+        return enclosure.enter(
+            box,
+            self._addresses.judges,
+            [listener, orders],
+            cwd=HOME,
             environment=box_environment(self._judge.environment),
-            boxed=True,
-        )
-        return PlacedProcess(
-            ForkedProcess(self._addresses.judges, entrance, [box.pidfd, listener, orders]),
-            enclosure,
-            name,
         )
 
     def __enter__(self) -> Self:
@@ -216,45 +208,3 @@ class UnboxedPlace:
 
     def __exit__(self, *_: object) -> None:
         pass
-
-
-class PlacedProcess:
-    """A process in its place; ends with all that it has started.
-
-    Args:
-        process: The process.
-        enclosure: Has the box that it is in; None where it is in none.
-        box: The name of that box.
-    """
-
-    def __init__(self, process: ForkedProcess, enclosure: Enclosure | None = None, box: str = "") -> None:
-        self._process, self._enclosure, self._box = process, enclosure, box
-
-    def fileno(self) -> int:
-        """Readable when the process has ended."""
-        return self._process.fileno()
-
-    @property
-    def alive(self) -> bool:
-        """True if it still runs."""
-        return self._process.alive
-
-    @property
-    def lost(self) -> bool:
-        """True if nobody can tell any more what became of it, as its box went away under it."""
-        return self._process.lost or (self._enclosure is not None and self._enclosure.lost)
-
-    def interrupt(self) -> None:
-        """SIGINT to its process group."""
-        self._process.interrupt()
-
-    def wait(self, within: float) -> bool:
-        """Wait so many seconds for its end; whether it came."""
-        return self._process.wait(within)
-
-    def end(self) -> None:
-        """Kill it and all that it has started; may be called twice."""
-        if self._enclosure is not None:
-            with contextlib.suppress(OSError):
-                self._enclosure.end(self._box)
-        self._process.close()

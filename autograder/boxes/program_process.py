@@ -125,10 +125,13 @@ class _Fork:
         # code runs any more (Py_RunMain in Modules/main.c). So the fork tells it here, and its exit code is made here.
         self._interrupted, tell = os.pipe()
         self._code: int | None = None
+        # Ctrl-C waits until the fork has Python's own handler for it.
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         self._pid = os.fork()
         if self._pid == 0:
             os.close(self._interrupted)
             _be(command, standard_path, tell)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
         os.close(tell)
 
     def send_signal(self, number: int) -> None:
@@ -201,6 +204,7 @@ def _exit_code(script: str, interrupted: int) -> int:
     )
     sys.modules["__main__"] = main
     try:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
         exec(compile(Path(script).read_bytes(), script, "exec", dont_inherit=True), main.__dict__)
     except SystemExit as end:
         if end.code is None or isinstance(end.code, int):

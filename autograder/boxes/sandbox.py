@@ -27,7 +27,7 @@ from autograder.boxes.entering import Entrance
 from autograder.boxes.environment import base_environment, box_environment
 from autograder.boxes.fork_server import BESIDE
 from autograder.boxes.fork_server_client import SUPERVISOR_MODULE, ForkServer
-from autograder.boxes.forked import ForkedProcess
+from autograder.boxes.forked import ForkedProcess, PlacedProcess
 from autograder.boxes.held_folder import HeldFolder
 from autograder.boxes.mounts import HOME, WORK, Bind, box_arguments
 from autograder.boxes.scratch import write_files
@@ -56,11 +56,13 @@ class Box:
         name: Its name in its enclosure.
         pid: Its first process, as the host counts.
         pidfd: Stands for that process: hand it to a fork server to enter the box. Belongs to the enclosure.
+        guarded: What enters it has the limits of the guard.
     """
 
     name: str
     pid: int
     pidfd: int
+    guarded: bool
 
 
 class Enclosure:
@@ -119,7 +121,8 @@ class Enclosure:
             name: Not yet used in this enclosure.
             binds: What it is to see beside the system, Python and the course's package.
             scratch: Give it the enclosure's scratch; else it has a small one of its own.
-            guarded: Its first processes have the limits of the guard, too: who is in a box can make them do anything.
+            guarded: What enters it has the limits of the guard, and so have its first processes: who is in a box can
+                make them do anything.
 
         Raises:
             NoSandbox: It could not be made.
@@ -132,9 +135,41 @@ class Enclosure:
             command=[],
             **(self._guarded() if guarded else {}),
         )
-        box = Box(name, message["pid"], descriptors[0])
+        box = Box(name, message["pid"], descriptors[0], guarded)
         self._boxes[name] = box
         return box
+
+    def enter(
+        self,
+        box: Box,
+        server: str,
+        descriptors: Sequence[int],
+        *,
+        cwd: Path,
+        environment: Mapping[str, str],
+        call: Mapping[str, Any] | None = None,
+    ) -> PlacedProcess:
+        """Let a fork of a fork server enter a box.
+
+        Args:
+            box: One of this enclosure.
+            server: Where that fork server listens.
+            descriptors: What the process is given; they stay open here.
+            cwd: Its folder.
+            environment: Its whole environment.
+            call: What it is told.
+
+        Raises:
+            ChannelClosed: The fork server is gone, or the fork could not enter the box.
+        """
+        entrance = Entrance(
+            cwd=str(cwd),
+            environment=environment,
+            boxed=True,
+            call=call or {},
+            **(self._guarded() if box.guarded else {}),
+        )
+        return PlacedProcess(ForkedProcess(server, entrance, [box.pidfd, *descriptors]), self, box.name)
 
     def run(
         self,
@@ -225,25 +260,24 @@ class Enclosure:
             environment: Its whole environment.
             cwd: Where it starts.
         """
-        name = self._next_name()
-        box = self.box(name, binds, scratch=False, guarded=True)
-        entrance = Entrance(
-            cwd=str(cwd),
-            environment={**environment, "PWD": str(cwd)},
-            boxed=True,
-            call={"words": list(words), "path": base_environment().get("PYTHONPATH", "")},
-            **self._guarded(),
-        )
+        box = self.box(self._next_name(), binds, scratch=False, guarded=True)
         reading, writing = os.pipe()
         try:
-            process = ForkedProcess(programs, entrance, [box.pidfd, writing])
+            process = self.enter(
+                box,
+                programs,
+                [writing],
+                cwd=cwd,
+                environment={**environment, "PWD": str(cwd)},
+                call={"words": list(words), "path": base_environment().get("PYTHONPATH", "")},
+            )
         except BaseException:
             os.close(reading)
-            self.end(name)
+            self.end(box.name)
             raise
         finally:
             os.close(writing)
-        return WarmCommand(self, box, process, reading)
+        return WarmCommand(process, reading, box.pid)
 
     @property
     def lost(self) -> bool:

@@ -60,6 +60,8 @@ def find_executable(package: str, executable: str) -> Path:
 
 def _run(args: argparse.Namespace) -> Outcome:
     program = find_executable(args.package_name, args.executable_name)
+    # The terminal sends Ctrl-C to the program as well, at any moment after its start: let it end in its own way.
+    signal.signal(signal.SIGINT, lambda *_: None)
     process = start([*shlex.split(args.prefix or ""), str(program), *args.argv])
 
     def pass_on(number: int, _frame: FrameType | None) -> None:
@@ -67,13 +69,7 @@ def _run(args: argparse.Namespace) -> Outcome:
 
     # SIGTERM reaches this process alone; without this the program would go on without it.
     signal.signal(signal.SIGTERM, pass_on)
-    while True:
-        try:
-            code = process.wait()
-            break
-        except KeyboardInterrupt:
-            # The terminal has sent Ctrl-C to the program as well: let it end in its own way.
-            continue
+    code = process.wait()
     if code < 0 and -code in signal.valid_signals():
         print(f"[ros2run]: {signal.strsignal(-code)}")
     elif code:

@@ -44,8 +44,6 @@ PROGRAM_LIMITS = Limits(cpu_seconds=200.0, memory_bytes=1_500_000_000, processes
 itself."""
 LOOK_EVERY = 0.5
 """Seconds between two questions whether a build is still wanted."""
-_ITS_TIME = 1e6
-"""Seconds, more than any check lasts: a program runs as long as the judge wants it to."""
 
 
 class BoxedJobs:
@@ -199,7 +197,7 @@ def _wait(running: Running, over: Callable[[], bool]) -> tuple[int | None, bool]
             return None, False
         if time.monotonic() > deadline:
             return None, True
-    return running.wait(_ITS_TIME).returncode, False
+    return running.exit_code(), False
 
 
 def _covers(hidden: Sequence[Path], folder: Path) -> list[Bind]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import signal
+import subprocess
+import sys
 from typing import TYPE_CHECKING
 
 import pytest
 
 if TYPE_CHECKING:
-    import subprocess
     from collections.abc import Callable
     from pathlib import Path
 
@@ -60,6 +61,27 @@ def test_sigterm_ends_the_program_too(start: Callable[..., Running]) -> None:
     running.end()
     # The output has come to its end: the program, which held the pipe too, is gone.
     assert not running._reader.is_alive()
+
+
+CTRL_C_AT_THE_START = """
+import os, signal, subprocess, sys
+from environment.ros2_command import main, run
+
+def start(command):
+    process = subprocess.Popen(command)
+    os.kill(os.getpid(), signal.SIGINT)
+    return process
+
+run.start = start
+sys.argv = ["ros2", "run", "demo_pkg", "says", "0"]
+sys.exit(main.main())
+"""
+
+
+def test_ctrl_c_is_left_to_the_program_from_its_start_on(env: dict[str, str]) -> None:
+    command = [sys.executable, "-c", CTRL_C_AT_THE_START]
+    done = subprocess.run(command, env=env, capture_output=True, text=True)
+    assert (done.stdout, done.stderr, done.returncode) == ("0\n", "on stderr\n", 0)
 
 
 def test_packages_and_their_programs(ros2: Ros2, prefix: Path) -> None:

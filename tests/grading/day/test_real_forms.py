@@ -152,14 +152,21 @@ def test_a_list_says_who_a_number_is_and_when(name: str, text: str, number: str,
     assert f"{entry.when:%Y-%m-%d %H:%M}" == "2020-09-23 21:00"
 
 
+def gradescope_export(root: str, one: str, two: str) -> dict[str, str]:
+    """The list, Ada's work and Ben's."""
+    return {
+        f"{root}submission_metadata.yml": METADATA,
+        f"{root}submission_409194023/lab_1_2.ipynb": one,
+        f"{root}submission_500000001/lab_1_2.ipynb": two,
+    }
+
+
 def test_gradescopes_export_is_collected_with_its_times_and_groups(tiny: TinyClass, tmp_path: Path) -> None:
     (tiny.path / "students.csv").write_text(ROSTER)
     root = "assignment_8046601_export"
     one, two = work(tiny, 1), work(tiny, 2)
     files = {
-        f"{root}/submission_metadata.yml": METADATA,
-        f"{root}/submission_409194023/lab_1_2.ipynb": one,
-        f"{root}/submission_500000001/lab_1_2.ipynb": two,
+        **gradescope_export(f"{root}/", one, two),
         f"{root}/submission_600000002/lab_1_2.ipynb": two,
         f"{root}/submission_409194023/submission_metadata.yml": "the student's own",
     }
@@ -190,9 +197,7 @@ def test_no_student_hands_in_the_list_that_says_whose_work_is_whose(
     (tiny.path / "students.csv").write_text(ROSTER)
     one, two = work(tiny, 1), work(tiny, 2)
     files = {
-        f"{root}submission_metadata.yml": METADATA,
-        f"{root}submission_409194023/lab_1_2.ipynb": one,
-        f"{root}submission_500000001/lab_1_2.ipynb": two,
+        **gradescope_export(root, one, two),
         f"{root}submission_500000001/submission_metadata.yml": STEALS,
     }
     collect(tiny.path, [write_zip(tmp_path / "export.zip", files)], zone=UTC)
