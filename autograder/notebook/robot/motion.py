@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from autograder.notebook.robot.room import Room
 
+TICK = 0.1
+"""Seconds between two steps, and between two messages on ``/odom``."""
 RADIUS = 0.2
 """Metres."""
 FASTEST = 1.0

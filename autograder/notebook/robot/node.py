@@ -12,15 +12,15 @@ from rclpy.node import Node
 from sensor_msgs.msg import LaserScan
 from std_srvs.srv import SetBool, Trigger
 
-from autograder.notebook.robot.motion import START, STILL, Pose, Velocity, move
+from autograder.notebook.robot.motion import START, STILL, TICK, Pose, Velocity, move
 from autograder.notebook.robot.room import ROOM
 from autograder.notebook.robot.walking import Walking
 
 if TYPE_CHECKING:
     from rclpy.time import Time
 
-TICK = 0.1
-"""Seconds between two steps, and between two messages on ``/odom``."""
+    from autograder.notebook.robot.scenes import Scene
+
 SCAN_EVERY = 5
 """Steps between two messages on ``/scan``."""
 OBEYS_FOR = 1.0
@@ -41,6 +41,7 @@ class RobotState:
         bumped: Whether a wall is in its way.
         lamp: Whether its lamp is on.
         ranges: Metres to the walls all around, from straight ahead to the left.
+        says: What is in its bubble; empty for no bubble.
     """
 
     pose: Pose = START
@@ -48,6 +49,7 @@ class RobotState:
     bumped: bool = False
     lamp: bool = False
     ranges: tuple[float, ...] = ()
+    says: str = ""
 
 
 class RobotNode(Node):
@@ -67,12 +69,22 @@ class RobotNode(Node):
         self.create_service(Trigger, "/reset", self._reset)
         self.create_service(SetBool, "/lamp", self._switch_lamp)
         self._walking = Walking(self)
+        self._scene: Scene | None = None
         self.create_timer(TICK, self._tick)
 
     @property
     def state(self) -> RobotState:
         """The visible state now; safe from any thread."""
         return self._state
+
+    def play(self, scene: Scene) -> None:
+        """Let a scene drive the robot, as long as nobody else does; it takes the place of the one before."""
+        self._scene = scene
+
+    @property
+    def rests(self) -> bool:
+        """True if no scene is going on and the robot stands still."""
+        return (self._scene is None or self._scene.is_over) and self._state.velocity == STILL
 
     def _obey(self, command: Twist) -> None:
         self._told, self._told_at = Velocity(command.linear.x, command.angular.z), self._seconds()
@@ -81,10 +93,12 @@ class RobotNode(Node):
     def _tick(self) -> None:
         before = self._state
         fresh = self._seconds() - self._told_at < OBEYS_FOR
-        velocity = self._walking.next(before.pose, before.bumped) or (self._told if fresh else STILL)
+        scene = self._scene.next(before.pose, before.bumped) if self._scene is not None else None
+        velocity = self._walking.next(before.pose, before.bumped) or (self._told if fresh else scene or STILL)
         moved = move(before.pose, velocity, TICK, ROOM)
         ranges = before.ranges if moved.pose == before.pose else _look_around(moved.pose)
-        self._state = RobotState(moved.pose, moved.velocity, moved.bumped, before.lamp, ranges)
+        says = self._scene.says if self._scene is not None else ""
+        self._state = RobotState(moved.pose, moved.velocity, moved.bumped, before.lamp, ranges, says)
         self._tell(self._state)
 
     def _tell(self, state: RobotState) -> None:

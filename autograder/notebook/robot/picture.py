@@ -20,6 +20,8 @@ _SCALE = 75
 """Pixels per metre."""
 _MARGIN = 14
 _FOOT = 26
+_LETTER, _PADDING, _BUBBLE = 7.85, 10, 24
+"""Pixels: width of a letter, space beside the text, height of the bubble."""
 
 _STYLE = """
 .ground { fill: #fff; }
@@ -35,6 +37,7 @@ _STYLE = """
 .nose { fill: #fff; }
 text { font: 13px/1 monospace; fill: #212121; }
 text.name { fill: #2e7d32; font-size: 12px; }
+.bubble { fill: #fff; stroke: #0b5cad; stroke-width: 1.5; }
 """
 
 
@@ -63,9 +66,10 @@ class RobotPicture:
             doing = f"It moves at {velocity.forward:.2f} m/s and turns at {velocity.turn:.2f} rad/s."
         wall = " A wall is in its way." if self.state.bumped else ""
         lamp = " Its lamp is on." if self.state.lamp else ""
+        says = f' It says "{self.state.says}".' if self.state.says else ""
         return (
             f"The robot is in {room}, at x = {pose.x:.2f} m, y = {pose.y:.2f} m, "
-            f"heading {math.degrees(pose.heading):.0f}°. {doing}{wall}{lamp}"
+            f"heading {math.degrees(pose.heading):.0f}°. {doing}{wall}{lamp}{says}"
         )
 
     def _repr_html_(self) -> str:
@@ -86,7 +90,7 @@ class RobotPicture:
             f'viewBox="0 0 {width} {height}"><title>{escape(repr(self))}</title>'
             f"<style>{_STYLE}{self._gliding()}</style>"
             f'<rect class="ground" width="100%" height="100%" rx="6"/>'
-            f"{self._rooms()}{self._sight()}{self._way()}{self._robot()}"
+            f"{self._rooms()}{self._sight()}{self._way()}{self._robot()}{self._bubble()}"
             f'<text x="{_MARGIN}" y="{height - 10}">{escape(self._dials())}</text></svg>'
         )
 
@@ -123,6 +127,19 @@ class RobotPicture:
         return (
             f'<g class="robot" transform="{_placed(self.state.pose, "")}">{glow}'
             f'<circle class="{body}" r="{radius}"/><path class="nose" d="{nose}"/></g>'
+        )
+
+    def _bubble(self) -> str:
+        """What it says, above it and inside of the picture."""
+        if not self.state.says:
+            return ""
+        x, y = _at(self.state.pose.point)
+        width = round(len(self.state.says) * _LETTER + 2 * _PADDING, 1)
+        left = min(max(x - width / 2, _MARGIN), _page()[0] - _MARGIN - width)
+        top = max(y - RADIUS * _SCALE - _BUBBLE - 8, _MARGIN)
+        return (
+            f'<rect class="bubble" x="{left:.1f}" y="{top:.1f}" width="{width}" height="{_BUBBLE}" rx="8"/>'
+            f'<text x="{left + _PADDING:.1f}" y="{top + 17:.1f}">{escape(self.state.says)}</text>'
         )
 
     def _gliding(self) -> str:

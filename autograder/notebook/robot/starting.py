@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections import deque
 from typing import TYPE_CHECKING
 
@@ -13,8 +14,11 @@ from autograder.notebook.nodes.executors import spin_in_background, start_ros
 from autograder.notebook.observing.live_picture import LivePicture
 from autograder.notebook.robot.node import RobotNode
 from autograder.notebook.robot.picture import RobotPicture
+from autograder.notebook.robot.scenes import Spiral, Tour
 
 if TYPE_CHECKING:
+    from typing import Any
+
     from rclpy.node import Node
 
     from autograder.notebook.robot.node import RobotState
@@ -34,6 +38,9 @@ _BUTTON = (
     'data-commandlinker-args="{}">Drive with the arrow keys</button>'
 )
 """Shown where JupyterLab has the command."""
+LONGEST_WAIT = 20.0
+"""Seconds for which a cell waits for the end of a scene."""
+_LOOK_EVERY = 0.05
 _TELEPORT = 0.5
 """Metres that it cannot roll from one picture to the next: it was put back to the start."""
 
@@ -67,6 +74,20 @@ class LiveRobot:
         if self._picture.running:
             # Below the picture, and no part of it: it is not drawn anew while it is clicked.
             display({"text/html": _BUTTON, "text/plain": ""}, raw=True)  # type: ignore[no-untyped-call]
+
+    def talk(self, topic: str) -> None:
+        """Roll to the door, and say twice a second on a topic of strings where the robot is."""
+        self._node.play(Tour(self._node, topic))
+
+    def walk_numbers(self, action_type: Any, name: str) -> None:
+        """Walk a quarter of a circle for each number that an action's feedback brings from now on."""
+        self._node.play(Spiral(self._node, action_type, name))
+
+    def wait(self) -> None:
+        """Wait until the robot has done this and stands still, at most 20 seconds."""
+        deadline = time.monotonic() + LONGEST_WAIT
+        while self.running and not self._node.rests and time.monotonic() < deadline:
+            time.sleep(_LOOK_EVERY)
 
     def stop(self) -> None:
         """End the robot and its picture. Calling it again does no harm."""

@@ -55,3 +55,16 @@ def test_it_glides_the_short_way_round() -> None:
     picture = RobotPicture(RobotState(replace(START, heading=-3.1)), (), replace(START, heading=3.1))
     turns = [float(turn) for turn in re.findall(r"rotate\(([-\d.]+)deg\)", picture.svg())]
     assert abs(turns[1] - turns[0]) < 10
+
+
+def test_its_bubble_is_inside_of_the_picture_wherever_it_is() -> None:
+    page = ET.fromstring(RobotPicture(RobotState()).svg())
+    for x, y in ((0.2, 3.8), (5.8, 3.8), (3.0, 0.2)):
+        picture = RobotPicture(RobotState(Pose(x, y, 0.0), says="I am at x = 1.0 m, y = 2.0 m <&>"))
+        (bubble,) = (part for part in ET.fromstring(picture.svg()).iter() if part.get("class") == "bubble")
+        left, top, width = (float(bubble.attrib[name]) for name in ("x", "y", "width"))
+        assert left >= 0
+        assert top >= 0
+        assert left + width <= float(page.attrib["width"])
+        assert 'It says "I am at' in repr(picture)
+    assert "bubble" not in RobotPicture(RobotState()).svg().split("</style>")[1]

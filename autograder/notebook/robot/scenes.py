@@ -1,0 +1,142 @@
+"""Scenes of the labs: the robot tells where it is on a topic, or walks the numbers that an action computes."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import TYPE_CHECKING, Any, Protocol
+
+from std_msgs.msg import String
+
+from autograder.notebook.robot.motion import FASTEST, FASTEST_TURN, TICK, Velocity, towards
+from autograder.notebook.robot.walking import NEAR_ENOUGH
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rclpy.node import Node
+
+    from autograder.notebook.robot.motion import Pose
+
+SAYS_EVERY = 5
+"""Steps between two messages about where it is."""
+METRES = 0.1
+"""Radius of the arc for the number 1."""
+_TOUR = ((2.5, 2.4), (3.6, 2.0))
+"""To the door."""
+_QUARTER = math.pi / 2
+
+
+class Scene(Protocol):
+    """Drives the robot, step by step, until it is over."""
+
+    @property
+    def says(self) -> str:
+        """The text in the robot's bubble; empty for none."""
+        ...
+
+    @property
+    def is_over(self) -> bool:
+        """True if there is nothing to do at present."""
+        ...
+
+    def next(self, pose: Pose, bumped: bool) -> Velocity | None:
+        """The command for the next step, as of :meth:`Walking.next`."""
+        ...
+
+
+class Tour:
+    """The robot rolls to the door and says on a topic where it is.
+
+    Args:
+        node: The robot.
+        topic: Has the type ``std_msgs/msg/String``.
+    """
+
+    def __init__(self, node: Node, topic: str) -> None:
+        self._publisher = node.create_publisher(String, topic, 10)
+        self._way = deque(_TOUR)
+        self._steps = 0
+        self.says = ""
+
+    @property
+    def is_over(self) -> bool:
+        """True if it has arrived, or a wall was in the way."""
+        return not self._way
+
+    def next(self, pose: Pose, bumped: bool) -> Velocity | None:
+        """The command for the next step; every fifth step the robot says where it is."""
+        if bumped:
+            self._way.clear()
+        if self._way and math.dist(pose.point, self._way[0]) < NEAR_ENOUGH:
+            self._way.popleft()
+        if not self._way:
+            self.says = ""
+            return None
+        if self._steps % SAYS_EVERY == 0:
+            self.says = f"I am at x = {pose.x:.1f} m, y = {pose.y:.1f} m"
+            self._publisher.publish(String(data=self.says))
+        self._steps += 1
+        return towards(pose, self._way[0])
+
+
+class Spiral:
+    """The robot walks a quarter of a circle for each number that an action's feedback brings.
+
+    For the Fibonacci sequence that is the Fibonacci spiral: each radius is the sum of the two before.
+
+    Args:
+        node: The robot.
+        action_type: Has a list of numbers as the first field of its feedback.
+        name: Of the action.
+    """
+
+    def __init__(self, node: Node, action_type: Any, name: str) -> None:
+        self._numbers: list[int] = []
+        self._left: deque[int] = deque()
+        self._arc: deque[Velocity] = deque()
+        self.says = ""
+        # The topic and its type are those of design.ros2.org/articles/actions.html ("Feedback Topic").
+        node.create_subscription(
+            action_type.Impl.FeedbackMessage,
+            f"{name}/_action/feedback",
+            lambda message: self._hear(message),
+            10,
+        )
+
+    @property
+    def is_over(self) -> bool:
+        """True if it has walked all numbers that came."""
+        return not self._left and not self._arc
+
+    def _hear(self, message: Any) -> None:
+        first = next(iter(message.feedback.get_fields_and_field_types()))
+        numbers: Sequence[int] = [int(number) for number in getattr(message.feedback, first)]
+        known = self._numbers
+        self._left += numbers[len(known) if list(numbers[: len(known)]) == known else 0 :]
+        self._numbers = list(numbers)
+
+    def next(self, pose: Pose, bumped: bool) -> Velocity | None:
+        """The command for the next step; behind a wall no number is walked."""
+        del pose
+        if bumped:
+            self._left.clear()
+            self._arc.clear()
+        while self._left and not self._arc:
+            number = self._left.popleft()
+            self.says = str(number)
+            self._arc = _quarter_circle(METRES * number)
+        if self._arc:
+            return self._arc.popleft()
+        self.says = ""
+        return None
+
+
+def _quarter_circle(radius: float) -> deque[Velocity]:
+    """The steps of a quarter of a circle to the left, as fast as the motors allow; none without a radius."""
+    if radius <= 0:
+        return deque()
+    speed = min(FASTEST, FASTEST_TURN * radius)
+    steps = math.ceil(_QUARTER * radius / (speed * TICK))
+    turn = _QUARTER / (steps * TICK)
+    return deque([Velocity(turn * radius, turn)] * steps)

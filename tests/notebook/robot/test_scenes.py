@@ -1,0 +1,142 @@
+"""The robot's scenes: what it says and where it walks, step by step, and in a kernel with a student's node."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from my_robot_interfaces.action import Fibonacci
+
+from autograder.notebook.robot.motion import START, STILL, TICK, Moved, Pose, move
+from autograder.notebook.robot.room import ROOM
+from autograder.notebook.robot.scenes import SAYS_EVERY, Scene, Spiral, Tour
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+class FakeNode:
+    """Keeps what a scene publishes, and the callback that it subscribes with."""
+
+    def __init__(self) -> None:
+        self.published: list[str] = []
+
+    def create_publisher(self, *_: Any) -> Any:
+        return SimpleNamespace(publish=lambda message: self.published.append(message.data))
+
+    def create_subscription(
+        self, message_type: Any, topic: str, callback: Callable[[Any], None], _: int
+    ) -> None:
+        self.type, self.topic, self.callback = message_type, topic, callback
+
+    def feed(self, *numbers: int) -> None:
+        self.callback(self.type(feedback=Fibonacci.Feedback(partial_sequence=numbers)))
+
+
+@pytest.fixture
+def node() -> FakeNode:
+    return FakeNode()
+
+
+def play(scene: Scene, pose: Pose = START) -> tuple[Moved, int, list[str]]:
+    """Play a scene to its end: the last step, how many there were, and what it said in each."""
+    moved, steps, said = Moved(pose, STILL), 0, []
+    while velocity := scene.next(moved.pose, moved.bumped):
+        moved, steps = move(moved.pose, velocity, TICK, ROOM), steps + 1
+        said.append(scene.says)
+    return moved, steps, said
+
+
+def test_on_its_tour_it_says_where_it_is_and_comes_to_the_door(node: FakeNode) -> None:
+    tour = Tour(node, "chatter")  # type: ignore[arg-type]
+    assert not tour.is_over
+    moved, steps, said = play(tour)
+    assert tour.is_over
+    assert not moved.bumped
+    assert moved.pose.x == pytest.approx(ROOM.door[0] - 0.5, abs=0.2)
+    assert node.published[0] == "I am at x = 1.0 m, y = 2.0 m"
+    assert len(node.published) == len(set(node.published)) == -(-steps // SAYS_EVERY)
+    assert said[-1] == node.published[-1]
+    assert tour.says == ""
+
+
+def test_a_wall_ends_the_tour(node: FakeNode) -> None:
+    tour = Tour(node, "chatter")  # type: ignore[arg-type]
+    assert tour.next(START, bumped=True) is None
+    assert tour.is_over
+
+
+def test_it_walks_a_quarter_of_a_circle_for_each_number(node: FakeNode) -> None:
+    spiral = Spiral(node, Fibonacci, "fibonacci")  # type: ignore[arg-type]
+    assert node.topic == "fibonacci/_action/feedback"
+    assert spiral.is_over
+    node.feed(0, 1, 1)
+    node.feed(0, 1, 1, 2)
+    assert not spiral.is_over
+    moved, _, said = play(spiral)
+    assert list(dict.fromkeys(said)) == ["1", "2"]
+    # Left of the start by the diameter of two small quarters, and back by the difference of the radii.
+    assert moved.pose.point == pytest.approx((START.x - 0.2, START.y), abs=0.01)
+    assert moved.pose.heading == pytest.approx(-1.57, abs=0.01)
+
+
+def test_the_numbers_of_another_goal_begin_anew(node: FakeNode) -> None:
+    spiral = Spiral(node, Fibonacci, "fibonacci")  # type: ignore[arg-type]
+    for _ in range(2):
+        node.feed(0, 1, 1)
+        node.feed(0, 1, 1, 2)
+        _, steps, _ = play(spiral)
+    assert steps
+    node.feed(0)
+    assert play(spiral)[1] == 0, "0 has no radius"
+
+
+def test_behind_a_wall_it_walks_no_further(node: FakeNode) -> None:
+    spiral = Spiral(node, Fibonacci, "fibonacci")  # type: ignore[arg-type]
+    node.feed(0, 1, 1, 2, 3, 5, 8, 13, 2_000_000_000)
+    moved, _, said = play(spiral)
+    assert moved.bumped
+    assert said[-1] == "13"
+    assert spiral.is_over
+
+
+CELLS = """
+robot = start_robot()
+heard = Node("listener_node")
+heard.create_subscription(String, "chatter", lambda message: print(message.data), 10)
+with spinning(heard):
+    robot.talk("chatter")
+    robot.wait()
+print(robot.state.velocity.forward, robot.state.says == "", robot.state.pose.x > 3)
+""", """
+from my_robot_interfaces.action import Fibonacci
+other = Node("fibonacci_server")
+feedback = other.create_publisher(Fibonacci.Impl.FeedbackMessage, "fibonacci/_action/feedback", 10)
+robot = start_robot()
+robot.wait()
+robot.walk_numbers(Fibonacci, "fibonacci")
+while not feedback.get_subscription_count():
+    time.sleep(0.01)
+feedback.publish(Fibonacci.Impl.FeedbackMessage(feedback=Fibonacci.Feedback(partial_sequence=[0, 1, 1, 2])))
+while not robot.state.says:
+    time.sleep(0.01)
+robot.wait()
+print(round(robot.state.pose.x, 1), round(robot.state.pose.y, 1))
+robot.stop()
+"""  # fmt: skip
+
+
+@pytest.mark.ros
+def test_a_students_listener_hears_it_and_it_reads_feedback(run_cells: Callable[..., list[Any]]) -> None:
+    imports = (
+        "import time\nfrom rclpy.node import Node\nfrom std_msgs.msg import String\n"
+        "from autograder.notebook import spinning, start_robot, start_ros\nstart_ros()"
+    )
+    tour, spiral = ([part.text for part in shown if part.output_type == "stream"]
+                    for shown in run_cells(imports, *CELLS)[1:])  # fmt: skip
+    lines = "".join(tour).splitlines()
+    assert lines[-1] == "0.0 True True"
+    assert len(lines) > 5
+    assert all(line.startswith("I am at x = ") for line in lines[:-1])
+    assert "".join(spiral).split() == ["0.8", "2.0"]
