@@ -130,13 +130,14 @@ class RobotPicture:
         )
 
     def _bubble(self) -> str:
-        """What it says, above it and inside of the picture."""
+        """What it says, above it or, where no room is there, below it."""
         if not self.state.says:
             return ""
         x, y = _at(self.state.pose.point)
         width = round(len(self.state.says) * _LETTER + 2 * _PADDING, 1)
         left = min(max(x - width / 2, _MARGIN), _page()[0] - _MARGIN - width)
-        top = max(y - RADIUS * _SCALE - _BUBBLE - 8, _MARGIN)
+        away = RADIUS * _SCALE + 8
+        top = y - away - _BUBBLE if y - away - _BUBBLE > _MARGIN else y + away
         return (
             f'<rect class="bubble" x="{left:.1f}" y="{top:.1f}" width="{width}" height="{_BUBBLE}" rx="8"/>'
             f'<text x="{left + _PADDING:.1f}" y="{top + 17:.1f}">{escape(self.state.says)}</text>'
