@@ -35,7 +35,7 @@ def broken_rules(master: Path) -> list[str]:
         master: A file ``lab.md``.
 
     Raises:
-        autograder.masters.errors.MasterError: It is no master.
+        autograder.masters.master_errors.MasterError: It is no master.
     """
     copying = {cell.line for cell in parse_master(master) if COPY.search(cell.source)}
     cells = [

@@ -38,7 +38,7 @@ def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
     Raises:
         autograder.exercises.UnknownExercise: There is no such exercise.
         autograder.exercises.BrokenExercise: Its file is none.
-        autograder.masters.errors.MasterError: Its master cannot be used.
+        autograder.masters.master_errors.MasterError: Its master cannot be used.
     """
     yield from _of_answers(listed)
     yield from _of_mistakes(exercise_id, listed)

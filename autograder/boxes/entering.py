@@ -84,7 +84,7 @@ def enter(channel: Channel, run: Run) -> None:
         channel.send({"pid": pid})
     status = _end_of(pid, channel)
     if not entrance.boxed:
-        from autograder.boxes.processes import end_descendants
+        from autograder.boxes.process_ends import end_descendants
 
         end_descendants()
     with contextlib.suppress(ChannelClosed):

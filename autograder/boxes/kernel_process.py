@@ -38,7 +38,7 @@ _PRELOADED = (
     "autograder.notebook",
     "autograder.notebook.checking.check",
     "autograder.notebook.robot.starting",
-    "autograder.boxes.processes",
+    "autograder.boxes.process_ends",
     "autograder.cards.bundle",
 )
 _PREPARED = ("autograder.cards.bundle",)

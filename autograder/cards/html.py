@@ -16,7 +16,7 @@ from autograder.cards import wording
 from autograder.cards.differences import Piece, difference
 from autograder.cards.readable import block, one_line, paragraph
 from autograder.cards.solution import HEADING, OTHER, Solution
-from autograder.cards.timeline import HALF_WIDTH, WIDTH, Picture, picture
+from autograder.cards.timeline_layout import HALF_WIDTH, WIDTH, Picture, picture
 from autograder.cards.tracebacks import TRACEBACK, Place, place
 from autograder.cards.traffic import Part, traffic
 from autograder.verdict import Criterion, State, Verdict

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import click
 
-from autograder.appeals import commands as appeals
+from autograder.appeals import appeal_commands as appeals
 from autograder.cli import authors, instructors, students
-from autograder.progress import commands as progress
+from autograder.progress import progress_commands as progress
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})

@@ -36,7 +36,7 @@ def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) 
     """Run every notebook: masters must earn full marks, chapters none, without an error."""
     from autograder import course
     from autograder.execution import NothingToExecuteError, execute_command
-    from autograder.masters.errors import MasterError
+    from autograder.masters.master_errors import MasterError
 
     try:
         sys.exit(execute_command(course.root(), only=notebooks, jobs=jobs, reports=reports))
@@ -104,7 +104,7 @@ def try_exercise(exercise: str, only: tuple[str, ...], jobs: int, transcript: Pa
     from autograder import exercises, recording
     from autograder.authoring import trying
     from autograder.authoring.answer_tables import BadTable
-    from autograder.masters.errors import MasterError
+    from autograder.masters.master_errors import MasterError
 
     try:
         fits = trying.try_exercise(

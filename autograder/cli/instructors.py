@@ -258,7 +258,7 @@ def export(
     output: Path | None,
 ) -> None:
     """Write the gradebook's points, and the feedback as a zip, in the form that an LMS takes."""
-    from autograder.grading.exporting.export import export as write_files
+    from autograder.grading.exporting.export_files import export as write_files
 
     pairs = (one.partition("=") for one in columns)
     named = {name.strip(): called.strip() for name, _, called in pairs}
@@ -290,7 +290,7 @@ def export(
 )
 def report(folder: Path, sections: tuple[str, ...], without_names: bool, output: Path | None) -> None:
     """Write one page about the class FOLDER: points, mistakes, exercises, who is where."""
-    from autograder.grading.overview.page import write_report
+    from autograder.grading.overview.overview_page import write_report
 
     with grading_errors():
         click.echo(write_report(folder, names=not without_names, to=output, sections=sections))
@@ -311,9 +311,9 @@ def similar(folder: Path, assignment: str, output: Path | None) -> None:
     """
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.errors import clear_disk_errors
-    from autograder.grading.similarity.finding import find_similar
-    from autograder.grading.similarity.page import write_page
-    from autograder.grading.similarity.showing import show
+    from autograder.grading.similarity.close_pairs import find_similar
+    from autograder.grading.similarity.similarity_page import write_page
+    from autograder.grading.similarity.similarity_text import show
 
     with grading_errors():
         directory = ClassDirectory(folder)
@@ -334,10 +334,10 @@ def compare(folder: Path, before: str, after: str) -> None:
     BEFORE and AFTER are runs, by the times in the first line that this prints.
     """
     from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.table import differences
+    from autograder.grading.table import point_differences
 
     with grading_errors():
-        old, new, found = differences.compare(ClassDirectory(folder).state, before, after)
+        old, new, found = point_differences.compare(ClassDirectory(folder).state, before, after)
     click.echo(f"{old} → {new}: {counted(len(found), 'difference')}")
     for difference in found:
         click.echo(printable(difference.line()))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from autograder.appeals import commands as appeals
+from autograder.appeals import appeal_commands as appeals
 from autograder.cli.ending import CANNOT, NO, fail
 
 if TYPE_CHECKING:

@@ -67,7 +67,7 @@ def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
 
     Raises:
         NothingToExecuteError: A name is not there, or a chapter is missing.
-        autograder.masters.errors.MasterError: A master cannot be used.
+        autograder.masters.master_errors.MasterError: A master cannot be used.
     """
     found = masters(root)
     known = [lab_name(master) for master in found]

@@ -25,9 +25,9 @@ from autograder.grading.classes.timestamps import handed_in_at, is_not_believed
 from autograder.grading.collecting.outcomes import WaitingList
 from autograder.grading.collecting.tidying import Tidied, tidy
 from autograder.grading.entering import gradebook
-from autograder.grading.entering.evidence import EvidenceFolder
-from autograder.grading.entering.journal import Journal
-from autograder.grading.entering.records import Records
+from autograder.grading.entering.entry_records import Records
+from autograder.grading.entering.final_results import Journal
+from autograder.grading.entering.kept_evidence import EvidenceFolder
 from autograder.grading.errors import MasterUnusable, is_disk_full
 from autograder.grading.following.origins import news
 from autograder.grading.rebuilding.course_version import course_version
@@ -38,8 +38,8 @@ from autograder.grading.returning.up_to_date import UpToDate
 from autograder.grading.running import places
 from autograder.grading.running.progress import BatchProgress
 from autograder.grading.running.timings import Timings
-from autograder.grading.table.differences import Difference, Runs
 from autograder.grading.table.entries import SubmissionEntry, read_entries
+from autograder.grading.table.point_differences import Difference, Runs
 from autograder.grading.table.roster import enter_roster, read_roster
 from autograder.grading.table.true_rows import true_rows
 from autograder.grading.table.what_counts import read_what_counts

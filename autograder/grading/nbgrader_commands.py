@@ -20,7 +20,7 @@ from autograder.grading.asked_for import check_known
 from autograder.grading.batch import grade
 from autograder.grading.classes.class_directory import ClassDirectory, Submission, reason_against_name
 from autograder.grading.classes.configuration import check_configuration
-from autograder.grading.entering.records import Records
+from autograder.grading.entering.entry_records import Records
 from autograder.grading.entering.writer import Writer
 from autograder.grading.errors import GradingError
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.classes.timestamps import handed_in_at
 from autograder.grading.reporting.report import LATE, Row
-from autograder.grading.table.differences import Difference
 from autograder.grading.table.entries import CellEntry, SubmissionEntry, read_due_dates
+from autograder.grading.table.point_differences import Difference
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

@@ -10,9 +10,9 @@ from nbgrader.utils import compute_checksum
 from rich.console import Console
 
 from autograder.course import SOLUTION
-from autograder.masters.checks import exercise_points
-from autograder.masters.errors import MasterError
+from autograder.masters.check_cells import exercise_points
 from autograder.masters.layout import chapter_notebooks, chapter_path, masters
+from autograder.masters.master_errors import MasterError
 from autograder.masters.release import release_text
 from autograder.masters.solutions import solution_files
 from autograder.masters.source import Points, named_cells, notebook_of

@@ -16,8 +16,8 @@ import dataclasses
 import re
 from typing import TYPE_CHECKING
 
-from autograder.masters.errors import CellError, MasterError
 from autograder.masters.magics import has_magic
+from autograder.masters.master_errors import CellError, MasterError
 from autograder.masters.parsing import Cell, CellRole
 from autograder.masters.regions import find_region
 

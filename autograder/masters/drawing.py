@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 import numpy
 
 from autograder.course import SOLUTIONS
-from autograder.masters.errors import MasterError
 from autograder.masters.figures import SIGNATURE, chunk, digest, signed
 from autograder.masters.layout import find_root
+from autograder.masters.master_errors import MasterError
 from environment.system_packages import CHROMIUM_NAMES, find_program
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
-from autograder.masters.errors import CellError
+from autograder.masters.master_errors import CellError
 
 if TYPE_CHECKING:
     from pathlib import Path

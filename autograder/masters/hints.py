@@ -19,7 +19,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from autograder.masters.errors import CellError
+from autograder.masters.master_errors import CellError
 
 OPENING = re.compile(r":::\{hint\}\s*(?P<question>.*?)\s*")
 CLOSING = ":::"

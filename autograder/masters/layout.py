@@ -8,7 +8,7 @@ import re2
 
 from autograder import course
 from autograder.course import CHAPTERS, COPY, LAB, SOLUTIONS
-from autograder.masters.errors import MasterError
+from autograder.masters.master_errors import MasterError
 
 if TYPE_CHECKING:
     from collections.abc import Callable

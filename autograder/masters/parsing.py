@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 from jupytext.myst import MystMetadataParsingError, myst_to_notebook
 from nbformat import ValidationError
 
-from autograder.masters.errors import CellError, MasterError
 from autograder.masters.figures import attach_figures
 from autograder.masters.hints import nest_hints
+from autograder.masters.master_errors import CellError, MasterError
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from autograder.masters.errors import CellError
+from autograder.masters.master_errors import CellError
 
 BEGIN = "### BEGIN SOLUTION"
 END = "### END SOLUTION"

@@ -16,7 +16,7 @@ from nbgrader.preprocessors import ClearSolutions, NbGraderPreprocessor
 from nbgrader.utils import is_solution
 from traitlets.config import Config
 
-from autograder.masters.errors import CellError
+from autograder.masters.master_errors import CellError
 from autograder.masters.regions import find_region
 
 

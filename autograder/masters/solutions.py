@@ -10,8 +10,8 @@ import json
 from typing import TYPE_CHECKING
 
 from autograder.course import SOLUTION, WHY
-from autograder.masters.errors import MasterError
 from autograder.masters.magics import shell_script
+from autograder.masters.master_errors import MasterError
 from autograder.masters.parsing import CellRole
 from autograder.masters.regions import find_region
 

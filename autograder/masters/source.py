@@ -14,11 +14,11 @@ from nbformat import NotebookNode, from_dict
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from autograder.masters import naming
-from autograder.masters.checks import CheckCall, exercise_points, read_check
+from autograder.masters.check_cells import CheckCall, exercise_points, read_check
 from autograder.masters.copies import with_copies
-from autograder.masters.errors import CellError, MasterError
 from autograder.masters.layout import before_and_after, lab_name
 from autograder.masters.magics import has_magic
+from autograder.masters.master_errors import CellError, MasterError
 from autograder.masters.parsing import Cell, CellRole, parse_master
 from autograder.masters.regions import find_model_answer, find_region, mentions_a_region
 

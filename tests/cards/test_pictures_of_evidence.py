@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.cards.axis import TURNS
-from autograder.cards.timeline import HALF_WIDTH, WIDTH, picture
+from autograder.cards.timeline_layout import HALF_WIDTH, WIDTH, picture
 from autograder.cards.traffic import traffic
 from autograder.judge.verdicts.timeline import moments
 from autograder.kit.evidence import Event, Evidence, Part, Reference
@@ -17,7 +17,7 @@ from tests.cards.test_timeline import assert_legible
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from autograder.cards.timeline import Mark, Picture
+    from autograder.cards.timeline_layout import Mark, Picture
 
 AT_MOST = 60
 """Moments that a card shows."""

@@ -16,8 +16,8 @@ from nbgrader.api import Gradebook
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
 from autograder.grading.entering import gradebook
+from autograder.grading.entering.final_results import Journal
 from autograder.grading.entering.gradebook import NotebookEntry
-from autograder.grading.entering.journal import Journal
 from autograder.grading.errors import (
     ClassBusy,
     ClassIncomplete,

@@ -19,7 +19,7 @@ from nbgrader.coursedir import CourseDirectory
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.entering import gradebook
-from autograder.grading.entering.journal import Journal
+from autograder.grading.entering.final_results import Journal
 from autograder.grading.errors import ClassIncomplete
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from autograder.cards.readable import printable
 from autograder.grading.classes.class_directory import reason_against_name
 from autograder.grading.classes.new_class import NewClass
 from autograder.grading.classes.seeds import create_secret, read_secret, seed_for
-from autograder.grading.entering.journal import Journal
+from autograder.grading.entering.final_results import Journal
 from autograder.grading.entering.points import points
 from autograder.grading.errors import DiskFull, NotAClass, is_disk_full
 from autograder.grading.reporting.report import Row, write_csv

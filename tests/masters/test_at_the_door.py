@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import exercises
-from autograder.masters.checks import CheckCall, exercise_points
-from autograder.masters.errors import MasterError
+from autograder.masters.check_cells import CheckCall, exercise_points
 from autograder.masters.layout import find_root, masters
+from autograder.masters.master_errors import MasterError
 from autograder.masters.source import Points, source_notebook
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from nbformat import NotebookNode
 from rich.console import Console
 
 from autograder.masters.chapters import build, build_command
-from autograder.masters.errors import MasterError
+from autograder.masters.master_errors import MasterError
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.masters.errors import MasterError
+from autograder.masters.master_errors import MasterError
 from autograder.masters.release import release_notebook
 from autograder.masters.source import Points, source_notebook
 

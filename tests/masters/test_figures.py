@@ -13,9 +13,9 @@ import pytest
 
 from autograder.grading.returning.sanitize import harmless_markdown
 from autograder.masters.drawing import stale_figures
-from autograder.masters.errors import MasterError
 from autograder.masters.figures import SIGNATURE, chunk, digest, signed
 from autograder.masters.layout import chapter_path, masters
+from autograder.masters.master_errors import MasterError
 from autograder.masters.source import Points, source_notebook
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.masters.magics import WrittenFile, python_of, shell_script, written_file
-from autograder.masters.reference import reference_source
+from autograder.masters.reference_solution import reference_source
 from autograder.masters.regions import find_region
 from autograder.masters.release import release_notebook
 from autograder.masters.source import Points, source_notebook

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.masters.errors import MasterError
+from autograder.masters.master_errors import MasterError
 from autograder.masters.solutions import solution_files
 from autograder.masters.source import named_cells
 

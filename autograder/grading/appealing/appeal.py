@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from autograder import exercises
 from autograder.appeals.appeal_file import Appeal, Cell, dump
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
-from autograder.grading.entering.evidence import EvidenceFolder
-from autograder.grading.entering.records import Records
+from autograder.grading.entering.entry_records import Records
+from autograder.grading.entering.kept_evidence import EvidenceFolder
 from autograder.grading.errors import GradingError, clear_disk_errors, course_command
 from autograder.judge.verdicts import reference
 from autograder.judge.verdicts.keeping import NoEvidence, unpack
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from autograder.grading.entering.evidence import RunCell
+    from autograder.grading.entering.kept_evidence import RunCell
 
 FOLDER = "appeals"
 """The folder of a class in which the files are written."""

@@ -21,8 +21,8 @@ from autograder.grading.entering.writer import quiet
 from autograder.grading.errors import ClassExists, GradingError, clear_disk_errors, course_command
 from autograder.grading.following.origins import remember
 from autograder.grading.rebuilding import nodes
-from autograder.masters.errors import MasterError
 from autograder.masters.layout import lab_name, masters, relinked
+from autograder.masters.master_errors import MasterError
 from autograder.masters.source import source_notebook
 
 if TYPE_CHECKING:

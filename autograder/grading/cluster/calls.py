@@ -25,6 +25,6 @@ def execute_order(order: bytes) -> bytes:
     Args:
         order: An :class:`autograder.grading.cluster.messages.Order` as JSON.
     """
-    from autograder.grading.cluster.worker import execute
+    from autograder.grading.cluster.dask_worker import execute
 
     return execute(order)

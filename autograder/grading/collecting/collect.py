@@ -14,9 +14,9 @@ from autograder.grading.collecting.assignment_of import AssignmentOf, NoTarget, 
 from autograder.grading.collecting.forms import FORMS, plain, read_path
 from autograder.grading.collecting.lists import GRADESCOPE, Entry, is_unread, read_list
 from autograder.grading.collecting.outcomes import CollectReport, Outcome, State, WaitingList
-from autograder.grading.collecting.placing import Candidate, Placing
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.collecting.student_of import StudentOf
+from autograder.grading.collecting.submitted_files import Candidate, Placing
 from autograder.grading.errors import GradingError, course_command
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.grading.table.roster import Roster, Student, enter_roster, read_roster

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 from autograder.grading.classes.timestamps import handed_in_at
 from autograder.grading.entering import conversion, gradebook
 from autograder.grading.entering.attempts import Attempt, note, now
+from autograder.grading.entering.entry_records import Records, Written
 from autograder.grading.entering.points import scores_of
-from autograder.grading.entering.records import Records, Written
 from autograder.grading.errors import is_disk_full
 from autograder.grading.returning import feedback
 from autograder.grading.table.entries import read_entries

@@ -13,7 +13,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from autograder.grading.collecting.forms import read_path
-from autograder.grading.exporting.forms import known_there
+from autograder.grading.exporting.lms_gradebooks import known_there
 
 if TYPE_CHECKING:
     from autograder.grading.classes.class_directory import ClassDirectory

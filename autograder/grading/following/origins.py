@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder.grading.errors import course_command
-from autograder.masters.errors import MasterError
+from autograder.masters.master_errors import MasterError
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from autograder.grading.entering.attempts import Attempt
-    from autograder.grading.entering.journal import Journal
+    from autograder.grading.entering.final_results import Journal
     from autograder.grading.reporting.report import Row
     from autograder.grading.table.class_table import ClassTable
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from autograder.boxes.execution import Execution
     from autograder.grading.classes.class_directory import Refused
-    from autograder.grading.table.differences import Difference
+    from autograder.grading.table.point_differences import Difference
     from autograder.grading.task import Task
 
 NOT_SUBMITTED = "not_submitted"

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.entering.records import Records
+    from autograder.grading.entering.entry_records import Records
     from autograder.grading.entering.writer import Writer
     from autograder.grading.running.timings import Timings
     from autograder.grading.work import Work

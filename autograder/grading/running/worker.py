@@ -27,13 +27,13 @@ from autograder.boxes.fork_server_client import Addresses
 from autograder.boxes.limits import raise_own
 from autograder.boxes.missing_verdict import grader_trouble
 from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
-from autograder.boxes.processes import end_descendants
+from autograder.boxes.process_ends import end_descendants
 from autograder.boxes.runner import run_notebook
 from autograder.boxes.sandbox import NoSandbox
 from autograder.boxes.scratch import scratch_folder
 from autograder.clean_stdout import private_stdout
 from autograder.grading.returning.page_budget import too_costly
-from autograder.grading.running.workspaces import arrange, served
+from autograder.grading.running.workspace_service import arrange, served
 from autograder.grading.task import Task, decode_task, encode
 from autograder.judge.bench.patience import Patience
 from autograder.judge.serving import attached

@@ -17,7 +17,7 @@ import msgspec
 
 from autograder.boxes.execution import Execution
 from autograder.boxes.missing_verdict import grader_trouble
-from autograder.boxes.processes import end_processes_in
+from autograder.boxes.process_ends import end_processes_in
 from autograder.grading.running import shared_fork_servers
 from autograder.grading.running.worker import JUDGE
 from autograder.grading.task import Task, decode_execution, encode

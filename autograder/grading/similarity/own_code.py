@@ -12,7 +12,7 @@ from autograder.grading.similarity.words import Word, chosen_names, neutral, wor
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from autograder.grading.similarity.answers import Answer
+    from autograder.grading.similarity.student_texts import Answer
 
 SEQUENCE = 7
 """As many words in a row are looked for: about one short line."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
 from autograder.grading.collecting.outcomes import Waiting, WaitingList
-from autograder.grading.entering.records import Records
+from autograder.grading.entering.entry_records import Records
 from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import read_released
 from autograder.grading.reporting.report import DROPPED, EXCUSED, NO_EXERCISE, NOT_SUBMITTED, Row, total

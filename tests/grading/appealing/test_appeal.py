@@ -20,7 +20,7 @@ from autograder.appeals import appeal_file
 from autograder.cli import cli
 from autograder.grading.appealing.appeal import write_appeal
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.entering.evidence import EvidenceFolder
+from autograder.grading.entering.kept_evidence import EvidenceFolder
 from autograder.grading.errors import GradingError
 from autograder.grading.running import sandboxing, worker
 from autograder.judge.verdicts import keeping, reference, trial

@@ -21,8 +21,8 @@ from autograder.cli import cli
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.forms import read_path
 from autograder.grading.errors import GradingError
-from autograder.grading.exporting.export import export
-from autograder.grading.overview.page import write_report
+from autograder.grading.exporting.export_files import export
+from autograder.grading.overview.overview_page import write_report
 from autograder.grading.running import engine
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ from autograder import exercises
 from autograder.boxes.execution import Execution
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
-from autograder.grading.entering.evidence import EvidenceFolder
+from autograder.grading.entering.kept_evidence import EvidenceFolder
 from autograder.grading.rebuilding.task_making import tasks_of
 from autograder.grading.running import sandboxing
 from autograder.judge.verdicts import keeping, reference, trial

@@ -15,10 +15,10 @@ from test_true_table import nbgraders_total
 
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.entering.journal import Journal
+from autograder.grading.entering.final_results import Journal
 from autograder.grading.errors import GradingError
 from autograder.grading.overview import statistics as figures
-from autograder.grading.overview.page import write_report
+from autograder.grading.overview.overview_page import write_report
 from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import read_released
 from autograder.grading.reporting.report import Row

@@ -17,13 +17,13 @@ from test_forms import add_assignment
 
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.collecting import outcomes, placing, records
+from autograder.grading.collecting import outcomes, records, submitted_files
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.outcomes import CollectReport, State, WaitingList
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.errors import GradingError
-from autograder.grading.exporting.export import export
-from autograder.grading.overview.page import write_report
+from autograder.grading.exporting.export_files import export
+from autograder.grading.overview.overview_page import write_report
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
@@ -409,7 +409,7 @@ def test_killed_at_any_write_nothing_is_lost_and_nothing_is_there_twice(
         written(path, data)
 
     with monkeypatch.context() as patch:
-        for module in (placing, records, outcomes):
+        for module in (submitted_files, records, outcomes):
             patch.setattr(module, "write_whole", write)
         try:
             gathered(klass, tmp_path, first)

@@ -18,8 +18,8 @@ from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.tidying import tidy
 from autograder.grading.errors import GradingError
-from autograder.grading.similarity.finding import Similar, find_similar
-from autograder.grading.similarity.page import page
+from autograder.grading.similarity.close_pairs import Similar, find_similar
+from autograder.grading.similarity.similarity_page import page
 
 if TYPE_CHECKING:
     from conftest import TinyClass

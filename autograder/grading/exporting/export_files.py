@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.errors import GradingError, course_command
-from autograder.grading.exporting import feedback_zips, forms, sheets
+from autograder.grading.exporting import feedback_zips, lms_gradebooks, sheets
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.grading.table.class_table import ClassTable, read_table
 from autograder.kit.in_words import counted
@@ -111,20 +111,20 @@ def _files(
     elif to == "xlsx":
         yield "grades.xlsx", sheets.as_xlsx(table, assignments), "sheets of students and of exercises"
     elif to == "gradescope":
-        text = forms.gradescope(table, assignments)
+        text = lms_gradebooks.gradescope(table, assignments)
         yield "gradescope.csv", text.encode(), "the scores in the form in which Gradescope exports them"
     elif to == "canvas":
-        text = forms.canvas(table, records, assignments)
+        text = lms_gradebooks.canvas(table, records, assignments)
         yield "canvas.csv", text.encode(), "Canvas: Grades, Import"
     else:
-        text = forms.moodle_gradebook(table, assignments)
+        text = lms_gradebooks.moodle_gradebook(table, assignments)
         yield (
             "moodle.csv",
             text.encode(),
             "Moodle: Grades, Import, CSV file; map Email address and the assignments",
         )
         for assignment in assignments:
-            text, unknown = forms.moodle_worksheet(table, records, assignment)
+            text, unknown = lms_gradebooks.moodle_worksheet(table, records, assignment)
             if text:
                 purpose = f"Moodle: the assignment {assignment}, Upload grading worksheet"
                 yield f"moodle-{assignment}.csv", text.encode(), purpose
@@ -170,7 +170,7 @@ def _filled(
         data = read_bytes(into)
     except UnreadableSubmission as error:
         raise GradingError(f"{into} cannot be read: {error}") from error
-    filled, strangers = forms.filled_in(data, table, assignments, columns)
+    filled, strangers = lms_gradebooks.filled_in(data, table, assignments, columns)
     if strangers:
         notices.append(f"nobody in the class is called {', '.join(strangers)}: their lines stay as they were")
     yield (

@@ -20,7 +20,7 @@ from tornado import web
 from autograder import course, exercises, journal
 from autograder.cards import certificate
 from autograder.lab import COURSE_PAGE
-from autograder.progress import page, resetting
+from autograder.progress import course_page, resetting
 from autograder.progress.standing import Standing, standing
 
 if TYPE_CHECKING:
@@ -71,10 +71,10 @@ class CoursePage(_CourseHandler):
         """Show it."""
         try:
             found = await asyncio.to_thread(self.standing)
-            text = page.page_html(found, self.base_url, self.xsrf_token.decode())
+            text = course_page.page_html(found, self.base_url, self.xsrf_token.decode())
         except (course.NoCourse, course.BrokenChapter, exercises.BrokenExercise, OSError) as error:
             self.set_status(500)
-            text = page.trouble_html(str(error), self.base_url)
+            text = course_page.trouble_html(str(error), self.base_url)
         self.set_header("Cache-Control", "no-cache")
         self.finish(text)
 

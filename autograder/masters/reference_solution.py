@@ -6,9 +6,9 @@ import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from autograder.masters.checks import exercise_points
-from autograder.masters.errors import MasterError
+from autograder.masters.check_cells import exercise_points
 from autograder.masters.magics import has_magic, shell_script, written_file
+from autograder.masters.master_errors import MasterError
 from autograder.masters.parsing import Cell, CellRole
 from autograder.masters.source import Points, named_cells
 

@@ -9,7 +9,7 @@ import pytest
 
 from autograder.cards import readable
 from autograder.cards.axis import TURNS
-from autograder.cards.timeline import HALF_WIDTH, WIDTH, Lane, Mark, Picture, picture
+from autograder.cards.timeline_layout import HALF_WIDTH, WIDTH, Lane, Mark, Picture, picture
 from autograder.cards.traffic import Part, traffic
 from autograder.verdict import Moment, Verdict
 

@@ -1,4 +1,4 @@
-"""``python -m autograder.boxes.report``: whether boxes are possible here, as one line of JSON for the doctor."""
+"""``python -m autograder.boxes.doctor_report``: whether boxes are possible here, as one line of JSON for the doctor."""
 
 from __future__ import annotations
 

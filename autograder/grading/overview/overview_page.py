@@ -12,7 +12,7 @@ from autograder.cards.readable import printable
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.entering import attempts
-from autograder.grading.entering.journal import Journal
+from autograder.grading.entering.final_results import Journal
 from autograder.grading.errors import GradingError, clear_disk_errors
 from autograder.grading.overview import statistics as figures
 from autograder.grading.reporting.report import DROPPED, EXCUSED, columns

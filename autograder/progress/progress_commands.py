@@ -26,8 +26,8 @@ def _fail(message: str) -> None:
 def progress(as_json: bool, folder: Path | None) -> None:
     """Say which points you have reached, and where to go on. It is no grade."""
     from autograder import course, exercises, journal
+    from autograder.progress.progress_text import standing_json, standing_text
     from autograder.progress.standing import standing
-    from autograder.progress.text import standing_json, standing_text
 
     try:
         root = course.root()

@@ -11,9 +11,9 @@ from rich.console import Console
 
 from autograder.boxes.execution import CellType
 from autograder.boxes.held_folder import HeldFolder
+from autograder.execution.failure_page import write_report
 from autograder.execution.plan import Planned, plan
 from autograder.execution.problems import Problem, problems_of
-from autograder.execution.report import write_report
 from autograder.grading.running import engine
 from autograder.grading.running.progress import BatchProgress
 from autograder.grading.running.worker import JUDGE
@@ -67,7 +67,7 @@ def execute_command(
 
     Raises:
         NothingToExecuteError: A name in ``only`` is unknown, or a chapter was not built.
-        autograder.masters.errors.MasterError: A master cannot be used.
+        autograder.masters.master_errors.MasterError: A master cannot be used.
     """
     began = time.monotonic()
     console = console or Console(stderr=True)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.masters.errors import MasterError
-from autograder.masters.reference import reference_source
+from autograder.masters.master_errors import MasterError
+from autograder.masters.reference_solution import reference_source
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -10,7 +10,7 @@ from urllib.parse import quote
 from autograder.cards.certificate import certificate_svg, certificate_text
 from autograder.cards.wording import points, points_of
 from autograder.lab import COURSE_PAGE
-from autograder.progress.text import hours
+from autograder.progress.progress_text import hours
 
 if TYPE_CHECKING:
     from jinja2 import Environment

@@ -7,8 +7,8 @@ import difflib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from autograder.masters.errors import MasterError
 from autograder.masters.layout import lab_name
+from autograder.masters.master_errors import MasterError
 from autograder.masters.naming import grade_id_of_exercise
 
 if TYPE_CHECKING:

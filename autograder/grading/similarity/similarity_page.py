@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from autograder.grading.similarity.finding import Similar
+    from autograder.grading.similarity.close_pairs import Similar
     from autograder.grading.similarity.pairs import Pair
 
 _NAME = "similar.html"

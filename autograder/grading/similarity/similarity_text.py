@@ -15,7 +15,7 @@ from autograder.grading.similarity.pairs import HINT, nothing_found
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from autograder.grading.similarity.finding import Similar
+    from autograder.grading.similarity.close_pairs import Similar
 
 
 def show(found: Similar, page: Path, console: Console | None = None) -> None:

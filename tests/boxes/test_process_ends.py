@@ -7,7 +7,7 @@ import pytest
 
 DAEMON = """
 import os, subprocess, sys
-from autograder.boxes.processes import end_descendants
+from autograder.boxes.process_ends import end_descendants
 from autograder.parent_death import adopt_orphans
 adopt_orphans()
 # The usual way into the background: a child in a session of its own whose parent ends.
