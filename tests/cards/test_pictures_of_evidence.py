@@ -12,7 +12,7 @@ from autograder.cards.timeline_layout import HALF_WIDTH, WIDTH, picture
 from autograder.cards.traffic import traffic
 from autograder.judge.verdicts.timeline import moments
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from tests.cards.test_timeline import assert_legible
+from tests.cards.test_timeline_layout import assert_legible
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
