@@ -6,9 +6,14 @@ import os
 import signal
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from autograder.judge.serving import fork
 from autograder.judge.serving.fork import Child
 from autograder.judge.verdicts.deciding import Undecided, limited
+
+if TYPE_CHECKING:
+    import pytest
 
 
 def _raises() -> bytes:
@@ -65,15 +70,23 @@ def test_a_child_that_is_ended_before_its_time_is_told_from_one_that_had_it() ->
     assert not Child(sleep, limit=0.05).result(within=30.0).hurried
 
 
-def _ponders() -> bytes:
-    try:
-        with limited(600.0):
-            while True:
-                pass
-    except Undecided:
-        return b"undecided"
+def test_a_judge_that_is_deciding_at_its_limit_says_so_and_one_that_is_looking_is_killed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    heard, tells = os.pipe()
 
+    def ponders() -> bytes:
+        try:
+            with limited(600.0):
+                os.write(tells, b"!")
+                while True:
+                    pass
+        except Undecided:
+            return b"undecided"
 
-def test_a_judge_that_is_deciding_at_its_limit_says_so_and_one_that_is_looking_is_killed() -> None:
-    assert Child(_ponders, limit=0.3).result().data == b"undecided"
+    with monkeypatch.context() as patched:
+        patched.setattr(fork, "LAST_WORDS", 600.0)
+        child = Child(ponders, limit=600.0)
+        os.read(heard, 1)
+        assert child.result(within=0.0).data == b"undecided"
     assert Child(_hangs, limit=0.3).result().data is None
