@@ -203,7 +203,7 @@ def _stopped_by_error(check: Check, run: CellRun, before: list[tuple[str, CellRu
         check,
         "syntax_error" if first.error.startswith(_SYNTAX_ERRORS) else "crashed",
         reason,
-        "Mend the first cell that shows an error, then restart the kernel and run all cells.",
+        "Correct the first cell that shows an error, then restart the kernel and run all cells.",
         detail=_end_of_traceback(first),
     )
 

@@ -107,7 +107,7 @@ def exercise_points(check: CheckCall) -> float:
             f"Add it to the lab's folder, or name one that is there: {', '.join(near)}.",
         ) from error
     except exercises.BrokenExercise as error:
-        raise MasterError(check.master, check.line, f"{error}.", "Mend that file.") from error
+        raise MasterError(check.master, check.line, f"{error}.", "Correct that file.") from error
     if points <= 0:
         raise MasterError(
             check.master,

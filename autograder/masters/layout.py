@@ -36,7 +36,7 @@ def masters(root: Path) -> list[Path]:
     try:
         labs = [lab for chapter in course.chapters(root) for lab in chapter.labs]
     except course.BrokenChapter as error:
-        raise MasterError(folder, None, f"{error}.", "Mend that file.") from error
+        raise MasterError(folder, None, f"{error}.", "Correct that file.") from error
     found = [lab / LAB for lab in labs if (lab / LAB).is_file()]
     if not found:
         raise MasterError(

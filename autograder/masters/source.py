@@ -177,7 +177,7 @@ def _defined_name(master: Path, cell: Cell) -> str:
 
 def _no_python(master: Path, cell: Cell, what: str, error: SyntaxError) -> MasterError:
     line = cell.body_line + (error.lineno or 1) - 1
-    return MasterError(master, line, f"{what} ({error.msg}).", "Mend it here.")
+    return MasterError(master, line, f"{what} ({error.msg}).", "Correct this line.")
 
 
 def _unique(master: Path, named: list[NamedCell]) -> None:

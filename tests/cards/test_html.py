@@ -264,7 +264,7 @@ def test_what_was_on_the_wrong_topic_is_grey_and_the_legend_says_why(load: Calla
     assert [text.text().strip() for text in tree.all("text", "agc-lane")] == ["/chater", "/chatter"]
     grey = [text.text().strip() for text in tree.all("text", "agc-stray")]
     assert grey == ["/chater", "your publisher is here"]
-    assert "where nobody asked for it" in words(tree)
+    assert "where it was not asked for" in words(tree)
 
 
 def test_a_long_timeline_is_cut_and_says_so(hostile: Verdict) -> None:
