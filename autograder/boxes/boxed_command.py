@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 ANSWER_SECONDS = 30.0
 """Seconds of wall time in which the supervisor of the boxes answers."""
+_CLOSING_SECONDS = 2.0
+"""Seconds from the end of a command's output to its own."""
 _ITS_TIME = 1e6
 """Seconds, more than any check lasts: a program runs as long as the judge wants it to."""
 
@@ -144,13 +146,15 @@ class WarmCommand:
         """See :meth:`Running.next_output`. What the command has started and left ends with it."""
         process = self._process.fileno()
         ready = select.select([self._output, process], [], [], within)[0]
-        if ready == [process]:
-            self._process.end_box()  # what is left of it may hold its output
+        if process in ready:
+            self._process.end_box()  # what is left of it may hold its output, or say more without end
         return os.read(self._output, 1 << 16) if ready else None
 
     def exit_code(self) -> int | None:
-        """Wait for its end, once there is no more output; as ``Finished.returncode``, None where nobody can tell it."""
-        self._process.wait(_ITS_TIME)
+        """Its exit code, once there is no more output; as ``Finished.returncode``, None where nobody can tell it."""
+        if not self._process.wait(_CLOSING_SECONDS):
+            self._process.end_box()  # it has closed its output and goes on, where nobody could end it any more
+            self._process.wait(ANSWER_SECONDS)
         status = self._process.status
         if status is None:
             return None
