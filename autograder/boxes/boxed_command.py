@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 ANSWER_SECONDS = 30.0
 """Seconds of wall time in which the supervisor of the boxes answers."""
-_CLOSING_SECONDS = 2.0
+_CLOSING_SECONDS = 10.0
 """Seconds from the end of a command's output to its own."""
 _ITS_TIME = 1e6
 """Seconds, more than any check lasts: a program runs as long as the judge wants it to."""

@@ -5,8 +5,9 @@ them, is the course's own `ros2` (``environment.ros2_command``), with its look-u
 thing alone: a Python script for this interpreter becomes a further fork instead of a new process. That fork has the
 arguments, the path, the standard streams, the ``__main__`` and the end of a process of its own.
 
-Everything else is started as `ros2 run` starts it: another interpreter's script, a program in another language, and
-a script that would import a module of its own where one of the same name has been imported here.
+Everything else is started as `ros2 run` starts it: another interpreter's script, a program in another language, a
+script that would import a module of its own where one of the same name has been imported here, or load a library from
+a folder that this process was not told of when it started.
 """
 
 from __future__ import annotations
@@ -17,10 +18,10 @@ import faulthandler
 import importlib
 import io
 import os
+import pkgutil
 import signal
 import subprocess
 import sys
-from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -40,10 +41,15 @@ _UNBUFFERED = 2
 """``_IONBF`` of stdio.h."""
 _HEAD = 1024
 """Bytes of a script in which its first line ends."""
+_FOR_THE_LOADER = "LD_LIBRARY_PATH"
+"""Read when a process starts, and never again (ld.so(8))."""
+_environment: dict[str, str] = {}
+"""The environment in which the fork server was started."""
 
 
 def prepare() -> None:
     """Import what nearly every program with a node does."""
+    _environment.update(os.environ)
     _never_unload()
     preload((*RCLPY, *_OF_SCRIPTS))
     preload_ros(INTERFACES)
@@ -64,7 +70,7 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
     """Be `ros2 run` until its program has ended.
 
     Args:
-        call: ``words``, what follows `ros2` on the command line; ``path``, the ``PYTHONPATH`` of the fork server.
+        call: ``words``, what follows `ros2` on the command line.
         descriptors: Where standard output and standard error go.
 
     Raises:
@@ -75,27 +81,33 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
         os.dup2(output, standard)
     os.close(output)
     sys.argv = ["ros2", *call["words"]]
-    given = call["path"].split(os.pathsep)
-    ros2_run.start = lambda command: _start(command, given)
+    ros2_run.start = _start
     sys.exit(ros2.main())
 
 
-def _start(command: Sequence[str], given: Sequence[str]) -> ros2_run.Process:
+def _start(command: Sequence[str]) -> ros2_run.Process:
     """Start a program: as a fork where that makes no difference to it.
 
     Args:
         command: The program and its arguments.
-        given: The folders of ``PYTHONPATH`` from which this process has imported.
     """
-    own = [folder for folder in _python_path() if folder not in given]
-    is_ours = _head(Path(command[0])).split(b"\n")[0] == f"#!{sys.executable}".encode()
-    if not is_ours or _names_in([*own, str(Path(command[0]).parent)]) & {*_imported(), *_AT_START}:
+    given = _python_path(_environment)
+    own = [folder for folder in _python_path(os.environ) if folder not in given]
+    names = _names_in([*own, str(Path(command[0]).parent)])
+    differs = os.environ.get(_FOR_THE_LOADER) != _environment.get(_FOR_THE_LOADER)
+    if differs or not _is_ours(command[0]) or names & {*_imported(), *_AT_START}:
         return subprocess.Popen(command)
     return _Fork(command, [folder for folder in sys.path if folder not in given])
 
 
-def _python_path() -> list[str]:
-    return [folder for folder in os.environ.get("PYTHONPATH", "").split(os.pathsep) if folder]
+def _python_path(environment: Mapping[str, str]) -> list[str]:
+    return [folder for folder in environment.get("PYTHONPATH", "").split(os.pathsep) if folder]
+
+
+def _is_ours(script: str) -> bool:
+    """True for the text of a program for this interpreter, which can also start an archive (``zipapp``)."""
+    line = _head(Path(script)).split(b"\n")[0]
+    return line == f"#!{sys.executable}".encode() and pkgutil.get_importer(script) is None
 
 
 def _head(script: Path) -> bytes:
@@ -121,18 +133,13 @@ class _Fork:
     """A program that was forked; implements what `ros2 run` uses of :class:`subprocess.Popen`."""
 
     def __init__(self, command: Sequence[str], standard_path: Sequence[str]) -> None:
-        # Python ends by SIGINT after an uncaught KeyboardInterrupt, but only once it has cleaned up, when none of its
-        # code runs any more (Py_RunMain in Modules/main.c). So the fork tells it here, and its exit code is made here.
-        self._interrupted, tell = os.pipe()
         self._code: int | None = None
-        # Ctrl-C waits until the fork has Python's own handler for it.
+        # Until the fork has handlers of its own, it has those of `ros2 run`, which leaves Ctrl-C to it.
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         self._pid = os.fork()
         if self._pid == 0:
-            os.close(self._interrupted)
-            _be(command, standard_path, tell)
+            _be(command, standard_path)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-        os.close(tell)
 
     def send_signal(self, number: int) -> None:
         """Send it a signal, if it has not ended."""
@@ -144,31 +151,24 @@ class _Fork:
         if self._code is None:
             _, status = os.waitpid(self._pid, 0)
             self._code = os.waitstatus_to_exitcode(status)
-            os.set_blocking(self._interrupted, False)
-            if self._code == 1 and _has_told(self._interrupted):
-                self._code = -signal.SIGINT
         return self._code
 
 
-def _has_told(pipe: int) -> bool:
-    try:
-        return bool(os.read(pipe, 1))
-    except BlockingIOError:  # something that it has started holds the other end
-        return False
-
-
-def _be(command: Sequence[str], standard_path: Sequence[str], interrupted: int) -> NoReturn:
+def _be(command: Sequence[str], standard_path: Sequence[str]) -> NoReturn:
     """Be the process of a Python script, to the end of its interpreter."""
     script, *_ = command
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # ends a new process as long as Python has not begun
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     signal.signal(signal.SIGINT, signal.default_int_handler)
     if os.environ.get("PYTHONFAULTHANDLER"):
         faulthandler.enable(file=2)
     sys.argv = list(command)
-    sys.path[:] = [str(Path(script).resolve().parent), *_python_path(), *standard_path]
+    sys.orig_argv = [sys.executable, *command]
+    sys.path[:] = [str(Path(script).resolve().parent), *_python_path(os.environ), *standard_path]
     importlib.invalidate_caches()
     _open_standard_streams()
     sys.excepthook = sys.__excepthook__
-    ctypes.pythonapi.Py_Exit(_exit_code(script, interrupted))
+    ctypes.pythonapi.Py_Exit(_exit_code(script))
     raise AssertionError("Py_Exit does not return")
 
 
@@ -192,29 +192,20 @@ def _open_standard_streams() -> None:
         setattr(sys, f"__{name}__", stream)
 
 
-def _exit_code(script: str, interrupted: int) -> int:
-    """Run the script as ``__main__``, say what ended it, and return the exit code that Python would end with."""
-    main = ModuleType("__main__")
-    main.__dict__.update(
-        __file__=script,
-        __builtins__=builtins,
-        __annotations__={},
-        __cached__=None,
-        __loader__=SourceFileLoader("__main__", script),
-    )
-    sys.modules["__main__"] = main
-    try:
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-        exec(compile(Path(script).read_bytes(), script, "exec", dont_inherit=True), main.__dict__)
-    except SystemExit as end:
-        if end.code is None or isinstance(end.code, int):
-            return end.code or 0
-        print(end.code, file=sys.stderr)
-        return 1
-    except BaseException as error:
-        trace = error.__traceback__.tb_next if error.__traceback__ else None  # without this function
-        sys.excepthook(type(error), error.with_traceback(trace), trace)
-        if isinstance(error, KeyboardInterrupt):
-            os.write(interrupted, b"i")
-        return 1
-    return 0
+def _exit_code(script: str) -> int:
+    """Run a script as ``__main__``; the exit code that Python would end with, where it has not ended in it.
+
+    Python itself runs it, in the very function with which a process of its own does, and says what ended it.
+    """
+    main = sys.modules["__main__"] = ModuleType("__main__")
+    main.__dict__.update(__builtins__=builtins, __annotations__={})
+    libc = ctypes.CDLL(None)
+    libc.fopen.restype = ctypes.c_void_p
+    name = os.fsencode(script)
+    file = ctypes.c_void_p(libc.fopen(name, b"rb"))
+    if ctypes.pythonapi.PyRun_SimpleFileExFlags(file, name, 1, None) == 0:
+        return 0
+    if getattr(sys, "last_type", None) is KeyboardInterrupt:
+        # Python ends by SIGINT then, but only once it has cleaned up, when none of its code runs any more (Py_RunMain).
+        libc.__cxa_atexit(libc["raise"], ctypes.c_void_p(signal.SIGINT), None)
+    return 1

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any, Self
 from autograder.boxes.boxed_command import ANSWER_SECONDS, Finished, Running, WarmCommand
 from autograder.boxes.channel import Channel, ChannelClosed, close_all
 from autograder.boxes.entering import Entrance
-from autograder.boxes.environment import base_environment, box_environment
+from autograder.boxes.environment import box_environment
 from autograder.boxes.fork_server import BESIDE
 from autograder.boxes.fork_server_client import SUPERVISOR_MODULE, ForkServer
 from autograder.boxes.forked import ForkedProcess, PlacedProcess
@@ -269,7 +269,7 @@ class Enclosure:
                 [writing],
                 cwd=cwd,
                 environment={**environment, "PWD": str(cwd)},
-                call={"words": list(words), "path": base_environment().get("PYTHONPATH", "")},
+                call={"words": list(words)},
             )
         except BaseException:
             os.close(reading)

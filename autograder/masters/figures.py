@@ -108,7 +108,9 @@ def _read(svg: Path, named: str, line: int) -> Figure:
             "Draw it: python -m autograder.masters.drawing",
         ) from error
     except ElementTree.ParseError as error:
-        raise CellError(line, f"The figure {named} is no SVG ({error}).", "Write it as an SVG file that a browser shows.") from error
+        raise CellError(
+            line, f"The figure {named} is no SVG ({error}).", "Write it as an SVG file that a browser shows."
+        ) from error
     words = [(root.findtext(f"{_SVG}{tag}") or "").strip() for tag in ("title", "desc")]
     if not all(words):
         raise CellError(line, f"The figure {named} has no words.", "Give its SVG a <title> and a <desc>.")

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import re
+import shutil
+import subprocess
 import sys
+import time
+import zipapp
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -60,6 +64,19 @@ PROGRAMS = {
     "is_main": "import __main__, pickle\nclass C: pass\nprint(__main__.C is C, pickle.loads(pickle.dumps(C)) is C)",
     "has_a_module_of_its_own": "import random; print(random.MINE)",
     "closes_its_descriptors": "import os; os.closerange(0, 1000); os._exit(4)",
+    "is_interrupted_with_files_open": "import atexit, os\nos.closerange(3, 1000)\n"
+    "file = open('/tmp/mine', 'wb+', buffering=0)\natexit.register(lambda: print(os.pread(3, 9, 0)))\n"
+    "raise KeyboardInterrupt",
+    "has_a_hook_that_raises": "import atexit, sys\natexit.register(print, 'bye')\n"
+    "def hook(*a): raise RuntimeError('hook')\nsys.excepthook = hook\n1 / 0",
+    "exits_with_a_huge_number": "import sys; sys.exit(2**80)",
+    "looks_at_its_exception": "import atexit, sys; atexit.register(lambda: print(sys.last_value)); 1 / 0",
+    "starts_itself_again": "import os, sys\nif 'AGAIN' in os.environ: sys.exit('again')\n"
+    "os.environ['AGAIN'] = '1'\nos.execv(sys.executable, sys.orig_argv)",
+    # On a busy machine `ros2` meets Ctrl-C when its program has ended already.
+    "has_ended_when_ros2_gets_ctrl_c": "import os, signal, time\nparent = os.getppid()\nif not os.fork():\n"
+    "    time.sleep(0.5)\n    os.kill(parent, signal.SIGINT)\n    os.kill(parent, signal.SIGCONT)\n    os._exit(0)\n"
+    "os.kill(parent, signal.SIGSTOP)\nos._exit(3)",
 }
 """The programs by name; what they show is that name."""
 UNEQUAL = re.compile(
@@ -104,23 +121,26 @@ def start(enclosure: Enclosure, tmp_path: Path, boxed: Addresses) -> Callable[..
         {**boxed_ros_environment(), **of_the_class, "AMENT_PREFIX_PATH": str(place)}
     )
 
-    def start(name: str, text: str, *, cold: bool = False) -> Running | WarmCommand:
+    def start(name: str, text: str | bytes, *, cold: bool = False, **more: str) -> Running | WarmCommand:
         program = folder / name
-        program.write_text(f"#!{sys.executable}\n{text}\n")
+        program.write_bytes(text if isinstance(text, bytes) else f"#!{sys.executable}\n{text}\n".encode())
         program.chmod(0o755)
         words, binds = ["run", PACKAGE, name, "one", "--two"], [Bind(install, place)]
+        variables = {**environment, **more}
         if cold:
             return enclosure.start(
-                [ros2(), *words], binds=binds, environment=environment, cwd=HOME, scratch=False
+                [ros2(), *words], binds=binds, environment=variables, cwd=HOME, scratch=False
             )
-        return enclosure.ros2(boxed.programs, words, binds=binds, environment=environment, cwd=HOME)
+        return enclosure.ros2(boxed.programs, words, binds=binds, environment=variables, cwd=HOME)
 
     return start
 
 
 def end_of(running: Running | WarmCommand) -> Run:
     output, asked = b"", False
+    deadline = time.monotonic() + 60.0
     while (data := running.next_output(30.0)) != b"":
+        assert time.monotonic() < deadline, "it says more and more, and does not end"
         assert data is not None, f"it says no more than {output!r} and does not end"
         output += data
         if f"{READY}\n".encode() in output and not asked:
@@ -147,17 +167,51 @@ def test_it_finds_rclpy_imported(start: Callable[..., Running | WarmCommand]) ->
     assert end_of(start("a", "import sys; print('rclpy' in sys.modules)")) == Run("True\n", 0)
 
 
+def test_it_may_be_an_archive(start: Callable[..., Running | WarmCommand], tmp_path: Path) -> None:
+    (tmp_path / "archived").mkdir()
+    (tmp_path / "archived" / "__main__.py").write_text("print('archived')\n")
+    zipapp.create_archive(tmp_path / "archived", tmp_path / "archive", interpreter=sys.executable)
+    assert end_of(start("an_archive", (tmp_path / "archive").read_bytes())) == Run("archived\n", 0)
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
+def test_it_may_have_libraries_of_its_own(
+    start: Callable[..., Running | WarmCommand], tmp_path: Path
+) -> None:
+    """A workspace with a package in C or C++ has them, and a new process is told where."""
+    source, library = tmp_path / "own.c", tmp_path / "install" / "libown.so"
+    source.write_text("int answer(void) { return 42; }\n")
+    subprocess.run(["cc", "-shared", "-fPIC", "-o", library, source], check=True)
+    running = start(
+        "a", "import ctypes; print(ctypes.CDLL('libown.so').answer())", LD_LIBRARY_PATH=str(HOME / "install")
+    )
+    assert end_of(running) == Run("42\n", 0)
+
+
+def test_it_cannot_close_its_output_and_stay(
+    start: Callable[..., Running | WarmCommand], tmp_path: Path
+) -> None:
+    """A `ros2` on the path is a real one, and so is a student's: then the first process is theirs as well."""
+    theirs = tmp_path / "install" / "bin" / "ros2"
+    theirs.parent.mkdir()
+    theirs.write_text(f"#!{sys.executable}\nimport os, time\nos.closerange(0, 9)\ntime.sleep(600)\n")
+    theirs.chmod(0o755)
+    running = start("a", "", PATH=str(HOME / "install" / "bin"))
+    assert end_of(running) == Run("", -9)
+
+
 @pytest.mark.parametrize(
     "attack",
     [
         "import os, signal; os.kill(os.getppid(), signal.SIGKILL)",
         "import os, signal; os.kill(-1, signal.SIGKILL)",
         "import os\nif not os.fork():\n    os.setsid()\n    os.closerange(0, 3)\n    while True: pass",
+        "import os\nif not os.fork():\n    while True: os.write(1, b'x' * 60_000)",
         "import rclpy, sys\nrclpy.init = print\nsys.modules['json'] = None\n",
         "import socket\nfor n in range(3, 50):\n    try:\n        socket.socket(fileno=n).shutdown(2)\n"
         "    except OSError:\n        pass",
     ],
-    ids=["kills_its_parent", "kills_all", "stays", "replaces_modules", "shuts_every_socket"],
+    ids=["kills_its_parent", "kills_all", "stays", "talks_on", "replaces_modules", "shuts_every_socket"],
 )
 def test_it_does_nothing_to_the_next_one(start: Callable[..., Running | WarmCommand], attack: str) -> None:
     running = start("attack", attack)
