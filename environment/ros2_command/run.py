@@ -60,8 +60,8 @@ def find_executable(package: str, executable: str) -> Path:
 
 def _run(args: argparse.Namespace) -> Outcome:
     program = find_executable(args.package_name, args.executable_name)
-    # The terminal sends Ctrl-C to the program as well, at any moment from its start on, and it ends in its own way. As an
-    # exception it would come between the program's start or end and what is learnt of it.
+    # The terminal sends Ctrl-C to the program as well, at any moment from its start on, and it ends in its own way.
+    # As an exception it would come between the program's start or end and what is learnt of it.
     signal.signal(signal.SIGINT, lambda *_: None)
     process = start([*shlex.split(args.prefix or ""), str(program), *args.argv])
 
