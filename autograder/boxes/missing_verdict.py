@@ -10,7 +10,7 @@ from autograder.verdict import Diagnosis, Verdict, failed, not_checked
 _SYNTAX_ERRORS = ("SyntaxError", "IndentationError", "TabError")
 
 
-_LIMITS = {
+LIMITS = {
     Ended.OUT_OF_MEMORY: (
         "used more memory than it may have",
         "Look for a list that grows in every call, or for a loop that makes something new each time.",
@@ -32,6 +32,7 @@ _LIMITS = {
         "Look for a loop that prints without waiting, or print less.",
     ),
 }
+"""The limits at which a cell is stopped: what the notebook did, and what to do about it."""
 """For each limit of a box: what a student is told, and what to do."""
 _SHORTAGES = {
     "OSError: [Errno 28]": (
@@ -44,9 +45,9 @@ _SHORTAGES = {
         "had more files open at once than one program may have",
         "Close what you open: `with open(…) as file:` does it by itself.",
     ),
-    "BlockingIOError: [Errno 11]": ("too_many_processes", *_LIMITS[Ended.TOO_MANY_PROCESSES]),
-    "RuntimeError: can't start new thread": ("too_many_processes", *_LIMITS[Ended.TOO_MANY_PROCESSES]),
-    "MemoryError": ("out_of_memory", *_LIMITS[Ended.OUT_OF_MEMORY]),
+    "BlockingIOError: [Errno 11]": ("too_many_processes", *LIMITS[Ended.TOO_MANY_PROCESSES]),
+    "RuntimeError: can't start new thread": ("too_many_processes", *LIMITS[Ended.TOO_MANY_PROCESSES]),
+    "MemoryError": ("out_of_memory", *LIMITS[Ended.OUT_OF_MEMORY]),
 }
 """Limits that a program hears of as an error: how it begins, the diagnosis, what is said, what to do."""
 
@@ -132,7 +133,7 @@ def _kernel_gone(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) 
     if run.ended is Ended.KERNEL_DIED:
         place = "while this check cell was running"
     else:
-        limit = next(((title, cell.ended) for title, cell in before if cell.ended in _LIMITS), None)
+        limit = next(((title, cell.ended) for title, cell in before if cell.ended in LIMITS), None)
         if limit is not None:
             return _limit_exceeded(check, limit[1], f"the cell that begins with “{limit[0]}”")
         culprit = next((title for title, cell in before if cell.ended is Ended.KERNEL_DIED), "")
@@ -149,7 +150,7 @@ def _kernel_gone(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) 
 
 
 def _limit_exceeded(check: Check, ended: Ended, place: str) -> Verdict:
-    what, next_step = _LIMITS[ended]
+    what, next_step = LIMITS[ended]
     return zero_points(
         check, str(ended), f"In {place}, the notebook {what}. It was stopped there.", next_step
     )
@@ -173,10 +174,10 @@ def _out_of_time(check: Check, before: list[tuple[str, CellRun]]) -> Verdict:
 def _stopped_by_error(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:
     """The cell raised, mostly because what it names was never defined: the cause is in an earlier cell."""
     title, cause = next(
-        ((title, cell) for title, cell in before if cell.ended in (Ended.RAISED, Ended.TIMED_OUT, *_LIMITS)),
+        ((title, cell) for title, cell in before if cell.ended in (Ended.RAISED, Ended.TIMED_OUT, *LIMITS)),
         ("", None),
     )
-    if cause is not None and cause.ended in _LIMITS:
+    if cause is not None and cause.ended in LIMITS:
         return _limit_exceeded(check, cause.ended, f"the cell that begins with “{title}”")
     if cause is not None and cause.ended is Ended.TIMED_OUT:
         return zero_points(

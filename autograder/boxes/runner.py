@@ -15,7 +15,7 @@ from autograder.boxes.execution import Cell, CellRun, CellType, Check, Ended, Ex
 from autograder.boxes.hanging import Hangs, seconds_again
 from autograder.boxes.kernel import Kernel, KernelFailed, Start
 from autograder.boxes.limits import Patient, first_of, wall_time
-from autograder.boxes.missing_verdict import grader_trouble, without_verdict
+from autograder.boxes.missing_verdict import LIMITS, grader_trouble, without_verdict
 from autograder.boxes.outputs import Budget, OutputCollector
 from autograder.verdict import State, Verdict
 
@@ -186,7 +186,8 @@ class _Run:
         except Exception as error:
             self._judge_failed(index, cell.check, error)
             return
-        if verdict is not None:
+        # Who was stopped at a limit has not shown the judge all: whether it had seen enough by then would be chance.
+        if verdict is not None and (verdict.passed or self._ended[index] not in LIMITS):
             self._count(index, cell.check, verdict)
 
     def _count(self, index: int, check: Check, verdict: Verdict) -> None:

@@ -228,6 +228,15 @@ def test_a_verdict_on_another_exercise_does_not_count(run: Run) -> None:
     assert execution.verdicts[0].score == 0
 
 
+def test_a_check_that_is_stopped_at_a_limit_earns_nothing_whatever_the_judge_had_seen(run: Run) -> None:
+    flood = check("while True:\n    print('x' * 1000)")
+    half = Verdict("lab.one", "One", State.FAILED, 5.0, 10.0)
+    for says, score, why in ((half, 0.0, "too_much_output"), (passed(), 10.0, "")):
+        execution = run([flood], says, flood_bytes=100_000)
+        assert execution.cells[0].ended is Ended.TOO_MUCH_OUTPUT
+        assert (execution.verdicts[0].score, key(execution)) == (score, why)
+
+
 def test_markdown_is_not_executed(run: Run) -> None:
     execution = run([Cell("raise SystemExit", CellType.MARKDOWN), "1"])
     assert [cell.ended for cell in execution.cells] == [Ended.DONE, Ended.DONE]
