@@ -12,8 +12,6 @@ from autograder.notebook.robot.motion import FASTEST, FASTEST_TURN, TICK, Veloci
 from autograder.notebook.robot.walking import NEAR_ENOUGH
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rclpy.node import Node
 
     from autograder.notebook.robot.motion import Pose
@@ -89,9 +87,18 @@ class Spiral:
         node: The robot.
         action_type: Has a list of numbers as the first field of its feedback.
         name: Of the action.
+
+    Raises:
+        TypeError: The feedback does not begin with a list.
     """
 
     def __init__(self, node: Node, action_type: Any, name: str) -> None:
+        self._field, kind = next(iter(action_type.Feedback.get_fields_and_field_types().items()))
+        if not kind.startswith("sequence<"):
+            raise TypeError(
+                f"The feedback of {action_type.__name__} has no list of numbers that the robot could walk, but "
+                f"{self._field}, a {kind}. Pass the type of an action such as Fibonacci."
+            )
         self._numbers: list[int] = []
         self._left: deque[int] = deque()
         self._arc: deque[Velocity] = deque()
@@ -100,7 +107,7 @@ class Spiral:
         node.create_subscription(
             action_type.Impl.FeedbackMessage,
             f"{name}/_action/feedback",
-            lambda message: self._hear(message),
+            self._hear,
             10,
         )
 
@@ -110,11 +117,10 @@ class Spiral:
         return not self._left and not self._arc
 
     def _hear(self, message: Any) -> None:
-        first = next(iter(message.feedback.get_fields_and_field_types()))
-        numbers: Sequence[int] = [int(number) for number in getattr(message.feedback, first)]
-        known = self._numbers
-        self._left += numbers[len(known) if list(numbers[: len(known)]) == known else 0 :]
-        self._numbers = list(numbers)
+        numbers = [int(number) for number in getattr(message.feedback, self._field)]
+        known = len(self._numbers)
+        self._left += numbers[known if numbers[:known] == self._numbers else 0 :]
+        self._numbers = numbers
 
     def next(self, pose: Pose, bumped: bool) -> Velocity | None:
         """The command for the next step; behind a wall no number is walked."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from my_robot_interfaces.action import Fibonacci
+from small_robot_interfaces.action import WalkTo
 
 from autograder.notebook.robot.motion import START, STILL, TICK, Moved, Pose, move
 from autograder.notebook.robot.room import ROOM
@@ -90,6 +91,11 @@ def test_the_numbers_of_another_goal_begin_anew(node: FakeNode) -> None:
     assert steps
     node.feed(0)
     assert play(spiral)[1] == 0, "0 has no radius"
+
+
+def test_an_action_without_numbers_is_refused(node: FakeNode) -> None:
+    with pytest.raises(TypeError, match="WalkTo has no list of numbers .* distance, a double"):
+        Spiral(node, WalkTo, "walk_to")  # type: ignore[arg-type]
 
 
 def test_behind_a_wall_it_walks_no_further(node: FakeNode) -> None:
