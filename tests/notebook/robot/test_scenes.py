@@ -94,7 +94,7 @@ def test_the_numbers_of_another_goal_begin_anew(node: FakeNode) -> None:
 
 
 def test_an_action_without_numbers_is_refused(node: FakeNode) -> None:
-    with pytest.raises(TypeError, match="WalkTo has no list of numbers .* distance, a double"):
+    with pytest.raises(TypeError, match=r"WalkTo has no list of numbers .* distance, a double"):
         Spiral(node, WalkTo, "walk_to")  # type: ignore[arg-type]
 
 
