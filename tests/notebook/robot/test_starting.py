@@ -18,7 +18,8 @@ start_ros()
 def until(holds):
     while not holds():
         time.sleep(0.01)
-def drive(robot, to=1.2):
+def drive(robot):
+    to = robot.state.pose.x + 0.2
     node = Node("driver")
     publisher = node.create_publisher(Twist, "/cmd_vel", 10)
     command = Twist()
@@ -68,7 +69,7 @@ def test_shown_again_the_picture_above_rests(run: Callable[..., list[Any]]) -> N
     above, below, third, _ = run(
         "robot = start_robot()",
         "robot.show(); drive(robot)",
-        "robot.show(); drive(robot, 1.4)",
+        "robot.show(); drive(robot)",
         "robot.stop()",
     )
     assert "x = 1.00 m" in words(above)
