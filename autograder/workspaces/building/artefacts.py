@@ -30,13 +30,6 @@ class BadArtefacts(ValueError):
     """An archive that is none, or that holds what no build of a workspace makes."""
 
 
-class _PlainEntry(tarfile.TarInfo):
-    """An entry as GNU tar writes it. Python looks for the words of pax in a time that grows with the square."""
-
-    def _proc_pax(self, _: tarfile.TarFile) -> tarfile.TarInfo:
-        raise BadArtefacts("it says more of its files than names, rights and sizes")
-
-
 def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> int:
     """Write an archive of a build's install folder.
 
@@ -56,7 +49,7 @@ def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> int:
     number = size = 0
     links: dict[PurePosixPath, PurePosixPath] = {}
     try:
-        with tarfile.open(fileobj=io.BytesIO(archive), mode="r:", tarinfo=_PlainEntry) as tar:
+        with tarfile.open(fileobj=io.BytesIO(archive), mode="r:") as tar:
             for member in tar:
                 number += 1
                 size += max(member.size, 0)

@@ -122,9 +122,7 @@ class BoxedJobs:
                 if returncode != 0:
                     needs_room = limits.beside and guard.reason() is Ended.OUT_OF_MEMORY
                     return Built(returncode, output, late=BUILD_SECONDS if late else 0.0), needs_room
-                packing = (
-                    f"exec tar --format=gnu -cf - -C {shlex.quote(str(place / 'install'))} . 2>/dev/null"
-                )
+                packing = f"exec tar -cf - -C {shlex.quote(str(place / 'install'))} . 2>/dev/null"
                 packed = enclosure.run(
                     ["/bin/sh", "-c", packing], limit=60.0, cwd=Path("/"), output_bytes=MAX_ARCHIVE_BYTES
                 )

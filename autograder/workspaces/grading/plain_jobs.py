@@ -55,7 +55,7 @@ class PlainJobs:
         if built.returncode != 0:
             return built
         archive = io.BytesIO()
-        with tarfile.open(fileobj=archive, mode="w", format=tarfile.GNU_FORMAT) as tar:
+        with tarfile.open(fileobj=archive, mode="w") as tar:
             tar.add(entry.folder / "install", arcname=".")
         for made in ("install", "build", "log"):
             subprocess.run(["rm", "-rf", str(entry.folder / made)], check=True)
