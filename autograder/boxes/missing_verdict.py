@@ -32,7 +32,6 @@ LIMITS = {
         "Look for a loop that prints without waiting, or print less.",
     ),
 }
-"""The limits at which a cell is stopped: what the notebook did, and what to do about it."""
 """For each limit of a box: what a student is told, and what to do."""
 _SHORTAGES = {
     "OSError: [Errno 28]": (

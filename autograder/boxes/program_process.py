@@ -93,9 +93,11 @@ def _start(command: Sequence[str]) -> ros2_run.Process:
     """
     given = _python_path(_environment)
     own = [folder for folder in _python_path(os.environ) if folder not in given]
-    names = _names_in([*own, str(Path(command[0]).parent)])
-    differs = os.environ.get(_FOR_THE_LOADER) != _environment.get(_FOR_THE_LOADER)
-    if differs or not _is_ours(command[0]) or names & {*_imported(), *_AT_START}:
+    if (
+        os.environ.get(_FOR_THE_LOADER) != _environment.get(_FOR_THE_LOADER)
+        or not _is_ours(command[0])
+        or _names_in([*own, str(Path(command[0]).parent)]) & {*_imported(), *_AT_START}
+    ):
         return subprocess.Popen(command)
     return _Fork(command, [folder for folder in sys.path if folder not in given])
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from std_msgs.msg import String
 
-from autograder.notebook.robot.motion import FASTEST, FASTEST_TURN, TICK, Velocity, towards
+from autograder.notebook.robot.motion import FASTEST, FASTEST_TURN, STILL, TICK, Velocity, towards
 from autograder.notebook.robot.walking import NEAR_ENOUGH
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ class Spiral:
             )
         self._numbers: list[int] = []
         self._left: deque[int] = deque()
-        self._arc: deque[Velocity] = deque()
+        self._arc, self._steps = STILL, 0
         self.says = ""
         # The topic and its type are those of design.ros2.org/articles/actions.html ("Feedback Topic").
         node.create_subscription(
@@ -114,7 +114,7 @@ class Spiral:
     @property
     def is_over(self) -> bool:
         """True if it has walked all numbers that came."""
-        return not self._left and not self._arc
+        return not self._left and not self._steps
 
     def _hear(self, message: Any) -> None:
         numbers = [int(number) for number in getattr(message.feedback, self._field)]
@@ -127,22 +127,23 @@ class Spiral:
         del pose
         if bumped:
             self._left.clear()
-            self._arc.clear()
-        while self._left and not self._arc:
+            self._steps = 0
+        while self._left and not self._steps:
             number = self._left.popleft()
             self.says = str(number)
-            self._arc = _quarter_circle(METRES * number)
-        if self._arc:
-            return self._arc.popleft()
-        self.says = ""
-        return None
+            self._arc, self._steps = _quarter_circle(METRES * number)
+        if not self._steps:
+            self.says = ""
+            return None
+        self._steps -= 1
+        return self._arc
 
 
-def _quarter_circle(radius: float) -> deque[Velocity]:
-    """The steps of a quarter of a circle to the left, as fast as the motors allow; none without a radius."""
+def _quarter_circle(radius: float) -> tuple[Velocity, int]:
+    """The velocity on a quarter of a circle to the left, at most what the motors allow, and the number of its steps."""
     if radius <= 0:
-        return deque()
+        return STILL, 0
     speed = min(FASTEST, FASTEST_TURN * radius)
     steps = math.ceil(_QUARTER * radius / (speed * TICK))
     turn = _QUARTER / (steps * TICK)
-    return deque([Velocity(turn * radius, turn)] * steps)
+    return Velocity(turn * radius, turn), steps

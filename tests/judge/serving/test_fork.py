@@ -89,4 +89,6 @@ def test_a_judge_that_is_deciding_at_its_limit_says_so_and_one_that_is_looking_i
         child = Child(ponders, limit=600.0)
         os.read(heard, 1)
         assert child.result(within=0.0).data == b"undecided"
+    os.close(heard)
+    os.close(tells)
     assert Child(_hangs, limit=0.3).result().data is None

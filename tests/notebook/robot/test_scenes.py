@@ -105,6 +105,8 @@ def test_behind_a_wall_it_walks_no_further(node: FakeNode) -> None:
     assert moved.bumped
     assert said[-1] == "13"
     assert spiral.is_over
+    node.feed(2_000_000_000)
+    assert play(spiral)[0].bumped, "an arc of a billion steps takes no more memory than one"
 
 
 CELLS = """
