@@ -31,6 +31,19 @@ BESIDE, INSIDE = "beside", "inside"
 FOLDER_PREFIX = "autograder-held-"
 """The beginning of the names of fork servers' folders. Older versions used another word and no lock: theirs are left
 alone."""
+_LIBRARY_FOLDERS = 8
+"""More packages with libraries than a workspace of the course has."""
+
+
+def library_folders(address: str) -> list[Path]:
+    """The folders in which the forks of a fork server look for libraries first: the loader reads their names but once.
+
+    Where the fork server runs they are empty. In a box they are links to the folders of the box that hold libraries.
+
+    Args:
+        address: Where the fork server listens.
+    """
+    return [Path(f"{address}.libraries-{number}") for number in range(_LIBRARY_FOLDERS)]
 
 
 def main(arguments: list[str]) -> None:
@@ -66,6 +79,9 @@ def _tidy(address: str) -> None:
     socket_file = Path(address)
     with contextlib.suppress(OSError):
         socket_file.unlink(missing_ok=True)
+        for folder in library_folders(address):
+            if folder.is_dir():
+                folder.rmdir()
         if socket_file.parent.name.startswith(FOLDER_PREFIX):
             socket_file.parent.rmdir()
 

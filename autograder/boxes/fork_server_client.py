@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 from autograder.boxes.environment import base_environment
-from autograder.boxes.fork_server import BESIDE, FOLDER_PREFIX, INSIDE
+from autograder.boxes.fork_server import BESIDE, FOLDER_PREFIX, INSIDE, library_folders
 from autograder.boxes.held_folder import HeldFolder
 
 if TYPE_CHECKING:
@@ -146,7 +146,7 @@ class ForkServers:
         self._supervisors = self._programs = None
         if boxed:
             self._supervisors = ForkServer(BESIDE, SUPERVISOR_MODULE, place / "supervisors", log)
-            self._programs = ForkServer(INSIDE, PROGRAM_MODULE, place / "programs", log, environment)
+            self._programs = _of_programs(place / "programs", log, environment)
         self.addresses = Addresses(
             self._supervisors.address if self._supervisors else "",
             self._kernels.address,
@@ -174,3 +174,20 @@ class ForkServers:
     def _all(self) -> list[ForkServer]:
         every = (self._supervisors, self._kernels, self._judges, self._programs)
         return [server for server in every if server is not None]
+
+
+def _of_programs(address: Path, log: int | None, environment: Mapping[str, str] | None) -> ForkServer:
+    """Start the fork server of programs, with folders for the libraries of a workspace."""
+    folders = library_folders(str(address))
+    for folder in folders:
+        folder.mkdir()
+    given = {**base_environment(), **(environment or {})}.get("LD_LIBRARY_PATH", "")
+    path = os.pathsep.join([*map(str, folders), *([given] if given else [])])
+    return ForkServer(
+        INSIDE,
+        PROGRAM_MODULE,
+        address,
+        log,
+        {**(environment or {}), "LD_LIBRARY_PATH": path},
+        [given, *map(str, folders)],
+    )

@@ -71,7 +71,24 @@ class Bind:
         ]
 
 
-def box_arguments(scratch: Path, binds: Sequence[Bind], *, scratch_visible: bool = True) -> list[str]:
+@dataclass(frozen=True)
+class Link:
+    """A symbolic link of the box's own.
+
+    Attributes:
+        place: Where it is.
+        target: What it leads to in the box.
+    """
+
+    place: Path
+    target: Path
+
+    def arguments(self) -> list[str]:
+        """As arguments of bubblewrap."""
+        return ["--symlink", str(self.target), str(self.place)]
+
+
+def box_arguments(scratch: Path, binds: Sequence[Bind | Link], *, scratch_visible: bool = True) -> list[str]:
     """The arguments of bubblewrap for a box.
 
     Args:

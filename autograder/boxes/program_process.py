@@ -6,8 +6,7 @@ thing alone: a Python script for this interpreter becomes a further fork instead
 arguments, the path, the standard streams, the ``__main__`` and the end of a process of its own.
 
 Everything else is started as `ros2 run` starts it: another interpreter's script, a program in another language, a
-script that would import a module of its own where one of the same name has been imported here, or load a library from
-a folder that this process was not told of when it started.
+script that would import a module, or load a library, of its own where one of the same name has been loaded here.
 """
 
 from __future__ import annotations
@@ -42,14 +41,24 @@ _UNBUFFERED = 2
 _HEAD = 1024
 """Bytes of a script in which its first line ends."""
 _FOR_THE_LOADER = "LD_LIBRARY_PATH"
-"""Read when a process starts, and never again (ld.so(8))."""
+"""Read when a process starts, and never again (ld.so(8)); the folders in it are opened at each search."""
+_OF_PROCESSORS = "glibc-hwcaps"
+"""A folder in which the loader looks first, if it was there when the loader first looked (ld.so(8))."""
 _environment: dict[str, str] = {}
-"""The environment in which the fork server was started."""
+"""The environment of every box."""
+_library_folders: list[str] = []
+"""Where the loader of this process looks first; see :func:`autograder.boxes.fork_server.library_folders`."""
 
 
-def prepare() -> None:
-    """Import what nearly every program with a node does."""
-    _environment.update(os.environ)
+def prepare(libraries: str, *library_folders: str) -> None:
+    """Import what nearly every program with a node does.
+
+    Args:
+        libraries: The ``LD_LIBRARY_PATH`` of every box.
+        library_folders: What this process has in its own one before that.
+    """
+    _environment.update({**os.environ, _FOR_THE_LOADER: libraries})
+    _library_folders.extend(library_folders)
     _never_unload()
     preload((*RCLPY, *_OF_SCRIPTS))
     preload_ros(INTERFACES)
@@ -94,12 +103,40 @@ def _start(command: Sequence[str]) -> ros2_run.Process:
     given = _python_path(_environment)
     own = [folder for folder in _python_path(os.environ) if folder not in given]
     if (
-        os.environ.get(_FOR_THE_LOADER) != _environment.get(_FOR_THE_LOADER)
+        not _loads_the_same_libraries()
         or not _is_ours(command[0])
         or _names_in([*own, str(Path(command[0]).parent)]) & {*_imported(), *_AT_START}
     ):
         return subprocess.Popen(command)
     return _Fork(command, [folder for folder in sys.path if folder not in given])
+
+
+def _loads_the_same_libraries() -> bool:
+    """True if this process finds each library where a new one with the same environment would."""
+    given, wanted = (
+        path.split(os.pathsep) if (path := environment.get(_FOR_THE_LOADER)) else []
+        for environment in (_environment, os.environ)
+    )
+    own = wanted[: len(wanted) - len(given)]
+    if [*own, *given] != wanted or len(own) > len(_library_folders):
+        return False
+    leads_there = all(
+        os.path.realpath(folder) == os.path.realpath(wanted)
+        for folder, wanted in zip(_library_folders, own, strict=False)
+    )
+    names = {
+        entry.name.partition(".so")[0]
+        for folder in map(Path, own)
+        if folder.is_dir()
+        for entry in folder.iterdir()
+    }
+    return leads_there and not names & {*_loaded_libraries(), _OF_PROCESSORS}
+
+
+def _loaded_libraries() -> set[str]:
+    """The names of the libraries in this process, without ``.so`` and a version."""
+    lines = Path("/proc/self/maps").read_text(encoding="utf-8", errors="replace").splitlines()
+    return {line.rpartition("/")[2].partition(".so")[0] for line in lines if ".so" in line}
 
 
 def _python_path(environment: Mapping[str, str]) -> list[str]:

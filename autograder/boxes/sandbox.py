@@ -25,11 +25,11 @@ from autograder.boxes.boxed_command import ANSWER_SECONDS, Finished, Running, Wa
 from autograder.boxes.channel import Channel, ChannelClosed, close_all
 from autograder.boxes.entering import Entrance
 from autograder.boxes.environment import box_environment
-from autograder.boxes.fork_server import BESIDE
+from autograder.boxes.fork_server import BESIDE, library_folders
 from autograder.boxes.fork_server_client import SUPERVISOR_MODULE, ForkServer
 from autograder.boxes.forked import ForkedProcess, PlacedProcess
 from autograder.boxes.held_folder import HeldFolder
-from autograder.boxes.mounts import HOME, WORK, Bind, box_arguments
+from autograder.boxes.mounts import HOME, WORK, Bind, Link, box_arguments
 from autograder.boxes.scratch import write_files
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ class Enclosure:
             raise
 
     def box(
-        self, name: str, binds: Sequence[Bind] = (), *, scratch: bool = True, guarded: bool = False
+        self, name: str, binds: Sequence[Bind | Link] = (), *, scratch: bool = True, guarded: bool = False
     ) -> Box:
         """Make an empty box, for a fork server's child to enter.
 
@@ -260,7 +260,9 @@ class Enclosure:
             environment: Its whole environment.
             cwd: Where it starts.
         """
-        box = self.box(self._next_name(), binds, scratch=False, guarded=True)
+        libraries = _own_libraries(environment)
+        links = [Link(*pair) for pair in zip(library_folders(programs), libraries, strict=False)]
+        box = self.box(self._next_name(), [*binds, *links], scratch=False, guarded=True)
         reading, writing = os.pipe()
         try:
             process = self.enter(
@@ -362,6 +364,13 @@ class Enclosure:
             self._ended[message["name"]] = message["status"]
         elif message["say"] == "failed":
             raise NoSandbox(message["why"])
+
+
+def _own_libraries(environment: Mapping[str, str]) -> list[Path]:
+    """The folders of libraries that an environment has beside those of every box."""
+    of_every_box = box_environment().get("LD_LIBRARY_PATH", "").split(os.pathsep)
+    folders = environment.get("LD_LIBRARY_PATH", "").split(os.pathsep)
+    return [Path(folder) for folder in folders if folder not in of_every_box]
 
 
 @functools.cache

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
@@ -151,6 +152,19 @@ def end_of(running: Running | WarmCommand) -> Run:
     return Run(output.decode(), code)
 
 
+def library(tmp_path: Path, name: str) -> None:
+    """A library in the package's folder that answers 42."""
+    source = tmp_path / "own.c"
+    source.write_text("int answer(void) { return 42; }\n")
+    subprocess.run(["cc", "-shared", "-fPIC", "-o", tmp_path / "install" / name, source], check=True)
+
+
+def libraries_in(*folders: object) -> dict[str, str]:
+    """The variable that says so, before what every box has."""
+    given = box_environment().get("LD_LIBRARY_PATH", "")
+    return {"LD_LIBRARY_PATH": os.pathsep.join([*map(str, folders), *([given] if given else [])])}
+
+
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_it_is_as_ros2_run_starts_it(
     start: Callable[..., Running | WarmCommand], tmp_path: Path, name: str
@@ -179,13 +193,38 @@ def test_it_may_have_libraries_of_its_own(
     start: Callable[..., Running | WarmCommand], tmp_path: Path
 ) -> None:
     """A workspace with a package in C or C++ has them, and a new process is told where."""
-    source, library = tmp_path / "own.c", tmp_path / "install" / "libown.so"
-    source.write_text("int answer(void) { return 42; }\n")
-    subprocess.run(["cc", "-shared", "-fPIC", "-o", library, source], check=True)
+    library(tmp_path, "libown.so")
     running = start(
-        "a", "import ctypes; print(ctypes.CDLL('libown.so').answer())", LD_LIBRARY_PATH=str(HOME / "install")
+        "a",
+        "import ctypes, sys; print(ctypes.CDLL('libown.so').answer(), 'rclpy' in sys.modules)",
+        **libraries_in(HOME / "install"),
+    )
+    assert end_of(running) == Run("42 True\n", 0)
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
+@pytest.mark.parametrize("name", ["librcl.so", "libstd_msgs__rosidl_generator_c.so.1"])
+def test_a_library_of_its_own_comes_before_one_of_the_same_name(
+    start: Callable[..., Running | WarmCommand], tmp_path: Path, name: str
+) -> None:
+    library(tmp_path, name)
+    running = start(
+        "a", f"import ctypes; print(ctypes.CDLL('{name}').answer())", **libraries_in(HOME / "install")
     )
     assert end_of(running) == Run("42\n", 0)
+
+
+@pytest.mark.parametrize(
+    "folders",
+    [[HOME / f"none-{n}" for n in range(20)], [HOME / "none", ""], ["", HOME / "none"]],
+    ids=["many", "here_last", "here_first"],
+)
+def test_it_is_told_where_its_libraries_are(
+    start: Callable[..., Running | WarmCommand], folders: list[object]
+) -> None:
+    """However they are written: what a fork cannot follow becomes a new process."""
+    text, path = "import os; print(os.environ['LD_LIBRARY_PATH'])", libraries_in(*folders)
+    assert end_of(start("a", text, **path)) == end_of(start("a", text, cold=True, **path))
 
 
 def test_it_cannot_close_its_output_and_stay(
