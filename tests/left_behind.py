@@ -13,7 +13,7 @@ import subprocess
 import sys
 import time
 
-from autograder.parent_death import adopt_orphans
+from autograder.process_trees import adopt_orphans
 from tests.nothing_left import below, end_all
 
 PATIENCE = 180.0

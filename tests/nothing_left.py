@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 import psutil
 
 from autograder.boxes.held_folder import HeldFolder
-from autograder.parent_death import adopt_orphans, die_with_parent
+from autograder.process_trees import adopt_orphans, die_with_parent
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

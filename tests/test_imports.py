@@ -28,11 +28,11 @@ MAY_IMPORT = {
     "exercises": frozenset({"course", "kit"}),
     "messages": frozenset({"verdict"}),
     "cards": frozenset({"verdict"}),
-    "boxes": frozenset({"verdict", "parent_death"}),
+    "boxes": frozenset({"verdict", "process_trees"}),
     "masters": frozenset({"course", "exercises", "regular_files"}),
     "journal": frozenset({"course", "verdict"}),
     "message_files": frozenset[str](),
-    "parent_death": frozenset[str](),
+    "process_trees": frozenset[str](),
     "appeals": ALL - {"grading", "boxes", "notebook"},
     "notebook": ALL
     - {"judge", "exercises", "kit", "masters", "boxes", "grading", "execution", "recording", "appeals"},

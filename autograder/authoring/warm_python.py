@@ -27,7 +27,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, NoReturn
 
 from autograder.judge.subjects.command_subject import CommandSubject
-from autograder.parent_death import die_with_parent
+from autograder.process_trees import die_with_parent
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

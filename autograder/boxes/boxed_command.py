@@ -10,7 +10,7 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
-import psutil
+from autograder.process_trees import descendants
 
 if TYPE_CHECKING:
     from autograder.boxes.forked import PlacedProcess
@@ -108,10 +108,9 @@ class Running:
 
     def interrupt(self) -> None:
         """Ctrl-C at everything below the first process of the box, which only waits for the others."""
-        with contextlib.suppress(psutil.Error):
-            for process in psutil.Process(self.pid).children(recursive=True):
-                with contextlib.suppress(psutil.Error):
-                    process.send_signal(signal.SIGINT)
+        for pid in descendants(self.pid):
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.kill(pid, signal.SIGINT)
 
     def end(self) -> None:
         """Kill it and all that it has started; may be called twice."""

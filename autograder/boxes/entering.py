@@ -16,7 +16,7 @@ from typing import Any
 from autograder.boxes import syscalls
 from autograder.boxes.channel import Channel, ChannelClosed, close_all
 from autograder.boxes.seccomp_filter import filter_for_boxes
-from autograder.parent_death import adopt_orphans, die_with_parent
+from autograder.process_trees import adopt_orphans, die_with_parent, end_descendants
 
 Run = Callable[[Mapping[str, Any], Sequence[int]], None]
 """The work of a child: called with the request's ``call`` and its descriptors."""
@@ -84,8 +84,6 @@ def enter(channel: Channel, run: Run) -> None:
         channel.send({"pid": pid})
     status = _end_of(pid, channel)
     if not entrance.boxed:
-        from autograder.boxes.process_ends import end_descendants
-
         end_descendants()
     with contextlib.suppress(ChannelClosed):
         channel.send({"status": status})

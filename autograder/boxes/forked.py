@@ -9,6 +9,7 @@ import signal
 from typing import TYPE_CHECKING
 
 from autograder.boxes.channel import Channel, ChannelClosed
+from autograder.process_trees import signal_group
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -69,8 +70,7 @@ class ForkedProcess:
     def interrupt(self) -> None:
         """SIGINT to it and to its process group."""
         if self.alive:
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.killpg(self.pid, signal.SIGINT)
+            signal_group(self.pid, signal.SIGINT)
 
     def wait(self, within: float) -> bool:
         """Wait for its end; whether it came.

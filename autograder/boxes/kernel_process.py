@@ -38,7 +38,6 @@ _PRELOADED = (
     "autograder.notebook",
     "autograder.notebook.checking.check",
     "autograder.notebook.robot.starting",
-    "autograder.boxes.process_ends",
     "autograder.cards.bundle",
 )
 _PREPARED = ("autograder.cards.bundle",)

@@ -27,7 +27,7 @@ from autograder.boxes.channel import Channel, ChannelClosed, close_all
 from autograder.boxes.entering import apply_rlimits
 from autograder.boxes.mounts import ETC, ETC_FOLDERS, TERMINALS, etc_files
 from autograder.boxes.seccomp_filter import filter_for_boxes
-from autograder.parent_death import die_with_parent
+from autograder.process_trees import die_with_parent
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -33,7 +33,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from tiny_class import LISTENER, TALKER, TinyClass, make_tiny_class
 
 from autograder.grading.entering.attempts import read
-from autograder.parent_death import adopt_orphans
+from autograder.process_trees import adopt_orphans
 
 BATCH = """
 import sys

@@ -15,7 +15,8 @@ from autograder.authoring.warm_python import WarmPython
 from autograder.judge.serving import attached
 from autograder.judge.serving.process import JudgeDied, JudgeProcess
 from autograder.judge.settings import subject_environment
-from autograder.judge.subjects.command_subject import CommandSubject, kill_leftovers
+from autograder.judge.subjects.command_subject import LEFTOVERS, CommandSubject
+from autograder.process_trees import end_descendants
 from autograder.verdict import Diagnosis, failed, not_checked, to_json
 
 if TYPE_CHECKING:
@@ -96,6 +97,6 @@ def _run(warm: WarmPython, file: Path, socket: Path, limit: float, helpers: Sequ
         reader.start()
     program.wait()
     timer.cancel()
-    kill_leftovers(spare=helpers)
+    end_descendants(LEFTOVERS, spare=helpers)
     for reader in readers:
         reader.join()

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder.authoring.judging import Turn, judge_all, warm_up
-from autograder.parent_death import die_with_parent
+from autograder.process_trees import die_with_parent
 from tests.measure import bank
 from tests.measure.ends import Ends, Repeated, end_of
 

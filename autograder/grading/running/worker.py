@@ -27,7 +27,6 @@ from autograder.boxes.fork_server_client import Addresses
 from autograder.boxes.limits import raise_own
 from autograder.boxes.missing_verdict import grader_trouble
 from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
-from autograder.boxes.process_ends import end_descendants
 from autograder.boxes.runner import run_notebook
 from autograder.boxes.sandbox import NoSandbox
 from autograder.boxes.scratch import scratch_folder
@@ -39,7 +38,7 @@ from autograder.judge.bench.patience import Patience
 from autograder.judge.serving import attached
 from autograder.judge.serving.domain import lease
 from autograder.judge.settings import boxed_ros_environment, ros_environment
-from autograder.parent_death import adopt_orphans
+from autograder.process_trees import adopt_orphans, end_descendants
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping, Sequence

@@ -17,10 +17,10 @@ import msgspec
 
 from autograder.boxes.execution import Execution
 from autograder.boxes.missing_verdict import grader_trouble
-from autograder.boxes.process_ends import end_processes_in
 from autograder.grading.running import shared_fork_servers
 from autograder.grading.running.worker import JUDGE
 from autograder.grading.task import Task, decode_execution, encode
+from autograder.process_trees import end_processes_in
 
 if TYPE_CHECKING:
     from pathlib import Path

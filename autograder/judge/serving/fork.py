@@ -12,9 +12,9 @@ import traceback
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NoReturn
 
-from autograder.judge.subjects.command_subject import kill_leftovers
+from autograder.judge.subjects.command_subject import LEFTOVERS
 from autograder.judge.verdicts.deciding import SIGNAL
-from autograder.parent_death import die_with_parent
+from autograder.process_trees import die_with_parent, end_descendants
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -131,7 +131,7 @@ class Child:
 
 def _leave(*_: object) -> NoReturn:
     """End at once, with everything that a subject has started: nobody wants a verdict any more."""
-    kill_leftovers()
+    end_descendants(LEFTOVERS)
     os._exit(1)
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import select
+import signal
 import socket
 import subprocess
 import sys
@@ -15,6 +15,7 @@ import msgspec
 
 from autograder.messages.lines import listen
 from autograder.messages.orders import Close, Open, Report
+from autograder.process_trees import signal_group
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -167,6 +168,5 @@ class _Child:
         """Give it a moment to go by itself: its orders have ended."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(timeout=2.0)
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(self._process.pid, 9)
+        signal_group(self._process.pid, signal.SIGKILL)
         self._process.wait()

@@ -7,19 +7,22 @@ import os
 import signal
 import subprocess
 import threading
-import time
-from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, Protocol
-
-import psutil
 
 from autograder.judge.settings import subject_environment
 from autograder.judge.subjects.subject import CannotStart, InOwnProcesses
-from autograder.parent_death import adopt_orphans, die_with_parent
+from autograder.process_trees import (
+    adopt_orphans,
+    descendants,
+    die_with_parent,
+    end_descendants,
+    signal_group,
+)
 from autograder.short_lines import short_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+    from pathlib import Path
 
     from autograder.judge.bench.recorder import Recorder
 
@@ -33,6 +36,10 @@ READ_LIMIT = 2.0
 """Seconds in which the last output of a command that has exited must have been read."""
 POLITE = 1.0
 """Seconds that a command has to end after SIGINT, before it is killed."""
+
+
+LEFTOVERS = 1.0
+"""Seconds in which what a command has left behind must have ended."""
 
 
 class Process(Protocol):
@@ -156,7 +163,7 @@ class CommandSubject(InOwnProcesses):
     def interrupt(self) -> None:
         """SIGINT to its process group, as a terminal sends it."""
         if self._process is not None and self._process.poll() is None:
-            _signal_group(self._process.pid, signal.SIGINT)
+            signal_group(self._process.pid, signal.SIGINT)
 
     @property
     def ended(self) -> bool:
@@ -165,9 +172,7 @@ class CommandSubject(InOwnProcesses):
 
     def processes(self) -> frozenset[int]:
         """The ids of the processes that the command has started and that live."""
-        return (
-            frozenset(process.pid for process in _below(self._process.pid)) if self._process else frozenset()
-        )
+        return frozenset(descendants(self._process.pid)) if self._process else frozenset()
 
     def stack(self) -> str:
         """Abort the command: Python's faulthandler, which its environment has switched on, prints the stacks.
@@ -178,11 +183,11 @@ class CommandSubject(InOwnProcesses):
         if process is None or self.ended:
             return ""
         self._dying.set()
-        below = _below(process.pid)
+        below = descendants(process.pid)
         process.send_signal(signal.SIGABRT)
         for child in below:
-            with contextlib.suppress(psutil.Error):
-                child.send_signal(signal.SIGABRT)
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.kill(child, signal.SIGABRT)
         self._done.wait(READ_LIMIT)
         return "\n".join(self._last_words)
 
@@ -192,10 +197,10 @@ class CommandSubject(InOwnProcesses):
             return
         self._dying.set()
         if self._process.poll() is None:
-            _signal_group(self._process.pid, signal.SIGINT)
+            signal_group(self._process.pid, signal.SIGINT)
             self._done.wait(POLITE)
-        _signal_group(self._process.pid, signal.SIGKILL)
-        kill_leftovers(spare=self._helpers)
+        signal_group(self._process.pid, signal.SIGKILL)
+        end_descendants(LEFTOVERS, spare=self._helpers)
         self._process.wait()
         self._process = None
 
@@ -240,38 +245,3 @@ class CommandSubject(InOwnProcesses):
 class _Budget:
     def __init__(self, size: int) -> None:
         self.left = size
-
-
-def _below(pid: int) -> list[psutil.Process]:
-    """The processes that a process has started, and theirs."""
-    try:
-        return psutil.Process(pid).children(recursive=True)
-    except psutil.Error:
-        return []
-
-
-def _signal_group(group: int, number: int) -> None:
-    with contextlib.suppress(ProcessLookupError, PermissionError):
-        os.killpg(group, number)
-
-
-def kill_leftovers(limit: float = 1.0, *, spare: Sequence[int] = ()) -> None:
-    """Kill every child of this process and wait for it, until none is left or ``limit`` seconds are over.
-
-    Args:
-        limit: Seconds of wall time.
-        spare: Process ids of children that are left alone.
-    """
-    deadline = time.monotonic() + limit
-    while time.monotonic() < deadline:
-        listed = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
-        children = [child for child in listed if int(child) not in spare]
-        if not children:
-            return
-        for child in children:
-            try:
-                os.kill(int(child), signal.SIGKILL)
-                os.waitpid(int(child), os.WNOHANG)
-            except (ProcessLookupError, ChildProcessError):
-                pass
-        time.sleep(0.005)

@@ -20,7 +20,7 @@ from typing import IO, TYPE_CHECKING
 
 import platformdirs
 
-from autograder.workspaces.running.processes import end_session, started_at
+from autograder.process_trees import end_session, started_at
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -10,7 +10,7 @@ import subprocess
 import time
 from typing import IO, TYPE_CHECKING, Self
 
-from autograder.workspaces.running.processes import descendants, started_at
+from autograder.process_trees import descendants, kill, known, signal_group
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -108,7 +108,7 @@ class OwnSession:
     def interrupt(self) -> None:
         """Ctrl-C, as a terminal sends it: to the process and to all of its group."""
         if self.exit_code() is None:
-            _signal(-self.pid, signal.SIGINT)
+            signal_group(self.pid, signal.SIGINT)
 
     def end(self, polite: float = 0.0) -> None:
         """Kill it and all that it has started; may be called twice.
@@ -124,20 +124,10 @@ class OwnSession:
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self._process.wait(timeout=polite)
             family |= self._below()
-        for pid, started in family:
-            if started and started == started_at(pid):  # else its number is another program's by now
-                _signal(pid, signal.SIGKILL)
-        _signal(-self.pid, signal.SIGKILL)
+        kill(family)
+        signal_group(self.pid, signal.SIGKILL)
         self._process.wait()
 
     def _below(self) -> set[tuple[int, str]]:
         """The processes that it has started and these have started, with the time at which each began."""
-        return (
-            {(pid, started_at(pid)) for pid in descendants(self.pid)} if self.exit_code() is None else set()
-        )
-
-
-def _signal(pid: int, number: int) -> None:
-    """Send a signal to a process, or to a group by its negative number, where it is still there."""
-    with contextlib.suppress(ProcessLookupError, PermissionError):
-        os.kill(pid, number)
+        return known(descendants(self.pid)) if self.exit_code() is None else set()

@@ -1,16 +1,15 @@
-"""The processes below a process, as Linux lists them."""
+"""The processes of a launch, as a check of the launch is told of them."""
 
 from __future__ import annotations
 
 import contextlib
 import os
-import select
-import signal
 import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.kit.launch_report import Process, process_line
+from autograder.process_trees import descendants
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -21,16 +20,6 @@ MAX_COMMAND_LINE = 32_000
 """Bytes of a command line that are read: a process can give itself one of megabytes, and another one at each look."""
 MAX_COMMAND_LINES = 500
 """Command lines that are reported of one launch, which has some ten."""
-
-
-def descendants(pid: int) -> list[int]:
-    """Every process that a process has started and these have started, as far as they live."""
-    try:
-        tasks = list(Path(f"/proc/{pid}/task").iterdir())
-        children = [int(word) for task in tasks for word in (task / "children").read_text().split()]
-    except OSError:
-        return []
-    return children + [below for child in children for below in descendants(child)]
 
 
 def _arguments_of(pid: int) -> list[str]:
@@ -51,45 +40,6 @@ def _own_id(pid: int) -> int:
 def _parent_of(pid: int) -> int:
     """The process that started this one, or has adopted it; 0 where it is gone."""
     return int((_status(pid, "PPid") or ["0"])[0])
-
-
-def started_at(pid: int) -> str:
-    """The start of a process, in clock ticks since the system's: a later one of its number has another."""
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[19]
-    except OSError:
-        return ""
-
-
-def end_session(leader: int, began: str) -> None:
-    """Kill what is left of a session, also where its leader is gone, and wait until it is.
-
-    Args:
-        leader: The process that the session began with.
-        began: When that process began (:func:`started_at`). Its number is not given away while one of its session
-            lives; afterwards it may be another program's, which nothing happens to.
-    """
-    if started_at(leader) not in ("", began):
-        return
-    for pid in _session(leader):
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            handle = os.pidfd_open(pid)
-            try:
-                signal.pidfd_send_signal(handle, signal.SIGKILL)
-                select.select([handle], [], [])  # readable once it has ended (pidfd_open(2))
-            finally:
-                os.close(handle)
-
-
-def _session(leader: int) -> list[int]:
-    """The processes of a session, this one excepted."""
-    members = []
-    for folder in Path("/proc").glob("[0-9]*"):
-        pid = int(folder.name)
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            if os.getsid(pid) == leader and pid != os.getpid():
-                members.append(pid)
-    return members
 
 
 def _status(pid: int, name: str) -> list[str]:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from autograder import exercises
 from autograder.kit.runners import Launches, RunsPrograms
-from autograder.parent_death import die_with_parent
+from autograder.process_trees import die_with_parent
 from autograder.workspaces.building.own import build
 from autograder.workspaces.running.plans import plan_for, ros2
 from autograder.workspaces.running.preparing import Preparation

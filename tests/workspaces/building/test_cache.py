@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from autograder.process_trees import started_at
 from autograder.workspaces.building import cache
-from autograder.workspaces.running.processes import started_at
 
 
 def fill(key: str, size: int = 10) -> None:

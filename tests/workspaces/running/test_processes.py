@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
-import signal
 import subprocess
 import sys
 import time
 
 import pytest
 
+from autograder.process_trees import descendants, kill, known
 from autograder.workspaces.running import processes
 from autograder.workspaces.running.processes import watched
 
@@ -42,7 +41,6 @@ def test_what_renames_itself_all_the_time_fills_nobody_s_memory(
                     time.sleep(0.05)
                 time.sleep(1.0)
         finally:
-            for pid in processes.descendants(launch.pid):
-                os.kill(pid, signal.SIGKILL)
+            kill(known(descendants(launch.pid)))
     assert 1 <= len(reported) <= most
     assert max(map(len, reported)) < 3_000

@@ -1,0 +1,218 @@
+"""The processes below a process: listed, ended together, and bound to the life of their parent.
+
+All of it is Linux's own (proc(5), prctl(2), pidfd_open(2)).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import os
+import select
+import signal
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    Known = tuple[int, str]
+    """A process by its number and its start (:func:`started_at`): a later process of that number has another start."""
+
+_PR_SET_PDEATHSIG = 1  # linux/prctl.h
+_PR_SET_CHILD_SUBREAPER = 36
+# Loaded once and here: between a fork and what is executed there nothing can be loaded safely.
+_libc = ctypes.CDLL(None, use_errno=True)
+
+
+def die_with_parent(parent: int = 0, number: signal.Signals = signal.SIGKILL) -> None:
+    """Get a signal when the parent ends; be killed where it has ended already.
+
+    What this process becomes by exec gets it too, its children do not. A change of rights takes it away. Linux takes
+    the *thread* that started a process for its parent: it must live as long as the process is wanted.
+
+    Args:
+        parent: Who was the parent before the fork; 0 where it is in another PID namespace or not known, so that one
+            which has ended already is not noticed.
+        number: What to get.
+    """
+    _prctl(_PR_SET_PDEATHSIG, number)
+    if parent and os.getppid() != parent:
+        os._exit(1)
+
+
+def adopt_orphans() -> bool:
+    """Become the parent of every descendant that loses its own, so that none gets out of sight.
+
+    Returns:
+        Whether the system can do this; elsewhere than on Linux a daemon may escape.
+    """
+    return _prctl(_PR_SET_CHILD_SUBREAPER, 1)
+
+
+def descendants(pid: int) -> list[int]:
+    """Every process that a process has started and these have started, as far as they live."""
+    found: list[int] = []
+    ahead = [pid]
+    while ahead:
+        below = _children(ahead.pop())
+        found += below
+        ahead += below
+    return found
+
+
+def known(processes: Iterable[int]) -> set[Known]:
+    """Processes with their starts, so that they can be ended later and nobody else in their place."""
+    return {(pid, started_at(pid)) for pid in processes}
+
+
+def started_at(pid: int) -> str:
+    """The start of a process, in clock ticks since the system's; empty where it is gone."""
+    fields = _fields(pid)
+    return fields[19] if fields else ""
+
+
+def kill(processes: Iterable[Known]) -> None:
+    """Kill processes that may start others.
+
+    Each is stopped first, so that none can start another while the others are gone through.
+    """
+    processes = list(processes)
+    for number in (signal.SIGSTOP, signal.SIGKILL):
+        for process in processes:
+            _signal(process, number)
+
+
+def signal_group(leader: int, number: int) -> None:
+    """Send a signal to a process group, where there still is one."""
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        os.killpg(leader, number)
+
+
+def end_descendants(within: float = 3.0, *, spare: Sequence[int] = ()) -> int:
+    """Kill every descendant of this process, and reap those that are or become its children.
+
+    Meant for a process that adopts orphans, at a time when nothing of its own is running.
+
+    Args:
+        within: Seconds after which to give up; a process in an uninterruptible system call dies when that ends.
+        spare: Children that are left alone, with all that is below them.
+
+    Returns:
+        How many processes were found.
+    """
+    seen: set[int] = set()
+    deadline = time.monotonic() + within
+    while time.monotonic() < deadline:
+        children = [child for child in _children(os.getpid()) if child not in spare]
+        if not children:
+            break
+        alive = [*children, *(below for child in children for below in descendants(child))]
+        seen.update(pid for pid in alive if _fields(pid)[:1] not in ([], ["Z"]))
+        kill(known(alive))
+        # A killed process becomes our own child when its parent dies; there is no event for "one of these ended".
+        if not _reap(children):
+            time.sleep(0.005)
+    return len(seen)
+
+
+def end_processes_in(folder: Path) -> None:
+    """Kill what was started for a submission with its home in ``folder``, where its worker no longer can.
+
+    Found by command line and by environment, which both are inherited unless somebody takes care to hide.
+
+    Args:
+        folder: A folder that no other process has in its command line or as its home.
+    """
+    place = os.fsencode(f"{folder}{os.sep}")
+    kill(known(pid for pid in _processes() if pid != os.getpid() and _mentions(pid, place)))
+
+
+def end_session(leader: int, began: str) -> None:
+    """Kill what is left of a session, also where its leader is gone, and wait until it is.
+
+    Args:
+        leader: The process that the session began with.
+        began: When that process began (:func:`started_at`). Its number is not given away while one of its session
+            lives; afterwards it may be another program's, which nothing happens to.
+    """
+    if started_at(leader) not in ("", began):
+        return
+    members = [pid for pid in _processes() if pid != os.getpid() and _session(pid) == leader]
+    for process in known(members):
+        _signal(process, signal.SIGKILL, wait=True)
+
+
+def _signal(process: Known, number: int, *, wait: bool = False) -> None:
+    """Send a signal to a process that is still there; wait for its end where that is wanted.
+
+    One handle is open at a time: a family may have more members than we may have open files.
+    """
+    pid, began = process
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        handle = os.pidfd_open(pid)
+        try:
+            if not began or started_at(pid) != began:
+                return
+            signal.pidfd_send_signal(handle, number)
+            if wait:
+                select.select([handle], [], [])  # readable once it has ended (pidfd_open(2))
+        finally:
+            os.close(handle)
+
+
+def _children(pid: int) -> list[int]:
+    found: list[int] = []
+    with contextlib.suppress(OSError):
+        for task in Path(f"/proc/{pid}/task").iterdir():
+            with contextlib.suppress(OSError):  # one thread of several may end meanwhile
+                found += map(int, (task / "children").read_text().split())
+    return found
+
+
+def _processes() -> list[int]:
+    return [int(name) for name in os.listdir("/proc") if name.isdecimal()]  # noqa: PTH208
+
+
+def _fields(pid: int) -> list[str]:
+    """The words of a process's ``stat`` from its state on; none where it is gone."""
+    try:
+        # After the name of the program, which may hold anything (proc(5)).
+        return Path(f"/proc/{pid}/stat").read_text(errors="replace").rpartition(")")[2].split()
+    except OSError:
+        return []
+
+
+def _session(pid: int) -> int:
+    """The session of a process; 0 where it is gone or in another PID namespace."""
+    try:
+        return os.getsid(pid)
+    except (ProcessLookupError, PermissionError):
+        return 0
+
+
+def _mentions(pid: int, place: bytes) -> bool:
+    """True if a process has a folder in its command line, or its home there."""
+    with contextlib.suppress(OSError):
+        if place in Path(f"/proc/{pid}/cmdline").read_bytes():
+            return True
+        variables = Path(f"/proc/{pid}/environ").read_bytes().split(b"\0")
+        return any(variable.startswith(b"HOME=" + place) for variable in variables)
+    return False
+
+
+def _reap(children: Iterable[int]) -> bool:
+    """Reap those of our children that have ended; whether there were any."""
+    reaped = False
+    for child in children:
+        with contextlib.suppress(ChildProcessError):
+            reaped = os.waitpid(child, os.WNOHANG)[0] != 0 or reaped
+    return reaped
+
+
+def _prctl(option: int, value: int) -> bool:
+    if sys.platform != "linux":
+        return False
+    return bool(_libc.prctl(option, *map(ctypes.c_ulong, (value, 0, 0, 0))) == 0)

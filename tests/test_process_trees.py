@@ -1,0 +1,104 @@
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+
+import psutil
+import pytest
+
+from autograder.process_trees import kill, known
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="only Linux has it")
+
+CHILD = """
+import os, signal, subprocess, sys
+from autograder.process_trees import die_with_parent
+own, number = os.getpid(), getattr(signal, sys.argv[1])
+command = ["sh", "-c", "trap 'echo told; exit' TERM; while :; do sleep 0.1; done"]
+child = subprocess.Popen(command, preexec_fn=lambda: die_with_parent(own, number))
+print(child.pid, flush=True)
+signal.pause()
+"""
+LATE = """
+import os, sys
+from autograder.process_trees import die_with_parent
+if os.fork() == 0:
+    die_with_parent(1 << 30)
+    print("alive")
+os.wait()
+"""
+
+
+@pytest.mark.parametrize(("number", "said"), [("SIGKILL", b""), ("SIGTERM", b"told\n")])
+def test_a_process_ends_with_its_parent_however_that_ends(number: str, said: bytes) -> None:
+    with subprocess.Popen([sys.executable, "-c", CHILD, number], stdout=subprocess.PIPE) as parent:
+        assert parent.stdout is not None
+        child = psutil.Process(int(parent.stdout.readline()))
+        time.sleep(0.2)  # until the shell has its trap
+        parent.send_signal(signal.SIGKILL)
+        psutil.wait_procs([child], timeout=60)
+        assert not child.is_running()
+        assert parent.stdout.read() == said
+
+
+def test_a_parent_that_has_ended_already_is_noticed() -> None:
+    done = subprocess.run([sys.executable, "-c", LATE], capture_output=True, text=True, check=False)
+    assert done.stdout == ""
+
+
+DAEMON = """
+import os, subprocess, sys
+from autograder.process_trees import adopt_orphans, end_descendants
+adopt_orphans()
+# The usual way into the background: a child in a session of its own whose parent ends.
+middle = subprocess.Popen([sys.executable, "-c", '''
+import os, subprocess
+p = subprocess.Popen(["sleep", "600"], start_new_session=True)
+print(p.pid, flush=True)
+'''], stdout=subprocess.PIPE)
+daemon = int(middle.stdout.readline())
+middle.wait()
+print(end_descendants())
+try:
+    os.kill(daemon, 0)
+    print("alive")
+except ProcessLookupError:
+    print("gone")
+"""
+
+
+def test_a_daemon_does_not_outlive_the_submission() -> None:
+    result = subprocess.run(
+        [sys.executable, "-c", DAEMON], capture_output=True, text=True, timeout=180, check=True
+    )
+    assert result.stdout.split() == ["1", "gone"]
+
+
+SPARED = """
+import subprocess
+from autograder.process_trees import adopt_orphans, end_descendants
+adopt_orphans()
+helper = subprocess.Popen(["sh", "-c", "sleep 600 & echo $!; wait"], stdout=subprocess.PIPE)
+below = int(helper.stdout.readline())
+other = subprocess.Popen(["sleep", "600"])
+print(end_descendants(spare=[helper.pid]), other.poll() is not None, helper.poll() is None)
+print(open(f"/proc/{below}/comm").read().strip())
+print(end_descendants())
+"""
+
+
+def test_a_helper_and_what_is_below_it_are_spared() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", SPARED], capture_output=True, text=True, timeout=180, check=True
+    )
+    assert done.stdout.split() == ["1", "True", "True", "sleep", "2"]
+
+
+def test_a_later_process_of_the_same_number_is_left_alone() -> None:
+    with subprocess.Popen(["sleep", "600"]) as sleeper:
+        kill({(sleeper.pid, "1"), (sleeper.pid, "")})
+        assert sleeper.poll() is None
+        kill(known([sleeper.pid]))
+        assert sleeper.wait(60.0) == -signal.SIGKILL
