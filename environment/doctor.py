@@ -245,7 +245,7 @@ def sandbox() -> list[Finding]:
     if path is None:
         return _not_there("sandbox")
     # A process of its own: this one must also run where the course's package is not installed yet.
-    line = _last_line(_output([sys.executable, "-m", "autograder.boxes.doctor_report"])[1])
+    line = _last_line(_output([sys.executable, "-m", "autograder.boxes.sandbox"])[1])
     try:
         report = json.loads(line)
         why, guards = report["why_impossible"], report["guards"]

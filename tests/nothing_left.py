@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 import psutil
 
-from autograder.boxes.held_folder import HeldFolder
+from autograder.boxes.scratch import HeldFolder
 from autograder.process_trees import adopt_orphans, die_with_parent
 
 if TYPE_CHECKING:

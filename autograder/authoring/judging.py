@@ -6,7 +6,7 @@ import select
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
-from autograder.boxes.held_folder import HeldFolder
+from autograder.boxes.scratch import HeldFolder
 from autograder.clean_stdout import private_stdout
 from autograder.verdict import State, Verdict, from_json
 

@@ -116,6 +116,18 @@ class Group:
         return False
 
 
+def memberships(procs: Iterable[str]) -> list[int]:
+    """The files of :attr:`Group.procs`, opened where they can be seen, for :func:`join`."""
+    return [os.open(file, os.O_WRONLY | os.O_CLOEXEC) for file in procs]
+
+
+def join(opened: Iterable[int]) -> None:
+    """Become a member of groups, with all that this process starts later; the descriptors are closed."""
+    for group in opened:
+        os.write(group, b"0")  # cgroups(7): 0 stands for whoever writes
+        os.close(group)
+
+
 @functools.cache
 def usable() -> Mapping[str, Controller]:
     """The controllers of ``_KINDS`` as far as groups can be made here, each with its place.

@@ -14,6 +14,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from autograder.boxes import syscalls
+from autograder.boxes.cgroups import join, memberships
 from autograder.boxes.channel import Channel, ChannelClosed, close_all
 from autograder.boxes.seccomp_filter import filter_for_boxes
 from autograder.process_trees import adopt_orphans, die_with_parent, end_descendants
@@ -66,7 +67,7 @@ def enter(channel: Channel, run: Run) -> None:
     entrance = Entrance(**message)
     # Opened here, where they can be seen; but only the child goes in, so that a box without memory costs nobody who
     # watches over it.
-    groups = [os.open(procs, os.O_WRONLY | os.O_CLOEXEC) for procs in entrance.cgroups]
+    groups = memberships(entrance.cgroups)
     if entrance.boxed:
         syscalls.setns(descriptors[0], _ALL_NAMESPACES)
     else:
@@ -75,9 +76,7 @@ def enter(channel: Channel, run: Run) -> None:
     pid = os.fork()
     if pid == 0:
         channel.close()
-        for group in groups:
-            os.write(group, b"0")  # cgroups(7): 0 stands for whoever writes
-        close_all(groups)
+        join(groups)
         _begin(entrance, descriptors, run)
     close_all([*descriptors, *groups])
     with contextlib.suppress(ChannelClosed):
@@ -136,6 +135,12 @@ def give_up_rights(*, hidden_memory: bool) -> None:
     syscalls.filter_system_calls(filter_for_boxes(hidden_memory=hidden_memory))
     # A process that changed its rights does not own its /proc/self any more, which programs read.
     syscalls.prctl(syscalls.PR_SET_DUMPABLE, 1)
+
+
+def take_limits(cgroups: Sequence[str], rlimits: Mapping[str, int]) -> None:
+    """Take the limits of a box that bubblewrap is to make: for the process that becomes bubblewrap."""
+    join(memberships(cgroups))
+    apply_rlimits(rlimits)
 
 
 def apply_rlimits(limits: Mapping[str, int]) -> None:

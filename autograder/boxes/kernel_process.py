@@ -20,8 +20,8 @@ import zmq
 from ipykernel.kernelapp import IPKernelApp
 from traitlets.config import Config
 
+from autograder.boxes.fork_server import INTERFACES, RCLPY, preload, preload_ros
 from autograder.boxes.kernel import IOPUB, SHELL
-from autograder.boxes.preloading import INTERFACES, RCLPY, preload, preload_ros
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.boxes import syscalls
-from autograder.boxes.entering import apply_rlimits
+from autograder.boxes.entering import take_limits
 from autograder.boxes.environment import box_environment
 from autograder.boxes.guards import BoxGuard
 from autograder.boxes.limits import Limits
@@ -90,9 +90,7 @@ class OneCommandBox:
 
     def limit(self) -> None:
         """Take the limits of a box; for the process that becomes the command's."""
-        for procs in self._guard.cgroups:
-            Path(procs).write_text("0")
-        apply_rlimits(self._guard.rlimits)
+        take_limits(self._guard.cgroups, self._guard.rlimits)
 
     def close(self) -> None:
         """Take away what is left once every command has ended."""

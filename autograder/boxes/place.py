@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
+from autograder.boxes.boxed_processes import ForkedProcess
 from autograder.boxes.entering import Entrance
 from autograder.boxes.environment import box_environment, kernel_environment
-from autograder.boxes.forked import ForkedProcess, PlacedProcess
 from autograder.boxes.guards import BoxGuard, NoGuard
 from autograder.boxes.mounts import HOME, WORK, Bind
 from autograder.boxes.sandbox import Enclosure
@@ -22,7 +22,7 @@ from autograder.boxes.scratch import write_files
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from autograder.boxes.fork_server_client import Addresses
+    from autograder.boxes.fork_server import Addresses
     from autograder.boxes.kernel import Channels
     from autograder.boxes.limits import Limits
 
@@ -114,7 +114,7 @@ class BoxedPlace:
         """The folder that the student's box sees as ``SHARED_FOLDER``, and may only read."""
         return self._shared
 
-    def start_kernel(self, channels: Channels) -> PlacedProcess:
+    def start_kernel(self, channels: Channels) -> ForkedProcess:
         """Let a fork of the fork server enter the student's box."""
         box = self.enclosure.box(_STUDENT, [Bind(self._shared, SHARED_FOLDER)], guarded=True)
         self.guard.watch(box.pid)
@@ -127,7 +127,7 @@ class BoxedPlace:
             call={"key": channels.key, "address": channels.address},
         )
 
-    def start_judge(self, listener: int, orders: int, *, of_programs: bool = False) -> PlacedProcess:
+    def start_judge(self, listener: int, orders: int, *, of_programs: bool = False) -> ForkedProcess:
         """Let a fork of the judges' fork server enter a box of its own.
 
         Args:
@@ -182,7 +182,7 @@ class UnboxedPlace:
         """The socket on which the judge is to listen."""
         return self._folder / _JUDGE
 
-    def start_kernel(self, channels: Channels) -> PlacedProcess:
+    def start_kernel(self, channels: Channels) -> ForkedProcess:
         """Let a fork of the fork server be the kernel."""
         entrance = Entrance(
             cwd=str(self._cwd),
@@ -190,18 +190,15 @@ class UnboxedPlace:
             boxed=False,
             call={"key": channels.key, "address": channels.address},
         )
-        process = ForkedProcess(
-            self._addresses.kernels, entrance, [channels.shell, channels.iopub, channels.log]
-        )
-        return PlacedProcess(process)
+        descriptors = [channels.shell, channels.iopub, channels.log]
+        return ForkedProcess(self._addresses.kernels, entrance, descriptors)
 
-    def start_judge(self, listener: int, orders: int, *, of_programs: bool = False) -> PlacedProcess:
+    def start_judge(self, listener: int, orders: int, *, of_programs: bool = False) -> ForkedProcess:
         """Let a fork of the judges' fork server be the judge."""
         del of_programs
         environment = kernel_environment(self._folder / "of-the-judge", self._judge.environment)
         entrance = Entrance(cwd=str(self._folder), environment=environment, boxed=False)
-        process = ForkedProcess(self._addresses.judges, entrance, [listener, orders])
-        return PlacedProcess(process)
+        return ForkedProcess(self._addresses.judges, entrance, [listener, orders])
 
     def __enter__(self) -> Self:
         return self

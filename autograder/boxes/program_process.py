@@ -25,7 +25,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from autograder.boxes.preloading import INTERFACES, RCLPY, preload, preload_ros
+from autograder.boxes.fork_server import INTERFACES, RCLPY, preload, preload_ros
 from environment.ros2_command import main as ros2
 from environment.ros2_command import run as ros2_run
 

@@ -10,13 +10,12 @@ import contextlib
 import time
 from typing import TYPE_CHECKING, Any, Protocol
 
-from autograder.boxes.assertions import verdict_of
 from autograder.boxes.execution import Cell, CellRun, CellType, Check, Ended, Execution
 from autograder.boxes.hanging import Hangs, seconds_again
 from autograder.boxes.kernel import Kernel, KernelFailed, Start
 from autograder.boxes.limits import Patient, first_of, wall_time
-from autograder.boxes.missing_verdict import LIMITS, grader_trouble, without_verdict
 from autograder.boxes.outputs import Budget, OutputCollector
+from autograder.boxes.verdicts_without_judge import LIMITS, grader_trouble, verdict_by_tests, without_verdict
 from autograder.verdict import State, Verdict
 
 if TYPE_CHECKING:
@@ -143,7 +142,7 @@ class _Run:
         for index, cell in enumerate(self._cells):
             if cell.check is None or index in self._verdicts:
                 continue
-            by_tests = verdict_of(cell.check, runs[index]) if cell.check.asserts else None
+            by_tests = verdict_by_tests(cell.check, runs[index]) if cell.check.asserts else None
             self._verdicts[index] = by_tests or without_verdict(
                 cell.check,
                 runs[index],

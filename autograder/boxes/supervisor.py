@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.boxes import syscalls
 from autograder.boxes.channel import Channel, ChannelClosed, close_all
-from autograder.boxes.entering import apply_rlimits
+from autograder.boxes.entering import take_limits
 from autograder.boxes.mounts import ETC, ETC_FOLDERS, TERMINALS, etc_files
 from autograder.boxes.seccomp_filter import filter_for_boxes
 from autograder.process_trees import die_with_parent
@@ -151,11 +151,6 @@ class _Supervisor:
         # In a file, because a box sees the command line of its first process, and folders of the host are in it.
         kept.append(file_with(b"".join(os.fsencode(word) + b"\0" for word in arguments)))
 
-        def before_bwrap() -> None:
-            for procs in cgroups:
-                Path(procs).write_text("0")
-            apply_rlimits(rlimits or {})
-
         idle = not command
         words = ["bwrap", "--info-fd", str(writing), "--args", str(kept[-1]), "--"]
         try:
@@ -165,7 +160,7 @@ class _Supervisor:
                 stdout=subprocess.PIPE if idle else descriptors[1],
                 stderr=subprocess.STDOUT if idle else descriptors[2],
                 pass_fds=kept,
-                preexec_fn=before_bwrap,  # this process has no thread
+                preexec_fn=lambda: take_limits(cgroups, rlimits or {}),  # this process has no thread
                 start_new_session=True,
             )
         finally:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from autograder.boxes.execution import CellType
-from autograder.boxes.held_folder import HeldFolder
+from autograder.boxes.scratch import HeldFolder
 from autograder.execution.failure_page import write_report
 from autograder.execution.plan import Planned, plan
 from autograder.execution.problems import Problem, problems_of

@@ -10,7 +10,7 @@ import msgspec
 
 from autograder.boxes.execution import Cell, Execution
 from autograder.boxes.limits import Limits
-from autograder.boxes.missing_verdict import zero_points
+from autograder.boxes.verdicts_without_judge import zero_points
 
 UNREADABLE = "unreadable"
 """The diagnosis of what was handed in and is no notebook."""

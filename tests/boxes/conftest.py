@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.boxes.fork_server_client import ForkServers
+from autograder.boxes.fork_server import ForkServers
 from autograder.boxes.sandbox import why_impossible
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from autograder.boxes.fork_server_client import Addresses
+    from autograder.boxes.fork_server import Addresses
 
 NO_JUDGE = "autograder.boxes.supervisor"
 """These tests need none: any module with a \"prepare\" will do."""

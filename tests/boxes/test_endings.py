@@ -13,18 +13,17 @@ from typing import TYPE_CHECKING
 import psutil
 import pytest
 
+from autograder.boxes.boxed_processes import ForkedProcess
 from autograder.boxes.entering import Entrance
 from autograder.boxes.environment import box_environment
-from autograder.boxes.fork_server import BESIDE, INSIDE
-from autograder.boxes.fork_server_client import SUPERVISOR_MODULE, ForkServer
-from autograder.boxes.forked import ForkedProcess
+from autograder.boxes.fork_server import BESIDE, INSIDE, SUPERVISOR_MODULE, ForkServer
 from autograder.boxes.mounts import WORK
 from autograder.boxes.sandbox import Enclosure
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from autograder.boxes.fork_server_client import Addresses
+    from autograder.boxes.fork_server import Addresses
 
 STUBBORN = "trap '' INT TERM HUP; (setsid sh -c \"trap '' INT TERM HUP; sleep 7654.5\" &); sleep 7654.5"
 WORKER = """
@@ -107,13 +106,13 @@ def test_a_process_that_entered_ends_with_its_box(supervisors: ForkServer, tmp_p
         with Enclosure(supervisors.address, tmp_path / "box") as enclosure:
             box = enclosure.box("student")
             entrance = Entrance(cwd=str(WORK), environment=box_environment(), boxed=True)
-            process = ForkedProcess(warm.address, entrance, [box.pidfd])
+            process = ForkedProcess(warm.address, entrance, [], box)
             await_sleepers()
             assert process.alive
-            enclosure.end("student")
+            box.end()
             assert process.wait(10.0)
             assert not process.lost
-            process.close()
+            process.end()
         assert gone()
     finally:
         warm.stop()
@@ -125,7 +124,7 @@ def test_a_process_whose_grader_hangs_up_is_killed(supervisors: ForkServer, tmp_
         with Enclosure(supervisors.address, tmp_path / "box") as enclosure:
             box = enclosure.box("student")
             entrance = Entrance(cwd=str(WORK), environment=box_environment(), boxed=True)
-            process = ForkedProcess(warm.address, entrance, [box.pidfd])
+            process = ForkedProcess(warm.address, entrance, [], box)
             inside = psutil.Process(process.pid)
             process._channel.close()
             psutil.wait_procs([inside], timeout=180)

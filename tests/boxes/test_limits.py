@@ -21,7 +21,7 @@ from autograder.boxes.scratch import scratch_folder
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from autograder.boxes.fork_server_client import Addresses
+    from autograder.boxes.fork_server import Addresses
 
 CHECK = Cell("print('alive')", check=Check("lab.one", "One", points=10, worth=10, limit=2), name="lab-one")
 
@@ -176,7 +176,7 @@ def test_a_line_of_100_megabytes(run: Run) -> None:
 
 def test_an_error_of_a_limit_has_its_own_word() -> None:
     from autograder.boxes.execution import CellRun
-    from autograder.boxes.missing_verdict import without_verdict
+    from autograder.boxes.verdicts_without_judge import without_verdict
 
     assert CHECK.check is not None
     full = CellRun(Ended.RAISED, error="OSError: [Errno 28] No space left on device: 'log'")

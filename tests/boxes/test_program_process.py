@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from autograder.boxes.boxed_command import Running, WarmCommand
-    from autograder.boxes.fork_server_client import Addresses
+    from autograder.boxes.boxed_processes import Running, WarmCommand
+    from autograder.boxes.fork_server import Addresses
 
 PACKAGE = "some_pkg"
 READY = "ready"

@@ -12,7 +12,7 @@ import psutil
 import pytest
 
 from autograder.boxes.execution import Cell, CellType, Check, Ended, Execution
-from autograder.boxes.fork_server_client import Addresses
+from autograder.boxes.fork_server import Addresses
 from autograder.boxes.limits import Left, Limits, Patient, wall_time
 from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.boxes.runner import run_notebook

@@ -26,7 +26,7 @@ from autograder.boxes.scratch import scratch_folder
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from autograder.boxes.fork_server_client import Addresses
+    from autograder.boxes.fork_server import Addresses
 
 Ask = Callable[[str], Any]
 

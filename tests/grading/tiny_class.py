@@ -12,7 +12,7 @@ from nbgrader.api import Gradebook
 from rich.console import Console
 
 from autograder.boxes.execution import CellRun, Ended, Execution
-from autograder.boxes.missing_verdict import grader_trouble, zero_points
+from autograder.boxes.verdicts_without_judge import grader_trouble, zero_points
 from autograder.grading.batch import grade
 from autograder.grading.classes.new_class import new_class
 from autograder.grading.running.engine import Done

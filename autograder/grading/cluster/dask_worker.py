@@ -16,7 +16,7 @@ import msgspec
 from distributed import Worker, WorkerPlugin, get_worker
 
 from autograder.boxes.execution import Execution
-from autograder.boxes.missing_verdict import grader_trouble
+from autograder.boxes.verdicts_without_judge import grader_trouble
 from autograder.grading.cluster.messages import LARGEST_ANSWER, Order
 from autograder.grading.running.worker_process import WorkerProcess
 from autograder.grading.task import Task, decode_task, encode

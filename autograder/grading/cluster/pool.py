@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder.boxes.execution import Execution
-from autograder.boxes.missing_verdict import grader_trouble
+from autograder.boxes.verdicts_without_judge import grader_trouble
 from autograder.grading.cluster.admission import Forged, admitted, admitted_offer, printable
 from autograder.grading.cluster.messages import (
     Answered,

@@ -11,11 +11,11 @@ import threading
 from typing import TYPE_CHECKING
 
 from autograder import course
-from autograder.boxes.fork_server_client import ForkServers
+from autograder.boxes.fork_server import ForkServers
 from autograder.judge.settings import boxed_ros_environment, ros_environment
 
 if TYPE_CHECKING:
-    from autograder.boxes.fork_server_client import Addresses
+    from autograder.boxes.fork_server import Addresses
 
 _JUDGE_MODULE = "autograder.judge.serving.attached"
 _kept: dict[bool, ForkServers] = {}

@@ -23,13 +23,13 @@ from typing import TYPE_CHECKING, Any, Self
 import msgspec
 
 from autograder.boxes.execution import Ended, Execution
-from autograder.boxes.fork_server_client import Addresses
+from autograder.boxes.fork_server import Addresses
 from autograder.boxes.limits import raise_own
-from autograder.boxes.missing_verdict import grader_trouble
 from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.boxes.runner import run_notebook
 from autograder.boxes.sandbox import NoSandbox
 from autograder.boxes.scratch import scratch_folder
+from autograder.boxes.verdicts_without_judge import grader_trouble
 from autograder.clean_stdout import private_stdout
 from autograder.grading.returning.page_budget import too_costly
 from autograder.grading.running.workspace_service import arrange, served

@@ -16,7 +16,7 @@ from typing import IO, TYPE_CHECKING
 import msgspec
 
 from autograder.boxes.execution import Execution
-from autograder.boxes.missing_verdict import grader_trouble
+from autograder.boxes.verdicts_without_judge import grader_trouble
 from autograder.grading.running import shared_fork_servers
 from autograder.grading.running.worker import JUDGE
 from autograder.grading.task import Task, decode_execution, encode
@@ -25,7 +25,7 @@ from autograder.process_trees import end_processes_in
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from autograder.boxes.fork_server_client import Addresses
+    from autograder.boxes.fork_server import Addresses
 
 ATTEMPTS = 2
 """The number of times that a task is tried: a second time where its worker died."""

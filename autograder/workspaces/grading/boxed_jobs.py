@@ -25,7 +25,7 @@ from autograder.workspaces.running.plans import ros2
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from autograder.boxes.boxed_command import Running, WarmCommand
+    from autograder.boxes.boxed_processes import Running, WarmCommand
     from autograder.workspaces.building.cache import Entry
     from autograder.workspaces.jobs import BuildOrder, ProgramJob
 

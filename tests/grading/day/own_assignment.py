@@ -9,9 +9,8 @@ import nbformat
 from nbformat.v4 import new_code_cell, new_notebook
 from tiny_class import FakeEngine
 
-from autograder.boxes.assertions import verdict_of
 from autograder.boxes.execution import Cell, CellRun, CellType, Ended, Execution
-from autograder.boxes.missing_verdict import zero_points
+from autograder.boxes.verdicts_without_judge import verdict_by_tests, zero_points
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
 
@@ -84,7 +83,8 @@ class EngineWithAsserts(FakeEngine):
         names: dict[str, Any] = {}
         runs = tuple(_run(cell, names) for cell in task.cells)
         verdicts = {
-            place: verdict_of(cell.check, run) or zero_points(cell.check, "crashed", "It raised.", "Mend it.")
+            place: verdict_by_tests(cell.check, run)
+            or zero_points(cell.check, "crashed", "It raised.", "Mend it.")
             for place, (cell, run) in enumerate(zip(task.cells, runs, strict=True))
             if cell.check is not None
         }

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.boxes.fork_server import BESIDE
-from autograder.boxes.fork_server_client import SUPERVISOR_MODULE, ForkServer
+from autograder.boxes.fork_server import BESIDE, SUPERVISOR_MODULE, ForkServer
 from autograder.boxes.sandbox import Enclosure, why_impossible
 from autograder.workspaces.building.colcon import look
 from autograder.workspaces.building.trusted import TrustedBuilds

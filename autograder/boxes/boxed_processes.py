@@ -1,4 +1,4 @@
-"""A command that runs in a box, seen from who has started it."""
+"""The processes of a box, seen from who has started them: a fork of a fork server, or a command."""
 
 from __future__ import annotations
 
@@ -10,18 +10,116 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
-from autograder.process_trees import descendants
+from autograder.boxes.box import ANSWER_SECONDS
+from autograder.boxes.channel import Channel, ChannelClosed
+from autograder.process_trees import descendants, signal_group
 
 if TYPE_CHECKING:
-    from autograder.boxes.forked import PlacedProcess
-    from autograder.boxes.sandbox import Enclosure
+    from collections.abc import Sequence
 
-ANSWER_SECONDS = 30.0
-"""Seconds of wall time in which the supervisor of the boxes answers."""
+    from autograder.boxes.box import Box
+    from autograder.boxes.entering import Entrance
+
+_START_SECONDS = 60.0
 _CLOSING_SECONDS = 10.0
 """Seconds from the end of a command's output to its own."""
 _ITS_TIME = 1e6
 """Seconds, more than any check lasts: a program runs as long as the judge wants it to."""
+
+
+class ForkedProcess:
+    """A process that a fork server has forked for us.
+
+    It is killed when this object's channel is closed, in whatever way.
+
+    Args:
+        address: Where the fork server listens.
+        entrance: How the process begins.
+        descriptors: What it is given. They stay open here.
+        box: The box that it enters and ends with; None where it is in none.
+
+    Raises:
+        ChannelClosed: The fork server is gone, or the child could not enter its box.
+    """
+
+    def __init__(
+        self, address: str, entrance: Entrance, descriptors: Sequence[int], box: Box | None = None
+    ) -> None:
+        self._box = box
+        self._channel = Channel.to(address)
+        self._status: int | None = None
+        self._lost = False
+        try:
+            self._channel.send(entrance.as_message(), [*([box.pidfd] if box else []), *descriptors])
+            message, _ = self._channel.receive(_START_SECONDS)
+        except BaseException:
+            self._channel.close()
+            raise
+        self.pid = int(message["pid"])
+        """As the host counts."""
+
+    def fileno(self) -> int:
+        """Readable when the process has ended."""
+        return self._channel.fileno()
+
+    @property
+    def alive(self) -> bool:
+        """True if it still runs."""
+        self._look(0.0)
+        return self._status is None and not self._lost
+
+    @property
+    def status(self) -> int | None:
+        """Its wait status (wait(2)); None while it runs, and where nobody can tell any more."""
+        self._look(0.0)
+        return self._status
+
+    @property
+    def lost(self) -> bool:
+        """True if who watched over it is gone, or its box went away under it: then its end says nothing of it."""
+        self._look(0.0)
+        return self._lost or (self._box is not None and self._box.lost)
+
+    def interrupt(self) -> None:
+        """SIGINT to it and to its process group."""
+        if self.alive:
+            signal_group(self.pid, signal.SIGINT)
+
+    def wait(self, within: float) -> bool:
+        """Wait for its end; whether it came.
+
+        Args:
+            within: Seconds.
+        """
+        self._look(within)
+        return self._status is not None or self._lost
+
+    def end_box(self) -> None:
+        """Kill all that is in its box, and keep its status."""
+        if self._box is not None:
+            with contextlib.suppress(OSError):
+                self._box.end()
+
+    def end(self) -> None:
+        """Kill it, and with its box all that it has started; may be called twice."""
+        self.end_box()
+        if self._channel.fileno() < 0:
+            return
+        if self.alive:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(self.pid, signal.SIGKILL)
+            self.wait(_START_SECONDS)
+        self._channel.close()
+
+    def _look(self, within: float) -> None:
+        if self._status is not None or self._lost or self._channel.fileno() < 0:
+            return
+        if not select.select([self._channel], [], [], max(0.0, within))[0]:
+            return
+        try:
+            self._status = int(self._channel.receive()[0]["status"])
+        except ChannelClosed:
+            self._lost = True
 
 
 @dataclass(frozen=True)
@@ -46,12 +144,12 @@ class Finished:
 class Running:
     """A command that runs in a box; leaving the context ends it and all that it has started."""
 
-    def __init__(self, enclosure: Enclosure, name: str, pid: int, output: int, most: int) -> None:
-        self._enclosure, self._name, self._output, self._most = enclosure, name, output, most
+    def __init__(self, box: Box, output: int, most: int) -> None:
+        self._box, self._output, self._most = box, output, most
         self._began = time.monotonic()
         self._kept = bytearray()
         self._cut = False
-        self.pid = pid
+        self.pid = box.pid
         """The first process of the box, as the host counts."""
 
     def fileno(self) -> int:
@@ -88,9 +186,9 @@ class Running:
         while running and time.monotonic() < deadline:
             running = self.read(deadline - time.monotonic())
         if running:
-            self._enclosure.end(self._name)
+            self._box.end()
             return self._finished(None)
-        return self._finished(_returncode(self._enclosure.wait_end(self._name, ANSWER_SECONDS)))
+        return self._finished(_returncode(self._box.wait_end()))
 
     def next_output(self, within: float) -> bytes | None:
         """Its output since the last call, which is not kept; None for nothing yet, no bytes at its end.
@@ -115,7 +213,7 @@ class Running:
     def end(self) -> None:
         """Kill it and all that it has started; may be called twice."""
         if self._output >= 0:
-            self._enclosure.end(self._name)
+            self._box.end()
             os.close(self._output)
             self._output = -1
 
@@ -138,7 +236,7 @@ class WarmCommand:
         pid: The first process of the box, as the host counts.
     """
 
-    def __init__(self, process: PlacedProcess, output: int, pid: int) -> None:
+    def __init__(self, process: ForkedProcess, output: int, pid: int) -> None:
         self._process, self._output, self.pid = process, output, pid
 
     def next_output(self, within: float) -> bytes | None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.boxes.held_folder import HeldFolder
+from autograder.boxes.scratch import HeldFolder
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 MAKER = """
 import sys, tempfile
 tempfile.tempdir = sys.argv[1]
-from autograder.boxes.held_folder import HeldFolder
+from autograder.boxes.scratch import HeldFolder
 folder = HeldFolder("held-")
 (folder.path / "socket").touch()
 print(folder.path, flush=True)
