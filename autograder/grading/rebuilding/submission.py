@@ -25,6 +25,8 @@ MAX_CELL_CHARACTERS = 100_000
 """Of one cell; what students write has a few thousand."""
 MAX_CHARACTERS = 1_000_000
 """Of all cells together."""
+HARMLESS_LENGTH = 6_000
+"""Of a notebook's own cells that become a page without a trial: the worst of them take less than a page's budget."""
 _LONGEST_SHOWN = 80
 _CELL_TYPES = tuple(CellType)
 _KINDS = {

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from autograder.boxes.execution import Cell, CellType
 from autograder.grading.collector import without_collector
-from autograder.grading.returning.page_limits import HARMLESS_LENGTH
+from autograder.grading.rebuilding.submission import HARMLESS_LENGTH
 from autograder.judge.verdicts.deciding import Undecided, limited
 
 if TYPE_CHECKING:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import functools
+import hashlib
 import re  # noqa: TID251  (a trusted template)
+from collections import OrderedDict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import msgspec
 import nbgrader
 import re2
 from bs4 import BeautifulSoup
@@ -22,7 +25,6 @@ from traitlets.config import Config
 from autograder.grading.rebuilding import nodes
 from autograder.grading.rebuilding.rebuild import is_check
 from autograder.grading.returning.page_head import with_summary, without_dead_links
-from autograder.grading.returning.render_cache import Remembered
 from autograder.grading.returning.sanitize import clean, is_the_masters, make_harmless
 
 if TYPE_CHECKING:
@@ -42,6 +44,39 @@ _REMEMBERED_CHARACTERS = 8_000_000
 """Of rendered parts of pages; those that the students of a chapter share have about a million."""
 _PICTURE = re2.compile(r"(?i)<img\b[^>]*")
 _ALTERNATIVE = re2.compile(r"(?i)\salt=")
+
+
+class Remembered:
+    """A cache of values by what they were made of; the longest unused is forgotten first.
+
+    Args:
+        characters: Of all texts together, at most.
+    """
+
+    def __init__(self, characters: int) -> None:
+        self._left = characters
+        self._texts: OrderedDict[bytes, str] = OrderedDict()
+
+    def get(self, of: Any, make: Callable[[], str]) -> str:
+        """The text that was made of exactly this, made now where it is not known.
+
+        Args:
+            of: All that the text depends on, as JSON has it.
+            make: Makes the text.
+        """
+        # Students write a part of it: a hash for which nobody can find two values, and not the values themselves.
+        key = hashlib.sha256(msgspec.json.encode(of)).digest()
+        known = self._texts.get(key)
+        if known is not None:
+            self._texts.move_to_end(key)
+            return known
+        text = make()
+        self._texts[key] = text
+        self._left -= len(text)
+        while self._left < 0:
+            _, forgotten = self._texts.popitem(last=False)
+            self._left += len(forgotten)
+        return text
 
 
 class PageExporter(HTMLExporter):

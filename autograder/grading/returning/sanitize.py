@@ -2,7 +2,7 @@
 
 nbconvert hands raw HTML, Mermaid diagrams and any address through to the page, in nbgrader's feedback and in
 formgrader alike. So a student's text is looked at with nbconvert's own Markdown parser before it is written
-into ``autograded/``: plain Markdown stays as it was written, anything else is rendered, cleaned with Bleach and
+into ``autograded/``: plain Markdown stays as it was written, anything else is rendered, cleaned with nh3 and
 kept as that HTML. The pages are cleaned once more where they are made
 (:mod:`autograder.grading.returning.page_exporter`).
 """
@@ -13,16 +13,15 @@ import functools
 from html import escape, unescape
 from typing import TYPE_CHECKING, Any
 
+import nh3
 import re2
-from bleach.css_sanitizer import CSSSanitizer
-from bleach.sanitizer import Cleaner
 from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
 from pygments.token import STANDARD_TYPES
 
 from autograder.boxes.execution import CellType
 from autograder.boxes.outputs import IMAGES
 from autograder.grading.rebuilding import nodes
-from autograder.grading.returning.page_limits import HARMLESS_LENGTH
+from autograder.grading.rebuilding.submission import HARMLESS_LENGTH
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
@@ -34,68 +33,32 @@ LONGEST_MARKDOWN = 50_000
 SHOWN = (*IMAGES, "text/plain")
 """The types of output that a cell of a submission may show; none can carry code."""
 
-_TAGS = frozenset(
-    {
-        "a",
-        "abbr",
-        "b",
-        "blockquote",
-        "br",
-        "caption",
-        "center",
-        "code",
-        "dd",
-        "del",
-        "details",
-        "div",
-        "dl",
-        "dt",
-    }
-    | {
-        "em",
-        "h1",
-        "h2",
-        "h3",
-        "h4",
-        "h5",
-        "h6",
-        "hr",
-        "i",
-        "img",
-        "input",
-        "ins",
-        "kbd",
-        "li",
-        "mark",
-        "ol",
-        "p",
-    }
-    | {
-        "pre",
-        "q",
-        "s",
-        "samp",
-        "small",
-        "span",
-        "strike",
-        "strong",
-        "sub",
-        "summary",
-        "sup",
-        "table",
-        "tbody",
-    }
-    | {"td", "tfoot", "th", "thead", "tr", "tt", "u", "ul", "var"}
-)
+_FORMATTING = frozenset(("a", "b", "code", "em", "i", "s", "small", "strike", "strong", "tt", "u"))
+"""Elements that a parser of HTML opens anew in each block, as long as nobody has closed them."""
+_TAGS = _FORMATTING | {
+    *("abbr", "blockquote", "br", "caption", "center", "dd", "del", "details", "div", "dl", "dt"),
+    *("h1", "h2", "h3", "h4", "h5", "h6", "hr", "img", "input", "ins", "kbd", "li", "mark", "ol", "p", "pre"),
+    *("q", "samp", "span", "sub", "summary", "sup", "table", "tbody", "td", "tfoot", "th", "thead", "tr"),
+    *("ul", "var"),
+}
 _ATTRIBUTES = {
-    "a": {"title"},
+    "a": {"href", "title"},
     "abbr": {"title"},
     "details": {"open"},
-    "img": {"alt", "title", "width", "height"},
+    "img": {"alt", "height", "src", "title", "width"},
+    "input": {"disabled", "type"},  # a task list's box; it cannot be ticked or typed into
     "ol": {"start"},
-    "td": {"colspan", "rowspan"},
-    "th": {"colspan", "rowspan"},
+    "td": {"colspan", "rowspan", "style"},  # mistune's way of aligning a column
+    "th": {"colspan", "rowspan", "style"},
+    "*": {"class"},
 }
+_MOST_OPENED = 200_000
+"""Elements that a parser may have to make because formatting stays open: a text of the course has 1,700 at most."""
+# A comment; a tag, with attributes in which a quoted ">" does not end it; or a "<" that begins neither.
+_MARKUP = re2.compile(r"""<!--|</?([a-zA-Z][^\s/>]*)(?:[^<>"']|"[^"]*"|'[^']*')*>|<""")
+# The beginning of a tag, up to where it ends, or its first quotation mark.
+_TAG = re2.compile(r"""<([a-zA-Z][^\s/>]*)[^<>"']*["']?""")
+_CONTROL = dict.fromkeys((*range(1, 9), 11, 12, *range(14, 32)), "?")
 # Only what opens a page when it is clicked. No "//" at the beginning: it would be another host.
 _LINK = re2.compile(r"https?://\S+|mailto:[^\s:]+|#\S*|(/|/?[\w%.-][\w%./-]*)(#\S*)?")
 _PICTURE = re2.compile(r"data:image/(png|jpeg|gif|webp);base64,[A-Za-z0-9+/=\s]*")
@@ -179,9 +142,9 @@ def harmless_markdown(source: str, figures: Figures = ()) -> str:
         cleaned = clean(rendered)
         if looking.is_plain and cleaned.count("&lt;") == rendered.count("&lt;"):
             return source
-        if cleaned.strip() == source:
+        if (in_one_line := _in_one_line(cleaned)) == source:
             return source  # it has been here before
-        block = f"<div>{_in_one_line(cleaned)}</div>"
+        block = f"<div>{in_one_line}</div>"
         return block if _as_shown(block).strip() == block else as_typed(source)
     except Exception:  # what is nested too deeply, for one; a parser may raise anything on hostile text
         return as_typed(source)
@@ -226,27 +189,57 @@ def _in_one_line(page: str) -> str:
 
 @functools.lru_cache(maxsize=1024)
 def clean(page: str) -> str:
-    """A piece of HTML with nothing in it but text, its structure, links and pictures that it brings along."""
-    return Cleaner(
-        tags=_TAGS,
-        attributes=_may_stay,
-        protocols={"http", "https", "mailto", "data"},
-        css_sanitizer=CSSSanitizer(allowed_css_properties=["text-align"]),
-    ).clean(page)
+    """A piece of HTML with nothing in it but text, its structure, links and pictures that it brings along.
+
+    A tag that may not stay is shown as text: nh3 would drop it, and with it what was meant in "List<int>".
+    """
+    if _may_open(page) > _MOST_OPENED:
+        return f"<pre>{escape(page)}</pre>"
+    return _CLEANER.clean(_MARKUP.sub(_shown_or_kept, page).translate(_CONTROL))
 
 
-def _may_stay(tag: str, name: str, value: str) -> bool:
-    if name == "class":
-        return all(word in _CLASSES or _LANGUAGE.fullmatch(word) for word in value.split())
-    if name == "style":  # mistune's way of aligning a column
-        return tag in ("td", "th")
-    if tag == "input":  # a task list's box; it cannot be ticked or typed into
-        return name == "disabled" or (name == "type" and value == "checkbox")
-    if tag == "a" and name == "href":
-        return _LINK.fullmatch(unescape(value)) is not None
-    if tag == "img" and name == "src":
-        return _PICTURE.fullmatch(unescape(value)) is not None
-    return name in _ATTRIBUTES.get(tag, ())
+def _may_open(page: str) -> int:
+    """At most how many elements nh3 makes of formatting that stays open: with gigabytes of them, nobody can stop it.
+
+    At each tag, it opens anew each kind of formatting that is still open, three of a kind at most.
+    """
+    tags = list(_TAG.finditer(page))
+    formatting = [tag[0] for tag in tags if tag[1].lower() in _FORMATTING]
+    # Nobody reads here what is quoted: each of these tags is a kind of its own.
+    kinds = {tag for tag in formatting if tag[-1] not in "\"'"}
+    return len(tags) * (3 * len(kinds) + sum(tag not in kinds for tag in formatting))
+
+
+def _shown_or_kept(markup: Any) -> str:
+    """A tag that may stay and a comment as they are, anything else as text."""
+    stays = markup[0] == "<!--" or (markup[1] or "").lower() in _TAGS
+    return markup[0] if stays else markup[0].replace("<", "&lt;")
+
+
+def _value_that_may_stay(tag: str, name: str, value: str) -> str | None:
+    match tag, name:
+        case _, "class":
+            stays = all(word in _CLASSES or _LANGUAGE.fullmatch(word) for word in value.split())
+        case "input", "type":
+            stays = value == "checkbox"
+        case "a", "href":
+            stays = _LINK.fullmatch(value) is not None
+        case "img", "src":
+            stays = _PICTURE.fullmatch(value) is not None
+        case _:
+            stays = True
+    return value if stays else None
+
+
+_CLEANER = nh3.Cleaner(
+    tags=set(_TAGS),
+    clean_content_tags=set(),
+    attributes=_ATTRIBUTES,
+    attribute_filter=_value_that_may_stay,
+    filter_style_properties={"text-align"},
+    url_schemes={"http", "https", "mailto", "data"},
+    link_rel=None,
+)
 
 
 class _Looking(IPythonRenderer):

@@ -15,8 +15,7 @@ from autograder.grading.entering import gradebook
 from autograder.grading.entering.gradebook import CellState, NotebookState
 from autograder.grading.rebuilding import nodes
 from autograder.grading.returning import feedback
-from autograder.grading.returning.page_exporter import POLICY, PageExporter
-from autograder.grading.returning.render_cache import Remembered
+from autograder.grading.returning.page_exporter import POLICY, PageExporter, Remembered
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -10,9 +10,9 @@ import pytest
 from nbconvert.exporters import HTMLExporter
 
 from autograder.boxes.execution import Cell, CellType
+from autograder.grading.rebuilding.submission import HARMLESS_LENGTH
 from autograder.grading.returning import page_budget
 from autograder.grading.returning.page_budget import SECONDS, too_costly
-from autograder.grading.returning.page_limits import HARMLESS_LENGTH
 from autograder.grading.returning.sanitize import make_harmless
 
 SIZE = 50_000
@@ -29,6 +29,10 @@ MARKDOWN = {
     for name, text in {
         "nested HTML": "<div>",
         "nested HTML in paragraphs": "<div>\n\n",
+        "formatting that stays open": "<div>"
+        + "".join(f"<b a={n}>" for n in range(2_000))
+        + "</div>"
+        + "<p>x" * 8_000,
         "formulas that open": "\\\\(",
         "environments that open": "\\begin{a}",
         "headings": "# a\n",

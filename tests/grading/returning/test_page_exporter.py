@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.grading.returning.render_cache import Remembered
+from autograder.grading.returning.page_exporter import Remembered
 
 
 class Maker:
