@@ -208,7 +208,7 @@ def grade(
         )
         sys.exit(INTERRUPTED)
     if as_json:
-        from autograder.grading.reporting.report_json import report_json
+        from autograder.grading.reporting.report import report_json
 
         click.echo(report_json(report))
     else:

@@ -33,7 +33,8 @@ from autograder.grading.following.origins import news
 from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import check_release, read_released
-from autograder.grading.reporting.report import GradeReport, rows_of, write_csv
+from autograder.grading.reporting.report import GradeReport
+from autograder.grading.reporting.rows import rows_of, write_csv
 from autograder.grading.returning.up_to_date import UpToDate
 from autograder.grading.running import places
 from autograder.grading.running.progress import BatchProgress

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.timestamps import handed_in_at
-from autograder.grading.reporting.report import LATE, Row
+from autograder.grading.reporting.rows import LATE, Row
 from autograder.grading.table.entries import CellEntry, SubmissionEntry, read_due_dates
 from autograder.grading.table.point_differences import Difference
 

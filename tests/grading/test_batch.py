@@ -30,7 +30,8 @@ from autograder.grading.errors import (
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from autograder.grading.reporting.report import GradeReport, Row
+    from autograder.grading.reporting.report import GradeReport
+    from autograder.grading.reporting.rows import Row
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 

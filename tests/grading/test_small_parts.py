@@ -21,7 +21,7 @@ from autograder.grading.classes.seeds import create_secret, read_secret, seed_fo
 from autograder.grading.entering.final_results import Journal
 from autograder.grading.entering.points import points
 from autograder.grading.errors import DiskFull, NotAClass, is_disk_full
-from autograder.grading.reporting.report import Row, write_csv
+from autograder.grading.reporting.rows import Row, write_csv
 from autograder.grading.task import Task, decode_execution, decode_task, encode
 from autograder.regular_files import write_whole
 from autograder.verdict import State, Verdict

@@ -10,7 +10,7 @@ import msgspec
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.errors import GradingError
-from autograder.grading.reporting.report import Row  # noqa: TC001  (msgspec reads the annotations)
+from autograder.grading.reporting.rows import Row  # noqa: TC001  (msgspec reads the annotations)
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from autograder.boxes.execution import Execution
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
-    from autograder.grading.reporting.report import Row
+    from autograder.grading.reporting.rows import Row
     from autograder.grading.task import Task
 
 

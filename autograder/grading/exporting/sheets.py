@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import xlsxwriter
 
-from autograder.grading.reporting.report import COLUMNS, DROPPED, LATE, csv_cells, total
+from autograder.grading.reporting.rows import COLUMNS, DROPPED, LATE, csv_cells, total
 from autograder.grading.reporting.spreadsheet import blank, csv_text
 
 if TYPE_CHECKING:

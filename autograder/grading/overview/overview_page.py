@@ -15,7 +15,7 @@ from autograder.grading.entering import attempts
 from autograder.grading.entering.final_results import Journal
 from autograder.grading.errors import GradingError, clear_disk_errors
 from autograder.grading.overview import statistics as figures
-from autograder.grading.reporting.report import DROPPED, EXCUSED, columns
+from autograder.grading.reporting.rows import DROPPED, EXCUSED, columns
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.table.class_table import ClassTable, by_exercise, read_table
 from autograder.page_templates import page_templates
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from autograder.grading.reporting.report import Row
+    from autograder.grading.reporting.rows import Row
 
 NAME = "report.html"
 

@@ -7,14 +7,14 @@ from collections import defaultdict
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from autograder.grading.reporting.report import EXCUSED, LATE, NOT_SUBMITTED, columns
+from autograder.grading.reporting.rows import EXCUSED, LATE, NOT_SUBMITTED, columns
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from autograder.grading.entering.attempts import Attempt
     from autograder.grading.entering.final_results import Journal
-    from autograder.grading.reporting.report import Row
+    from autograder.grading.reporting.rows import Row
     from autograder.grading.table.class_table import ClassTable
 
 BANDS = 10

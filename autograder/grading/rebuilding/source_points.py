@@ -12,7 +12,7 @@ import msgspec
 
 from autograder.grading.entering import gradebook
 from autograder.grading.errors import ClassIncomplete, MasterUnusable, course_command
-from autograder.grading.reporting.report import NO_EXERCISE
+from autograder.grading.reporting.rows import NO_EXERCISE
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:

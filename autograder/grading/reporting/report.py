@@ -1,110 +1,25 @@
-"""The result of grading a class: rows, a table for a person, a CSV file for everything else."""
+"""The result of grading a class, and the same as one JSON object: what ``grade --json`` prints."""
 
 from __future__ import annotations
 
-from collections import Counter
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from dataclasses import asdict, dataclass, field
+from itertools import groupby
+from typing import TYPE_CHECKING, Any
 
-from autograder.grading.entering.points import points
-from autograder.grading.reporting.spreadsheet import csv_text
+import msgspec
+
+from autograder.grading.reporting.rows import DROPPED, LATE, NO_EXERCISE, Row, total
 from autograder.grading.running.timings import Timings
-from autograder.regular_files import write_whole
 from autograder.verdict import State
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
     from pathlib import Path
 
-    from autograder.boxes.execution import Execution
     from autograder.grading.classes.class_directory import Refused
     from autograder.grading.table.point_differences import Difference
-    from autograder.grading.task import Task
 
-NOT_SUBMITTED = "not_submitted"
-NOT_GRADED = "not_graded"
-"""Handed in, but left out of every run so far."""
-WAITS = "waits"
-"""A cell that only a person gives points for, and nobody has yet."""
-BY_HAND = "by_hand"
-"""The same, and somebody has."""
-EXCUSED = "excused"
-"""The student need not do the assignment, as students.csv says: it counts neither for nor against anybody."""
-LATE = "late"
-"""Stands in place of the exercise in the row that has what being late costs."""
-DROPPED = "dropped"
-"""The same in the row that takes one of a student's lowest assignments out of the total, and out of it alone."""
-NO_EXERCISE = (LATE, DROPPED)
-COLUMNS = (
-    "student",
-    "assignment",
-    "exercise",
-    "score",
-    "max",
-    "state",
-    "diagnosis",
-    "reason",
-    "judge",
-    "by_hand",
-    "extra",
-    "waits_for_a_person",
-    "name",
-)
-
-
-_NOTHING_JUDGED = (NOT_SUBMITTED, NOT_GRADED, EXCUSED, State.NOT_CHECKED)
-
-
-def total(rows: Iterable[Row]) -> float | None:
-    """The points of several rows together; None where nobody has judged any of them."""
-    scores = [score for row in rows if (score := row.shown_score) is not None]
-    return round(sum(scores), 4) if scores else None
-
-
-@dataclass(frozen=True)
-class Row:
-    """One student's result in one exercise.
-
-    Attributes:
-        student: The student's id.
-        assignment: The assignment's name.
-        exercise: The exercise's id; the name of a cell that a person gives points for; ``late`` or ``dropped``.
-        score: Points in the gradebook, those that a person gave included.
-        max_score: Points that can be had.
-        state: ``passed``, ``failed``, ``not_checked``, ``not_graded``, ``not_submitted``, ``excused``, ``waits``,
-            ``by_hand``, ``late`` or ``dropped``.
-        diagnosis: The key of the mistake, empty for none.
-        reason: Its text, empty for none.
-        judged: The judge's points in the gradebook; None where it has none.
-        by_hand: Points that a person gave in their place; None where nobody did.
-        extra: Points that a person gave on top.
-        waits: Whether a person has to look at it.
-        name: The student's name, empty where it is not known.
-    """
-
-    student: str
-    assignment: str
-    exercise: str
-    score: float
-    max_score: float
-    state: str
-    diagnosis: str = ""
-    reason: str = ""
-    judged: float | None = None
-    by_hand: float | None = None
-    extra: float = 0.0
-    waits: bool = False
-    name: str = ""
-
-    @property
-    def is_blank(self) -> bool:
-        """True if nobody has judged anything: such a row has no points, which is not zero points."""
-        return self.state in _NOTHING_JUDGED and self.by_hand is None and not self.extra
-
-    @property
-    def shown_score(self) -> float | None:
-        """The points; None where there are none to be had."""
-        return None if self.is_blank else self.score
+FORM = 2
+"""Of the JSON object: goes up when a field is renamed or taken away."""
 
 
 @dataclass(frozen=True)
@@ -166,64 +81,64 @@ class GradeReport:
         return 2 if self.refused or self.problems or unchecked else 0
 
 
-def columns(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
-    """The name of the column for each exercise, by assignment and exercise.
-
-    Cells of an instructor's own are often called alike in several assignments; then the assignment is in front.
-    """
-    keys = list(
-        dict.fromkeys((row.assignment, row.exercise) for row in rows if row.exercise not in NO_EXERCISE)
+def report_json(report: GradeReport) -> bytes:
+    """One line of JSON: the batch, each submission, totals and where the time went."""
+    return msgspec.json.encode(
+        {
+            "form": FORM,
+            "class": str(report.path),
+            "exit_code": report.exit_code,
+            "note": report.note,
+            "submissions": _submissions(report.rows),
+            "refused": [{"path": str(refused.path), "reason": refused.reason} for refused in report.refused],
+            "problems": list(report.problems),
+            "notices": list(report.notices),
+            "totals": {
+                "executed": report.executed,
+                "reused": report.reused,
+                "written": report.written,
+                "score": sum(row.score for row in report.rows),
+                "max_score": sum(row.max_score for row in report.rows),
+                "waiting_for_a_person": sum(row.waits for row in report.rows),
+                "not_checked": sum(row.state == State.NOT_CHECKED for row in report.rows),
+                "seconds": round(report.seconds, 3),
+            },
+            "timings": {name: round(value, 3) for name, value in asdict(report.timings).items()},
+        }
     )
-    often = Counter(exercise for _, exercise in keys)
-    return {key: key[1] if often[key[1]] == 1 else ".".join(key) for key in keys}
 
 
-def rows_of(task: Task, execution: Execution) -> list[Row]:
-    """The rows of one notebook."""
+def _submissions(rows: tuple[Row, ...]) -> list[dict[str, Any]]:
+    """One object for each student and assignment, in the order of the rows."""
     found = []
-    for index, cell in enumerate(task.cells):
-        if cell.check is None:
-            continue
-        verdict = execution.verdicts[index]
-        diagnosis = verdict.diagnosis
+    for (student, assignment), group in groupby(rows, key=lambda row: (row.student, row.assignment)):
+        all_rows = list(group)
+        exercises = [row for row in all_rows if row.exercise != DROPPED]
         found.append(
-            Row(
-                student=task.student,
-                assignment=task.assignment,
-                exercise=cell.check.exercise,
-                score=points(cell.check, verdict),
-                max_score=cell.check.worth,
-                state=str(verdict.state),
-                diagnosis=diagnosis.key if diagnosis else "",
-                reason=diagnosis.text if diagnosis else "",
-            )
+            {
+                "student": student,
+                "name": exercises[0].name,
+                "assignment": assignment,
+                "score": total(exercises),
+                "max_score": sum(row.max_score for row in exercises),
+                "is_dropped": exercises != all_rows,
+                "late_penalty": -sum(row.score for row in exercises if row.exercise == LATE),
+                "exercises": [
+                    {
+                        "exercise": row.exercise,
+                        "score": row.shown_score,
+                        "max_score": row.max_score,
+                        "state": row.state,
+                        "diagnosis": row.diagnosis,
+                        "reason": row.reason,
+                        "judge": row.judged,
+                        "by_hand": row.by_hand,
+                        "extra": row.extra,
+                        "waits_for_a_person": row.waits,
+                    }
+                    for row in exercises
+                    if row.exercise not in NO_EXERCISE
+                ],
+            }
         )
     return found
-
-
-def write_csv(path: Path, rows: Iterable[Row]) -> None:
-    """Write the rows as UTF-8 CSV with the mark by which Excel knows it, replacing the file as a whole.
-
-    Raises:
-        OSError: It could not be written; an earlier file is still there then.
-    """
-    write_whole(path, csv_text([COLUMNS, *map(csv_cells, rows)]).encode("utf-8-sig"))
-
-
-def csv_cells(row: Row) -> tuple[str | float, ...]:
-    """A row as the cells of :data:`COLUMNS`."""
-    return (
-        row.student,
-        row.assignment,
-        row.exercise,
-        "" if row.is_blank else row.score,
-        row.max_score,
-        row.state,
-        row.diagnosis,
-        row.reason,
-        "" if row.judged is None else row.judged,
-        "" if row.by_hand is None else row.by_hand,
-        row.extra if row.extra else "",
-        "yes" if row.waits else "",
-        row.name,
-    )

@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from autograder.cards.readable import printable
-from autograder.grading.reporting.report import DROPPED, EXCUSED, LATE, NOT_SUBMITTED, WAITS, columns, total
+from autograder.grading.reporting.rows import DROPPED, EXCUSED, LATE, NOT_SUBMITTED, WAITS, columns, total
 from autograder.grading.task import UNREADABLE
 from autograder.kit.in_words import counted
 from autograder.verdict import State
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from autograder.grading.reporting.report import GradeReport, Row
+    from autograder.grading.reporting.report import GradeReport
+    from autograder.grading.reporting.rows import Row
 
 
 _WIDE = 130

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder.grading.errors import GradingError
-from autograder.grading.reporting.report import Row  # noqa: TC001  (msgspec reads the annotations)
+from autograder.grading.reporting.rows import Row  # noqa: TC001  (msgspec reads the annotations)
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:

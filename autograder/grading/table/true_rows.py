@@ -5,15 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from autograder.grading.reporting.report import (
-    BY_HAND,
-    EXCUSED,
-    LATE,
-    NOT_GRADED,
-    NOT_SUBMITTED,
-    WAITS,
-    Row,
-)
+from autograder.grading.reporting.rows import BY_HAND, EXCUSED, LATE, NOT_GRADED, NOT_SUBMITTED, WAITS, Row
 from autograder.grading.table.what_counts import WhatCounts
 
 if TYPE_CHECKING:

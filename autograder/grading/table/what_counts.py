@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import msgspec
 
 from autograder.grading.errors import GradingError
-from autograder.grading.reporting.report import DROPPED, LATE, NOT_SUBMITTED, Row, total
+from autograder.grading.reporting.rows import DROPPED, LATE, NOT_SUBMITTED, Row, total
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

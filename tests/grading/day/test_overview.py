@@ -21,7 +21,7 @@ from autograder.grading.overview import statistics as figures
 from autograder.grading.overview.overview_page import write_report
 from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import read_released
-from autograder.grading.reporting.report import Row
+from autograder.grading.reporting.rows import Row
 from autograder.grading.table.class_table import ClassTable, read_table
 from autograder.verdict import Criterion, Verdict
 

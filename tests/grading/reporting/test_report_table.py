@@ -7,8 +7,8 @@ import io
 import pytest
 from rich.console import Console
 
-from autograder.grading.reporting.report import Row, columns
 from autograder.grading.reporting.report_table import tables
+from autograder.grading.reporting.rows import Row, columns
 
 STUDENTS = ("ada", "a-student-with-quite-a-long-id", "zoe")
 EXERCISES = {

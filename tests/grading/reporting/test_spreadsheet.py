@@ -14,7 +14,7 @@ from nbgrader.api import Gradebook
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.exporting.export_files import export
-from autograder.grading.reporting.report import Row, write_csv
+from autograder.grading.reporting.rows import Row, write_csv
 from autograder.grading.reporting.spreadsheet import csv_rows, csv_text, defused
 from autograder.grading.table.roster import read_students_csv
 
