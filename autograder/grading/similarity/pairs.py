@@ -1,4 +1,4 @@
-"""The pairs of answers that are closer than the task explains."""
+"""The pairs of answers that are closer than the task explains, also where something was put between or moved."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+from rapidfuzz.distance import LCSseq
+
 from autograder.grading.similarity.own_code import SEQUENCE
-from autograder.grading.similarity.passages import Passage, common_passages, own_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,7 +21,9 @@ SHORTEST = 40
 many ways, two that were not made one from the other share 27 at most."""
 LEAST_SHARE = 0.5
 """Of the own words of the shorter answer, what must be shared."""
-
+_ROUNDS = 6
+"""The number of times that the rest is compared again: each time, one more order of moved blocks is found."""
+_FOUND_IN_ONE, _FOUND_IN_OTHER = -3, -4
 
 HINT = (
     "A pair is a hint, not a proof: two students may have learnt from each other, or from one page on the web. "
@@ -30,20 +33,38 @@ HINT = (
 
 
 @dataclass(frozen=True)
+class Passage:
+    """Words that are in both answers in the same order.
+
+    Attributes:
+        first: The place of the first word in one answer.
+        second: Its place in the other.
+        own: For each word, whether it counts: it is the writer's own in both answers.
+    """
+
+    first: int
+    second: int
+    own: tuple[bool, ...]
+
+
+@dataclass(frozen=True)
 class Pair:
     """Two answers that are close.
 
     Attributes:
         one: One of them.
         other: The other.
-        passages: What they have in common.
-        shared: Own words in these passages.
+        passages: What they have in common, in the order of the first.
     """
 
     one: Compared
     other: Compared
     passages: Sequence[Passage]
-    shared: int
+
+    @property
+    def shared(self) -> int:
+        """The number of own words in these passages."""
+        return sum(sum(passage.own) for passage in self.passages)
 
     @property
     def share(self) -> float:
@@ -67,16 +88,9 @@ def close_pairs(answers: Sequence[Compared]) -> list[Pair]:
 
     Any cell is compared with any of another student: an answer may have been moved into a cell of one's own.
     """
-    pairs = []
-    for left, right in _candidates([answer for answer in answers if answer.length >= SHORTEST]):
-        passages = common_passages(left, right)
-        shared = sum(sum(own_words(left, right, passage)) for passage in passages)
-        if shared < SHORTEST:
-            continue
-        pair = Pair(left, right, passages, shared)
-        if pair.share >= LEAST_SHARE:
-            pairs.append(pair)
-    return closest_first(pairs)
+    candidates = _candidates([answer for answer in answers if answer.length >= SHORTEST])
+    pairs = [Pair(left, right, _common_passages(left, right)) for left, right in candidates]
+    return closest_first([pair for pair in pairs if pair.shared >= SHORTEST and pair.share >= LEAST_SHARE])
 
 
 def closest_first(pairs: Sequence[Pair]) -> list[Pair]:
@@ -99,6 +113,28 @@ def _candidates(answers: Sequence[Compared]) -> list[tuple[Compared, Compared]]:
         for (left, right), sequences in sorted(meetings.items())
         if sequences >= SHORTEST // SEQUENCE and answers[left].answer.student != answers[right].answer.student
     ]
+
+
+def _common_passages(one: Compared, other: Compared) -> list[Passage]:
+    """The passages of two answers in the order of the first; each has at least a word that is its writer's own."""
+    numbers = {sign: number for number, sign in enumerate({*one.signs, *other.signs})}
+    first, second = ([numbers[sign] for sign in answer.signs] for answer in (one, other))
+    found: list[Passage] = []
+    for _ in range(_ROUNDS):
+        blocks = [
+            (block.src_start, block.dest_start, block.src_end - block.src_start)
+            for block in LCSseq.opcodes(first, second)
+            if block.tag == "equal" and block.src_end - block.src_start >= SEQUENCE
+        ]
+        if not blocks:
+            break
+        for here, there, length in blocks:
+            # What was found is not found again: no word of the other has this number.
+            first[here : here + length] = [_FOUND_IN_ONE] * length
+            second[there : there + length] = [_FOUND_IN_OTHER] * length
+            sides = zip(one.own[here : here + length], other.own[there : there + length], strict=True)
+            found.append(Passage(here, there, tuple(left and right for left, right in sides)))
+    return sorted((passage for passage in found if any(passage.own)), key=lambda passage: passage.first)
 
 
 def _names(pair: Pair) -> tuple[str, ...]:

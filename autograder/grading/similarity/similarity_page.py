@@ -3,25 +3,58 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 from autograder.cards.readable import one_line
 from autograder.grading.returning.page_exporter import POLICY
-from autograder.grading.similarity.marked_lines import Line, lines, stretches
 from autograder.grading.similarity.pairs import HINT, LEAST_SHARE, SHORTEST, nothing_found
-from autograder.grading.similarity.passages import own_words
 from autograder.page_templates import page_templates
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
     from autograder.grading.similarity.close_pairs import Similar
+    from autograder.grading.similarity.own_code import Compared
     from autograder.grading.similarity.pairs import Pair
 
 _NAME = "similar.html"
 _LONGEST_NAME = 200
+_AROUND = 3
+"""Lines that are shown before and behind a marked one."""
+_LONGEST_PIECE = 400
+
+
+@dataclass(frozen=True)
+class _Piece:
+    """A piece of a line.
+
+    Attributes:
+        text: What is there, safe to read; a template escapes it for HTML.
+        passage: The number of the common passage that it belongs to; 0 for none.
+        begins: Whether this is where its number has to stand.
+    """
+
+    text: str
+    passage: int = 0
+    begins: bool = False
+
+
+@dataclass(frozen=True)
+class _Line:
+    """A line of an answer, or what stands for lines that are left out.
+
+    Attributes:
+        number: Counted from 1; 0 where lines are left out.
+        pieces: What is in it.
+        left_out: How many lines are left out here.
+    """
+
+    number: int
+    pieces: tuple[_Piece, ...] = ()
+    left_out: int = 0
 
 
 @dataclass(frozen=True)
@@ -31,7 +64,7 @@ class _Side:
     student: str
     cell: str
     length: int
-    lines: list[Line]
+    lines: list[_Line]
 
 
 @dataclass(frozen=True)
@@ -80,23 +113,68 @@ def page(found: Similar) -> str:
 
 
 def _shown(pair: Pair, names: Mapping[str, str]) -> _Shown:
-    counted = [own_words(pair.one, pair.other, passage) for passage in pair.passages]
-    starts = (
-        (pair.one, [passage.first for passage in pair.passages]),
-        (pair.other, [passage.second for passage in pair.passages]),
-    )
-    left, right = (
-        _Side(
-            _called(side.answer.student, names),
-            side.answer.cell,
-            side.length,
-            lines(side.answer.text, stretches(side, zip(firsts, counted, strict=True))),
-        )
-        for side, firsts in starts
-    )
-    return _Shown(pair.place, pair.percent, pair.shared, (left, right))
+    left = [(passage.first, passage.own) for passage in pair.passages]
+    right = [(passage.second, passage.own) for passage in pair.passages]
+    sides = _side(pair.one, left, names), _side(pair.other, right, names)
+    return _Shown(pair.place, pair.percent, pair.shared, sides)
+
+
+def _side(
+    answer: Compared, passages: Iterable[tuple[int, Sequence[bool]]], names: Mapping[str, str]
+) -> _Side:
+    own = answer.answer
+    return _Side(_called(own.student, names), own.cell, answer.length, _lines(answer, passages))
 
 
 def _called(student: str, names: Mapping[str, str]) -> str:
     name = names.get(student)
     return one_line(f"{name} ({student})" if name else student, _LONGEST_NAME)
+
+
+def _lines(answer: Compared, passages: Iterable[tuple[int, Sequence[bool]]]) -> list[_Line]:
+    """The lines with marked passages and those around them.
+
+    Args:
+        answer: One side of a pair.
+        passages: The first word of each on that side, and which of its words count.
+    """
+    text = answer.answer.text
+    passage_of = [0] * len(text)  # by character
+    for number, (first, own) in enumerate(passages, 1):
+        for counts, steps in groupby(range(len(own)), key=own.__getitem__):
+            if counts:
+                words = [answer.code[first + step] for step in steps]
+                start, end = words[0].start, words[-1].end
+                passage_of[start:end] = [number] * (end - start)
+    found = []
+    offset = last = 0
+    for number, line in enumerate(text.split("\n"), 1):
+        pieces = _pieces(line, passage_of[offset : offset + len(line)], last)
+        last = next((piece.passage for piece in reversed(pieces) if piece.passage), last)
+        found.append(_Line(number, pieces))
+        offset += len(line) + 1
+    return _near_marks(found)
+
+
+def _pieces(line: str, passage_of: list[int], last: int) -> tuple[_Piece, ...]:
+    """The pieces of a line, each of one passage or of none; ``last`` is the passage that was marked before the line."""
+    indent = len(line) - len(line.lstrip())
+    passage_of[:indent] = [0] * indent
+    found = []
+    end = 0
+    for passage, characters in groupby(passage_of[: len(line.rstrip())]):
+        start, end = end, end + len(list(characters))
+        text = one_line(line[start:end].expandtabs(4), _LONGEST_PIECE)
+        found.append(_Piece(text, passage, begins=passage not in (0, last)))
+        last = passage or last
+    return tuple(found)
+
+
+def _near_marks(every: Sequence[_Line]) -> list[_Line]:
+    marked = [place for place, line in enumerate(every) if any(piece.passage for piece in line.pieces)]
+    shown = {near for place in marked for near in range(place - _AROUND, place + _AROUND + 1)}
+    found: list[_Line] = []
+    for is_shown, numbered in groupby(enumerate(every), key=lambda one: one[0] in shown):
+        lines = [line for _, line in numbered]
+        found += lines if is_shown else [_Line(0, left_out=len(lines))]
+    return found
