@@ -1,15 +1,36 @@
-"""A verdict as the MIME bundle that a notebook displays."""
+"""A verdict as the MIME bundle that a notebook displays: its text, and one self-contained fragment of HTML.
+
+The fragment holds no script, no id and no address, so several cards share a page and nothing is fetched.
+JupyterLab's sanitiser takes ``<style>``, ``<svg>`` and ``aria-*`` out of a notebook that is not trusted: the
+card is a heading, sentences and tables in the right order without them.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
 
-from autograder.cards.html import card_html, templates, waiting_html
+from autograder.cards import wording
+from autograder.cards.card import ON_A_PAGE, Card, Solution
+from autograder.cards.readable import one_line
 from autograder.cards.text import card_text
+from autograder.cards.timeline_layout import HALF_WIDTH, WIDTH, Picture, picture
+from autograder.verdict import State
 
 if TYPE_CHECKING:
-    from autograder.cards.solution import Solution
+    from collections.abc import Mapping
+
+    from jinja2 import Template
+
+    from autograder.cards.traffic import Part
     from autograder.verdict import Verdict
+
+_SYMBOLS = {State.PASSED: "✓", State.FAILED: "✗", State.NOT_CHECKED: "?"}
+
+# For the untrusted notebook only, where the style sheet is gone: legible on white and on black.
+_PLAIN_COLOURS = {State.PASSED: "#2f8f57", State.FAILED: "#c8641a", State.NOT_CHECKED: "#6482c8"}
 
 
 def mimebundle(
@@ -29,12 +50,9 @@ def mimebundle(
         solution: The reference solution, which is shown with full marks only.
         short: Leave out all but the points, what happened and what to do next.
     """
-    return {
-        "text/html": card_html(
-            verdict, before=before, notice=notice, solution=solution, short=short, buttons=True
-        ),
-        "text/plain": card_text(verdict, before=before, notice=notice, solution=solution, short=short),
-    }
+    html = card_html(verdict, before=before, notice=notice, solution=solution, short=short, buttons=True)
+    text = card_text(verdict, before=before, notice=notice, solution=solution, short=short)
+    return {"text/html": html, "text/plain": text}
 
 
 def waiting_bundle(title: str, doing: str) -> dict[str, str]:
@@ -49,4 +67,105 @@ def waiting_bundle(title: str, doing: str) -> dict[str, str]:
 
 def prepare() -> None:
     """Read what the first card would otherwise wait for: about 40 ms."""
-    templates()
+    _templates()
+
+
+def card_html(
+    verdict: Verdict,
+    *,
+    before: float | None = None,
+    notice: str = "",
+    solution: Solution | None = None,
+    short: bool = False,
+    buttons: bool = False,
+) -> str:
+    """Show a verdict in JupyterLab, in nbgrader's feedback or on any page; everything is escaped.
+
+    Args:
+        verdict: What the judge found.
+        before: As in :func:`mimebundle`, like the others.
+        notice: Likewise.
+        solution: Likewise.
+        short: Likewise.
+        buttons: With Check, Watch and Next, which only JupyterLab with the course's commands shows.
+    """
+    css, template = _templates()
+    card = Card.of(verdict, ON_A_PAGE, before=before, notice=notice, solution=solution, short=short)
+    width = WIDTH if len(card.traffic.parts) <= 2 else HALF_WIDTH
+    return template.render(
+        card=card,
+        parts=[_Part.of(part, width) for part in card.traffic.parts],
+        moments=[moment for part in card.traffic.parts for moment in part.moments],
+        css=css,
+        symbol=_SYMBOLS[card.state],
+        colour=_PLAIN_COLOURS[card.state],
+        facts=one_line(" · ".join(card.facts), 200),
+        buttons=buttons,
+    )
+
+
+def waiting_html(title: str, doing: str) -> str:
+    """The placeholder for a card that is not there yet: the exercise, and what goes on."""
+    css, template = _templates()
+    waiting = template.environment.get_template("waiting.html.j2")
+    return waiting.render(title=one_line(title, 160), doing=one_line(doing, 160), css=css)
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A part of the traffic: its picture, and of each moment its time, place, direction and words for the table."""
+
+    title: str
+    label: str
+    simulated: bool
+    picture: Picture | None
+    moments: tuple[tuple[str, str, str, str], ...]
+    gaps: Mapping[int, int]
+
+    @classmethod
+    def of(cls, part: Part, width: int) -> _Part:
+        title = one_line(part.title, 120)
+        label = "Traffic in its order" if part.stands_still else f"Traffic over {part.kind_of_time}"
+        return cls(
+            title=title,
+            label=label + (f", {title}" if title else ""),
+            simulated=part.simulated,
+            picture=picture(part, width) if part.is_worth_a_picture else None,
+            moments=tuple(
+                (
+                    part.when(index),
+                    one_line(moment.lane, 80),
+                    wording.direction(moment.direction),
+                    one_line(moment.label, 160),
+                )
+                for index, moment in enumerate(part.moments)
+            ),
+            gaps=part.gaps,
+        )
+
+
+@cache
+def _templates() -> tuple[Any, Template]:
+    """The style sheet and the card's template, read once."""
+    # Imported on first use: a terminal that only prints text need not pay for it.
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+    from markupsafe import Markup
+
+    environment = Environment(
+        loader=PackageLoader("autograder.cards", ""), autoescape=True, undefined=StrictUndefined
+    )
+    environment.filters["breakable"] = _breakable
+    shapes: Any = environment.get_template("shapes.html.j2").module
+    environment.globals |= {"shape": shapes.shape, "wording": wording}
+    for name in environment.list_templates(extensions=["j2"]):
+        # Also what the card includes: it would be compiled when the first card is shown.
+        environment.get_template(name)
+    css = (files("autograder.cards") / "card.css").read_text(encoding="utf-8")
+    return Markup(css), environment.get_template("card.html.j2")
+
+
+def _breakable(text: str) -> Any:
+    """``text``, escaped, where a line may be broken behind each slash: names of ROS are long."""
+    from markupsafe import Markup, escape
+
+    return Markup("/<wbr/>").join(escape(part) for part in text.split("/"))

@@ -3,7 +3,7 @@
 One picture is one part of the check: a row (lane) for each name on the graph, time from left to right. A mark
 is at its time, also where another one stands; those that would hide each other are drawn one below the other.
 Lengths along the time axis are computed for the narrowest picture and given out as percentages, so that a
-wider card only gets more room; heights are pixels.
+wider card only gets more room; heights are pixels. No label covers another one, and no leader runs through one.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 from autograder.cards import readable, wording
 from autograder.cards.axis import Axis, Tick, places_of
-from autograder.cards.flags import CHARACTER, Wish, flags, length
 from autograder.cards.readable import one_line
 
 if TYPE_CHECKING:
@@ -25,6 +24,12 @@ WIDTH = 600
 """Pixels of the narrowest picture in which nothing overlaps; narrower windows scroll."""
 HALF_WIDTH = 430
 """The same where a check has many parts, so that a wide card shows two side by side."""
+
+_CHARACTER = 6.7
+"""Pixels of one character of the 11-pixel monospaced label font; a lane's name is set one pixel larger."""
+_MANY = 8
+"""Moments in a lane beyond which the labels that may be left out stay on one level: a calm lane."""
+_LEVELS = 4
 
 _FEW = 5
 """Moments in a lane up to which labels are long."""
@@ -118,7 +123,7 @@ def picture(part: Part, width: int = WIDTH) -> Picture:
     if not moments:
         raise ValueError("a part without moments cannot be drawn")
     labels = _labels(part)
-    axis = Axis.of(part, [length(label) for label in labels], width)
+    axis = Axis.of(part, [_length(label) for label in labels], width)
     xs = [axis.x(place) for place in places_of(part)]
     lanes: list[Lane] = []
     bottom = 0.0
@@ -128,7 +133,7 @@ def picture(part: Part, width: int = WIDTH) -> Picture:
         lanes.append(lane)
     return Picture(
         lanes=tuple(lanes),
-        ticks=tuple(Tick(_percent(tick.x, width), tick.text, tick.anchor) for tick in axis.ticks(CHARACTER)),
+        ticks=tuple(Tick(_percent(tick.x, width), tick.text, tick.anchor) for tick in axis.ticks(_CHARACTER)),
         axis_y=bottom,
         height=bottom + _AXIS_HEIGHT + _READING_HEIGHT,
         summary=wording.part_in_words(part),
@@ -149,10 +154,10 @@ def _lane(
 ) -> tuple[Lane, float]:
     """One lane, and the pixel at which it ends."""
     moments = part.moments
-    placed = flags([Wish(labels[i], xs[i], needed=moments[i].key) for i in members])
+    placed = _flags([_Wish(labels[i], xs[i], needed=moments[i].key) for i in members])
     text = one_line(name, 60)
     levels = 1 + max((flag.level for flag in placed if flag), default=0)
-    name_end = readable.width(text) * (CHARACTER + 0.7) + 6
+    name_end = readable.width(text) * (_CHARACTER + 0.7) + 6
     if any(flag.level == levels - 1 and flag.left < name_end for flag in placed if flag):
         levels += 1
     line_y = top + _LANE_HEAD + levels * _LEVEL_HEIGHT + 7
@@ -211,3 +216,69 @@ def _continued(previous: str, label: str) -> str:
 
 def _percent(x: float, width: int) -> float:
     return round(100 * x / width, 2)
+
+
+@dataclass(frozen=True)
+class _Wish:
+    """A label that wants a place: its text, the mark's x in pixels, and whether it may not be left out."""
+
+    label: str
+    x: float
+    needed: bool = False
+
+
+@dataclass(frozen=True)
+class _Flag:
+    """A label in its place: a leader ``level`` rows high at ``pole``, text from ``left`` to ``right``."""
+
+    level: int
+    pole: float
+    left: float
+    right: float
+
+    def clear_of(self, other: _Flag) -> bool:
+        """True if the two texts do not touch and neither leader runs through the other's text."""
+        if self.level == other.level:
+            return self.right + 4 <= other.left or other.right + 4 <= self.left
+        upper, lower = (self, other) if self.level > other.level else (other, self)
+        return not (lower.left < upper.pole <= lower.right + 2) or upper.pole == lower.pole
+
+
+def _length(label: str) -> float:
+    """Pixels from a mark to the end of its label."""
+    return 5 + readable.width(label) * _CHARACTER
+
+
+def _flags(wishes: Sequence[_Wish]) -> list[_Flag | None]:
+    """Give each label of a lane, in order of x, a place, or None where there is none.
+
+    From right to left: an earlier label then rises above the later ones and its leader crosses none of them. So a
+    place can always be found for those that are needed, which come first.
+    """
+    many = len(wishes) > _MANY
+    found: list[_Flag | None] = [None] * len(wishes)
+    placed: list[_Flag] = []
+    for needed in (True, False):
+        for index in reversed(range(len(wishes))):
+            wish = wishes[index]
+            if not wish.label or wish.needed is not needed:
+                continue
+            # The first one gets a row of its own where it needs it: the others continue its words.
+            levels = len(wishes) + 1 if needed else (1 if many else _LEVELS) + (index == 0)
+            before = wishes[index - 1].x if index else 0.0
+            flag = _place(wish, levels, placed, free_left=0.0 if many else wish.x - before)
+            if flag:
+                placed.append(flag)
+                found[index] = flag
+    return found
+
+
+def _place(wish: _Wish, levels: int, placed: Sequence[_Flag], *, free_left: float) -> _Flag | None:
+    """The lowest free place right of the mark, else the lowest within ``free_left`` pixels left of it."""
+    x, long = wish.x, _length(wish.label)
+    for left in (x, x - long) if long < free_left and not wish.needed else (x,):
+        for level in range(levels):
+            flag = _Flag(level, x, left, left + long)
+            if all(flag.clear_of(other) for other in placed):
+                return flag
+    return None

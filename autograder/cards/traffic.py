@@ -57,6 +57,11 @@ class Part:
         found = dict.fromkeys(moment.lane for moment in self.moments)
         return tuple(sorted(found, key=lambda lane: _LAST.get(lane, 0)))
 
+    @property
+    def kind_of_time(self) -> str:
+        """What its axis shows, in words."""
+        return "simulated time" if self.simulated else "time"
+
     @functools.cached_property
     def stands_still(self) -> bool:
         """True if time says nothing about the order: all at once or, by a clock that was moved, nearly so."""

@@ -29,6 +29,13 @@ DIRECTION_WORDS = {
 
 CRITERION_WORDS = {True: "PASS", False: "NOT YET"}
 
+DIFFERENCE = "the difference ([ ] is missing, { } is too much)"
+
+SOLUTION = "The reference solution, and why it is written so"
+"""The heading of what is folded up."""
+OTHER_WAY = "Another way"
+"""The heading of an alternative to it."""
+
 _BLAMELESS = (
     "The checker itself had trouble, so nothing was found out about your code: "
     "this is no mistake of yours, and no points were counted."
@@ -78,9 +85,14 @@ def points(value: float) -> str:
     return f"{value:.2f}".rstrip("0").rstrip(".")
 
 
+def unit(value: float) -> str:
+    """The word behind a number of points."""
+    return "point" if value == 1 else "points"
+
+
 def points_of(earned: float, possible: float) -> str:
     """``"7.5 of 10 points"``."""
-    return f"{points(earned)} of {points(possible)} {'point' if possible == 1 else 'points'}"
+    return f"{points(earned)} of {points(possible)} {unit(possible)}"
 
 
 def score_line(verdict: Verdict, before: float | None = None) -> str:
@@ -151,9 +163,6 @@ def traffic_notes(shown: Traffic) -> str:
         count = f"{shown.parts_left_out} more {'part' if shown.parts_left_out == 1 else 'parts'}"
         notes.append(f"{count} of the check left out.")
     return " ".join(notes)
-
-
-DIFFERENCE = "the difference ([ ] is missing, { } is too much)"
 
 
 def direction(key: str) -> str:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import exercises, journal
-from autograder.cards.html import card_html, waiting_html
+from autograder.cards.bundle import card_html, waiting_html
 from autograder.journal import Entry
 from autograder.verdict import from_json
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.cards import text as text_card
+from autograder.cards.card import IN_A_TERMINAL
 from autograder.cards.readable import width as columns
 from autograder.cards.text import card_text
 from autograder.verdict import Criterion, State, Verdict, not_checked
@@ -85,7 +85,7 @@ def test_every_moment_is_a_line(load: Callable[[str], Verdict]) -> None:
 def test_a_long_timeline_is_cut_and_says_so(load: Callable[[str], Verdict]) -> None:
     text = card_text(load("cancel_failed"))
     shown = len(re.findall(r"^ +\d+\.\d{3} s ", text, flags=re.MULTILINE))
-    assert shown <= text_card.MOMENTS
+    assert shown <= IN_A_TERMINAL.moments
     assert f"... {44 - shown} more left out here" in text
     assert "final status: 4" in text  # the end is kept
 

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from autograder import course
 from autograder.cards import bundle
-from autograder.cards.solution import Solution
+from autograder.cards.card import Solution
 from autograder.cards.wording import duration
 from autograder.notebook.cells.student_tracebacks import notebook_shell
 from autograder.notebook.checking.judge_link import SOCKET_VARIABLE

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from autograder import exercises
-from autograder.cards.solution import HEADING
+from autograder.cards.wording import SOLUTION
 from autograder.handing_out import hand_out
 from autograder.notebook.checking import card_display
 from autograder.notebook.checking.card_display import solution_of
@@ -57,13 +57,13 @@ def test_every_exercise_has_one_and_its_other_way_is_python(exercise: str) -> No
 
 def test_full_marks_in_ones_own_notebook_offer_it(shown: list[dict[str, str]]) -> None:
     check(10)
-    assert HEADING in shown[-1]["text/html"]
+    assert SOLUTION in shown[-1]["text/html"]
 
 
 @pytest.mark.parametrize("score", [0, 9.5])
 def test_less_does_not(shown: list[dict[str, str]], score: float) -> None:
     check(score)
-    assert HEADING not in str(shown)
+    assert SOLUTION not in str(shown)
 
 
 @pytest.mark.parametrize(
@@ -75,7 +75,7 @@ def test_while_a_class_is_graded_nothing_does(
     monkeypatch.setenv(variable, value)
     check(10)
     assert shown
-    assert HEADING not in str(shown)
+    assert SOLUTION not in str(shown)
 
 
 @pytest.mark.parametrize("with_solutions", [False, True])

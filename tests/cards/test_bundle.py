@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.cards.html import card_html
+from autograder.cards.bundle import card_html
 from autograder.cards.text import card_text
 from autograder.verdict import Criterion, Diagnosis, Moment, State, Verdict, not_checked
 

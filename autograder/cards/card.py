@@ -1,0 +1,209 @@
+"""A verdict as both cards show it, in texts that are safe to read: the HTML card and its twin print this alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from autograder.cards import wording
+from autograder.cards.differences import Piece, difference
+from autograder.cards.readable import block, one_line, paragraph
+from autograder.cards.tracebacks import TRACEBACK, Place, place
+from autograder.cards.traffic import Traffic, traffic
+
+if TYPE_CHECKING:
+    from autograder.verdict import Criterion, State, Verdict
+
+UNFOLDED = 16
+"""Lines up to which a traceback is shown at once: longer ones open on demand."""
+SOLUTION_LINES = 120
+SOLUTION_COLUMNS = 200
+"""Lines and columns that are shown of a piece of the reference solution."""
+
+
+@dataclass(frozen=True)
+class Form:
+    """The marks of one kind of card, and how much it shows.
+
+    Attributes:
+        mark: Stands for what is cut out of a text.
+        nothing: Stands for a text that is empty.
+        moments: Moments of the traffic at most, about.
+        lines: Lines of a traceback or of output.
+        columns: Characters of such a line.
+    """
+
+    mark: str
+    nothing: str
+    moments: int
+    lines: int
+    columns: int
+
+
+ON_A_PAGE = Form("…", "–", moments=80, lines=120, columns=400)
+IN_A_TERMINAL = Form("...", "-", moments=30, lines=60, columns=240)
+
+
+@dataclass(frozen=True)
+class Solution:
+    """The reference solution, which a card offers with full marks only.
+
+    Attributes:
+        code: The solution cells, in their order.
+        why: Why it is written so, in one or two sentences.
+        other_way: What another way is good for; empty where none is worth a look.
+        other_code: That way.
+    """
+
+    code: tuple[str, ...]
+    why: str
+    other_way: str = ""
+    other_code: str = ""
+
+    def readable(self) -> Solution:
+        """The same as texts that are safe to read."""
+        code = tuple(_code(cell) for cell in self.code)
+        other_way, other_code = paragraph(self.other_way, 600), _code(self.other_code)
+        return Solution(code, paragraph(self.why, 600), other_way, other_code)
+
+
+@dataclass(frozen=True)
+class Row:
+    """A criterion, with its points in words and as the width of its part of the bar."""
+
+    passed: bool
+    word: str
+    title: str
+    expected: str
+    seen: str
+    points: str
+    unit: str
+    weight: str
+    difference: tuple[Piece, ...]
+
+    @classmethod
+    def of(cls, criterion: Criterion, form: Form) -> Row:
+        """The row of a criterion."""
+        earned = criterion.points if criterion.passed else 0.0
+        pieces = difference(criterion)
+        return cls(
+            passed=criterion.passed,
+            word=wording.CRITERION_WORDS[criterion.passed],
+            title=one_line(criterion.title, 160, mark=form.mark),
+            expected=one_line(criterion.expected, 240, mark=form.mark) or form.nothing,
+            seen=one_line(criterion.seen, 240, mark=form.mark) or form.nothing,
+            points=f"{wording.points(earned)} of {wording.points(criterion.points)}",
+            unit=wording.unit(criterion.points),
+            weight=wording.points(max(criterion.points, 0.1)),
+            difference=tuple(Piece(one.kind, one_line(one.text, 200, mark=form.mark)) for one in pieces),
+        )
+
+
+@dataclass(frozen=True)
+class Card:
+    """All that a card says; see :class:`autograder.verdict.Verdict`, from which it comes.
+
+    Attributes:
+        score_line: The points in words.
+        before: The points of the try before, where they were others; else empty.
+        notice: Why the card is out of date; empty for one that is not.
+        traffic: What was on the wire; its texts are as the subject chose them.
+        traffic_notes: What is left out of it.
+        place: The line of the student's that a traceback is about.
+        unfolded: Whether the detail is short enough to be shown at once.
+        facts: What to quote in a question.
+        solution: Where it is offered.
+    """
+
+    state: State
+    title: str
+    state_words: str
+    tally: str
+    score_line: str
+    before: str
+    score: str
+    max_score: str
+    unit: str
+    notice: str
+    advice: wording.Advice
+    place: Place | None
+    criteria: tuple[Row, ...]
+    remarks: tuple[str, ...]
+    traffic: Traffic
+    traffic_notes: str
+    detail_heading: str
+    detail: tuple[str, ...]
+    unfolded: bool
+    facts: tuple[str, ...]
+    solution: Solution | None
+
+    @classmethod
+    def of(
+        cls,
+        verdict: Verdict,
+        form: Form,
+        *,
+        before: float | None = None,
+        notice: str = "",
+        solution: Solution | None = None,
+        short: bool = False,
+    ) -> Card:
+        """The card of a verdict.
+
+        Args:
+            verdict: What the judge found.
+            form: Which kind of card.
+            before: The points of the try before this one, where there was one.
+            notice: Why the card is out of date; empty for one that is not.
+            solution: The reference solution, which is shown with full marks only.
+            short: Leave out all but the points, what happened and what to do next.
+        """
+        mark = form.mark
+        advice = wording.advice(verdict)
+        shown = traffic(verdict.timeline, at_most=form.moments)
+        detail = verdict.detail if verdict.detail.strip() else ""
+        card = cls(
+            state=verdict.state,
+            title=one_line(verdict.title or verdict.exercise, 160, mark=mark),
+            state_words=wording.STATE_WORDS[verdict.state],
+            tally=wording.tally(verdict),
+            score_line=wording.score_line(verdict, before),
+            before=wording.points_before(verdict, before),
+            score=wording.points(verdict.score),
+            max_score=wording.points(verdict.max_score),
+            unit=wording.unit(verdict.max_score),
+            notice=one_line(notice, 200, mark=mark),
+            advice=wording.Advice(
+                advice.heading,
+                paragraph(advice.text, 1200, mark=mark),
+                paragraph(advice.next_step, 1200, mark=mark),
+            ),
+            place=_readable(place(verdict.detail), mark),
+            criteria=tuple(Row.of(criterion, form) for criterion in verdict.criteria),
+            remarks=tuple(paragraph(remark, 600, mark=mark) for remark in verdict.remarks),
+            traffic=shown,
+            traffic_notes=wording.traffic_notes(shown),
+            detail_heading=one_line(wording.detail_heading(detail), 160, mark=mark),
+            detail=tuple(block(detail, max_lines=form.lines, max_columns=form.columns, mark=mark))
+            if detail
+            else (),
+            unfolded=TRACEBACK in detail and detail.count("\n") < UNFOLDED,
+            facts=tuple(wording.fine_print(verdict)),
+            solution=solution.readable() if solution and verdict.passed else None,
+        )
+        return card._shortened() if short else card
+
+    def _shortened(self) -> Card:
+        """The same without what is only looked up."""
+        return replace(self, criteria=(), remarks=(), traffic=Traffic(()), detail=(), facts=(), solution=None)
+
+
+def _readable(found: Place | None, mark: str) -> Place | None:
+    if found is None:
+        return None
+    texts = (found.where, 120), (found.quote, 200), (found.error, 300)
+    return Place(*(one_line(text, limit, mark=mark) for text, limit in texts))
+
+
+def _code(text: str) -> str:
+    return "\n".join(block(text, max_lines=SOLUTION_LINES, max_columns=SOLUTION_COLUMNS)) if text else ""
