@@ -19,10 +19,20 @@ if TYPE_CHECKING:
     from autograder.judge.verdicts.keeping import Kept
     from autograder.verdict import Verdict
 
+_MAX_COLUMNS = 4_000
+"""Characters of a printed line; one that quotes an expected and a seen text in full has half of that."""
+_MAX_LINES = 100
+"""Printed differences, and printed notes; each criterion has one at most, and no exercise a third as many criteria."""
+
 
 def _fail(message: str) -> NoReturn:
-    click.echo(f"autograder: {printable(message)}", err=True)
+    click.echo(f"autograder: {_shown(message)}", err=True)
     sys.exit(2)
+
+
+def _shown(line: str) -> str:
+    """A line as it can be printed: whoever wrote the file may have put anything into it, of any length."""
+    return printable(line if len(line) <= _MAX_COLUMNS else f"{line[:_MAX_COLUMNS]}…")
 
 
 @click.command()
@@ -65,7 +75,7 @@ def replay(file: Path, mcap: Path | None, bag: Path | None) -> None:
             "another version of the course: use that one."
         )
     for line in lines:
-        click.echo(printable(line))
+        click.echo(_shown(line))
     sys.exit(1 if again.differences else 0)
 
 
@@ -109,10 +119,10 @@ def _lines(appeal: Appeal, again: Replay) -> Iterator[str]:
     yield f"now:  {_told(again.now)}"
     if again.differences:
         yield "another verdict:"
-        yield from (f"  {line}" for line in again.differences)
+        yield from (f"  {line}" for line in again.differences[:_MAX_LINES])
     else:
         yield "the same verdict, points and diagnosis"
-    yield from (f"note: {note}" for note in again.notes)
+    yield from (f"note: {note}" for note in again.notes[:_MAX_LINES])
     yield "note: the file proves nothing by itself, anybody can write one; `./course appeal` writes it from the class"
 
 

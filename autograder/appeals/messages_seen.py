@@ -120,7 +120,9 @@ def _in_cdr(kind: Any, fields: Mapping[str, Any]) -> bytes:
 def _channel_in_cdr(file: MessageFile, topic: str, type_name: str) -> tuple[int, Any] | None:
     """The number to write messages of a topic under, and their class; None where the type is not known here."""
     try:
-        kind, text = interface(type_name), definition(type_name)
+        # In this order: to look for a class is to import a module, and whoever wrote the file may have named any.
+        text = definition(type_name)
+        kind = interface(type_name)
     except LookupError:
         return None
     channel = file.channel(topic, type_name, text, about={"offered_qos_profiles": ""})

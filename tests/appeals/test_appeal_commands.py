@@ -91,6 +91,25 @@ def test_what_is_printed_of_an_honest_file_with_a_forged_name_is_escaped(file: P
     assert "ada\\x1b[2J\\nthe same verdict, points and diagnosis, forged\\u202e" in run("replay", file)[1]
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda content: content.update(student="ada" * 1_000_000),
+        lambda content: content["seen"].update(cut="cut" * 1_000_000),
+        lambda content: content["seen"]["verdict"]["criteria"].extend(
+            {**content["seen"]["verdict"]["criteria"][0], "name": f"criterion {number}"}
+            for number in range(10_000)
+        ),
+    ],
+)
+def test_a_forged_file_does_not_flood_the_terminal(
+    file: Path, change: Callable[[dict[str, Any]], object]
+) -> None:
+    edit(file, change)
+    _, said = run("replay", file)
+    assert len(said) < 10_000
+
+
 def test_another_reference_output_is_told(file: Path) -> None:
     edit(file, lambda content: content["seen"].update(reference="of long ago"))
     assert "the reference output of this exercise has changed since" in run("replay", file)[1]
@@ -187,6 +206,18 @@ def test_the_messages_of_topics_are_written_for_ros2_bag(file: Path, tmp_path: P
     texts = [one.message.data for one in read_recording(tmp_path / "bag.mcap", ["/chatter"])]
     assert texts[:2] == ["Hello, world! 0", "Hello, world! 1"]
     assert f"{len(texts)} messages of topics" in said
+
+
+def test_a_type_in_a_forged_file_imports_no_module(
+    file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "forged_msgs").mkdir()
+    (tmp_path / "forged_msgs" / "__init__.py").touch()
+    (tmp_path / "forged_msgs" / "msg.py").write_text("class String: pass\n", encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    edit(file, lambda c: first_event(c)["data"].update(publisher={"/chatter": "forged_msgs/msg/String"}))
+    assert "have a type that is not known here" in run("replay", file, "--bag", tmp_path / "bag.mcap")[1]
+    assert "forged_msgs" not in sys.modules
 
 
 @pytest.mark.parametrize("option", ["--mcap", "--bag"])
