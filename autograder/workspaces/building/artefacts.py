@@ -11,7 +11,7 @@ import os
 import shutil
 import tarfile
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -24,10 +24,24 @@ MAX_DEPTH = 24
 """Parts of a path."""
 MAX_LINKS = 8
 """Links that lead from one to the next."""
+MAX_PAX = 2_000
+"""Bytes of a pax header; one with a long path has some hundreds. Python searches it in a time that grows with the
+square: hours for a few megabytes of digits."""
 
 
 class BadArtefacts(ValueError):
     """An archive that is none, or that holds what no build of a workspace makes."""
+
+
+class _ShortHeaders(tarfile.TarInfo):
+    """An entry of a tar file that says no more of itself in front than entries of a build do."""
+
+    @classmethod
+    def frombuf(cls, buf: bytes | bytearray, encoding: str, errors: str) -> Self:
+        found = super().frombuf(buf, encoding, errors)
+        if found.type in (tarfile.XHDTYPE, tarfile.XGLTYPE, tarfile.SOLARIS_XHDTYPE) and found.size > MAX_PAX:
+            raise BadArtefacts(f"the archive says more than {MAX_PAX} bytes of one of its files")
+        return found
 
 
 def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> int:
@@ -49,7 +63,7 @@ def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> int:
     number = size = 0
     links: dict[PurePosixPath, PurePosixPath] = {}
     try:
-        with tarfile.open(fileobj=io.BytesIO(archive), mode="r:") as tar:
+        with tarfile.open(fileobj=io.BytesIO(archive), mode="r:", tarinfo=_ShortHeaders) as tar:
             for member in tar:
                 number += 1
                 size += max(member.size, 0)

@@ -43,6 +43,12 @@ def test_files_and_folders_come_through_and_links_to_files_as_copies(tmp_path: P
         assert not file.is_symlink()
 
 
+def test_a_long_path_comes_through(tmp_path: Path) -> None:
+    name = "/".join(["p" * 60] * 10)
+    unpack(packed((name, tarfile.REGTYPE, "", 3)), tmp_path / "install")
+    assert (tmp_path / "install" / name).read_bytes() == b"xxx"
+
+
 @pytest.mark.parametrize(
     "members",
     [
@@ -126,6 +132,13 @@ BACKWARDS = b"\xff" + ((1 << 88) - 512).to_bytes(11, "big")
             + header(b"%011o" % 512)
             + b"1\n0\n0\n".ljust(512, b"\0"),
             id="is mostly holes",
+        ),
+        *(
+            pytest.param(
+                header(b"%011o" % 4_194_304, kind) + b"1" * 4_194_304 + EMPTY,
+                id=f"digits for hours, {kind!r}",
+            )
+            for kind in (tarfile.XHDTYPE, tarfile.XGLTYPE, tarfile.SOLARIS_XHDTYPE)
         ),
     ],
 )
