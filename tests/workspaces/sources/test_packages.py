@@ -92,6 +92,15 @@ def test_an_odd_package_file_is_the_packages_own_fault(workspace: Path, content:
     assert simple_package_xml(content.decode("utf-8", "replace"))
 
 
+def test_a_package_file_is_not_longer_than_it_looks(workspace: Path) -> None:
+    # Two thousand bytes stood for 120,000 dependencies, and fifty such packages took minutes outside of any box.
+    many = f"""<!ENTITY a "<depend>x</depend>"><!ENTITY b "{"&a;" * 400}">"""
+    content = f"<!DOCTYPE package [{many}]><package><name>tiny_pkg</name>{'&b;' * 300}</package>"
+    (workspace / "src" / "tiny_pkg" / "package.xml").write_text(content)
+    with pytest.raises(packages.BadPackage, match="declares an entity"):
+        packages.find_packages(workspace / "src")
+
+
 def test_a_package_file_with_thousands_of_dependencies_is_not_validated(workspace: Path) -> None:
     # catkin_pkg compares each of them with each other: 20,000 took minutes, outside of any box.
     depends = "".join(f"<depend>p{number}</depend>" for number in range(1_000))
