@@ -24,6 +24,9 @@ DEFINITIONS = (".msg", ".srv", ".action")
 UNREADABLE = (SyntaxError, ValueError, LookupError, RecursionError, MemoryError)
 """The errors with which Python's parsers of Python and XML refuse a text: malformed, in an encoding that they do not
 know, too deep."""
+MAX_SIMPLIFIED = 50_000
+"""Bytes of sources that are simplified; a student's have a thousand. More are built as they are: the time that it takes
+grows with the square."""
 _PROSE = ("LICENSE", "README.md", "README.rst", "CHANGELOG.rst")
 """Files that only people read, and no build."""
 _FOR_PEOPLE = {"description", "maintainer", "author", "license", "url"}
@@ -47,6 +50,8 @@ def holds_only_interfaces(package: Package) -> bool:
 
 def simplified(tree: Tree) -> Tree:
     """The sources of such packages with other texts, so that those that mean the same are the same."""
+    if sum(len(source.data or b"") for source in tree.sources) > MAX_SIMPLIFIED:
+        return tree
     return Tree(tuple(replace(source, data=_simple(source)) for source in tree.sources))
 
 

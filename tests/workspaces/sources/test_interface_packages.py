@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from rosidl_adapter.parser import InvalidSpecification, parse_service_string
 
+from autograder.messages.workspaces import Source
 from autograder.workspaces.sources.interface_packages import (
     holds_only_interfaces,
     simple_cmake,
@@ -16,6 +17,7 @@ from autograder.workspaces.sources.interface_packages import (
     simplified,
 )
 from autograder.workspaces.sources.packages import find_packages, sources_of
+from autograder.workspaces.sources.tree import Tree
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from made_workspaces import CMAKE, DEFINITION, INTERFACE_PACKAGE_XML, interface_package
@@ -154,3 +156,10 @@ def test_a_package_with_more_in_it_is_none(tmp_path: Path, file: str, text: str)
     (folder / file).parent.mkdir(exist_ok=True)
     (folder / file).write_text(text)
     assert not any(map(holds_only_interfaces, find_packages(tmp_path)))
+
+
+@pytest.mark.parametrize("name", ["CMakeLists.txt", "srv/AddTwoInts.srv"])
+def test_far_too_much_is_built_as_it_is(name: str) -> None:
+    # To simplify half a megabyte of brackets took ten seconds, outside of any box and anew for each build.
+    tree = Tree((Source("p"), Source(f"p/{name}", b"()\n" * 20_000)))
+    assert simplified(tree) is tree
