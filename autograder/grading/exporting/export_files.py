@@ -170,9 +170,14 @@ def _filled(
         data = read_bytes(into)
     except UnreadableSubmission as error:
         raise GradingError(f"{into} cannot be read: {error}") from error
-    filled, strangers = lms_gradebooks.filled_in(data, table, assignments, columns)
+    filled, strangers, doubtful = lms_gradebooks.filled_in(data, table, assignments, columns)
     if strangers:
         notices.append(f"nobody in the class is called {', '.join(strangers)}: their lines stay as they were")
+    if doubtful:
+        notices.append(
+            f"{', '.join(doubtful)}: another line may be the same student's, so these stay as they were. Write the "
+            f"number, login or address that {to.capitalize()} has for each into the column {to} of students.csv"
+        )
     yield (
         into.name,
         filled,

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import csv
 import io
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from autograder.grading.errors import GradingError
 from autograder.grading.reporting.spreadsheet import blank, csv_text, original
@@ -120,7 +120,7 @@ def moodle_worksheet(table: ClassTable, records: CollectedRecords, assignment: s
 
 def filled_in(
     data: bytes, table: ClassTable, assignments: Sequence[str], columns: Mapping[str, str]
-) -> tuple[bytes, list[str]]:
+) -> tuple[bytes, list[str], list[str]]:
     """A list of the LMS's own with the points filled in; everything else in it stays as it is.
 
     Args:
@@ -130,7 +130,8 @@ def filled_in(
         columns: What an assignment's column is called there, where that is not the assignment's name.
 
     Returns:
-        The list, and the lines in it of which nobody is known here.
+        The list, the lines in it of which nobody is known here, and those that may be somebody's whom another line is
+        as likely, or more likely, to mean: in an LMS, people name themselves.
 
     Raises:
         GradingError: It is neither, or it has no column for an assignment.
@@ -158,22 +159,49 @@ def filled_in(
             "The list is neither Moodle's grading worksheet nor a gradebook that Canvas or Gradescope has exported."
         )
     strangers = []
+    meant: dict[str, list[_Meant]] = {}
     for row in rows[1:]:
         is_nobodys = not any(row[:1]) or row[0].strip().startswith(("Points Possible", "Student, Test"))
         if len(row) <= max(places.values()) or is_nobodys:
             continue
         values = [original(row[header.index(name)].strip()) for name in names if name in header]
-        student = _who(table, lms, values)
-        if student is None:
-            strangers.append(values[-1] if values else row[0])
-            continue
+        called = values[-1] if values else row[0]
+        if (found := _who(table, lms, values)) is None:
+            strangers.append(called)
+        else:
+            student, weakness = found
+            meant.setdefault(student.id, []).append(_Meant(weakness, called, row))
+    certain, doubtful = _told_apart(meant)
+    for student_id, row in certain.items():
         for name, place in places.items():
-            score = table.score(student.id, name)
-            row[place] = _EXCUSED.get(lms, "") if table.is_excused(student.id, name) else _written(score)
+            score = table.score(student_id, name)
+            row[place] = _EXCUSED.get(lms, "") if table.is_excused(student_id, name) else _written(score)
     out = io.StringIO(newline="")
     csv.writer(out, lineterminator="\n").writerows(rows)
     mark = "\ufeff" if data.startswith("\ufeff".encode()) else ""
-    return f"{mark}{out.getvalue()}".encode(), strangers
+    return f"{mark}{out.getvalue()}".encode(), strangers, doubtful
+
+
+class _Meant(NamedTuple):
+    """A line of the list that is somebody's: how weak the reason for that is, what it calls them, its cells."""
+
+    weakness: int
+    called: str
+    row: list[str]
+
+
+def _told_apart(meant: Mapping[str, Sequence[_Meant]]) -> tuple[dict[str, list[str]], list[str]]:
+    """The line of each student, and the names in other lines that may be theirs."""
+    certain: dict[str, list[str]] = {}
+    doubtful: list[str] = []
+    for student, lines in meant.items():
+        best, *others = sorted(lines)
+        if others and others[0].weakness == best.weakness:
+            others = list(lines)
+        else:
+            certain[student] = best.row
+        doubtful += [one.called for one in others]
+    return certain, doubtful
 
 
 _EXCUSED = {"canvas": "EX"}
@@ -195,10 +223,11 @@ def _column(header: Sequence[str], called: str) -> int:
     )
 
 
-def _who(table: ClassTable, lms: str, values: Iterable[str]) -> Student | None:
-    for value in values:
+def _who(table: ClassTable, lms: str, values: Iterable[str]) -> tuple[Student, int] | None:
+    """The student of a line, and the place of the value that says so: those that say it best come first."""
+    for place, value in enumerate(values):
         for identity in (Identity(lms, number=value), Identity(lms, login=value), Identity(lms, name=value)):
             found = table.roster.find(identity) if value else ()
             if len(found) == 1:
-                return found[0]
+                return found[0], place
     return None

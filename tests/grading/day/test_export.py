@@ -372,6 +372,19 @@ def test_an_assistant_sees_the_students_of_their_section(graded: TinyClass) -> N
     assert (said.exit_code, "has: Monday, Tuesday" in said.output) == (2, True)
 
 
+@pytest.mark.parametrize(("login", "points"), [("", ["", ""]), ("ada", ["18.5", ""])])
+def test_who_takes_the_name_of_somebody_else_in_the_lms_does_not_get_her_points(
+    graded: TinyClass, tmp_path: Path, login: str, points: list[str]
+) -> None:
+    gradebook = tmp_path / "canvas.csv"
+    gradebook.write_text(
+        f'Student,ID,SIS User ID,SIS Login ID,Section,lab_1_2\n"Lovelace, Ada",,,{login},A,\n"LOVELACE, Ada",,,,A,\n'
+    )
+    exported = export(graded.path, "canvas", into=gradebook)
+    assert [row[-1] for row in rows(graded.path / "export" / "canvas.csv")[1:]] == points
+    assert any("LOVELACE, Ada: another line may be the same student's" in one for one in exported.notices)
+
+
 def test_a_column_of_another_name_is_named(graded: TinyClass, tmp_path: Path) -> None:
     gradebook = tmp_path / "canvas.csv"
     gradebook.write_text(
