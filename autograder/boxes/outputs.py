@@ -14,6 +14,8 @@ from typing import Any
 
 IMAGES = ("image/png", "image/jpeg")
 TRACEBACK_LINES = 200
+OUTPUT_BYTES = 32
+"""Bytes that each output and each update of one takes, however little is in it: a million empty ones fill a memory."""
 
 
 class Budget:
@@ -77,11 +79,16 @@ class OutputCollector:
 
     def _stream(self, content: Mapping[str, Any]) -> None:
         name = "stderr" if content.get("name") == "stderr" else "stdout"
-        text = self._afford(_text(content.get("text")))
+        text = _text(content.get("text"))
+        goes_on = not self._clear_at_next and bool(self._outputs) and self._outputs[-1].get("name") == name
+        if text and not goes_on and not self._has_room():
+            self._dropped += len(text.encode())
+            return
+        text = self._afford(text)
         if not text:
             return
         self._clear_if_due()
-        if self._outputs and self._outputs[-1].get("name") == name:
+        if goes_on:
             # Joined lazily: repeated += on a long string would cost quadratic time.
             self._outputs[-1]["text"].append(text)
         else:
@@ -89,7 +96,7 @@ class OutputCollector:
 
     def _display(self, message_type: str, content: Mapping[str, Any]) -> None:
         data = self._safe_data(content.get("data"))
-        if not data:
+        if not data or not self._has_room():
             return
         self._clear_if_due()
         output: dict[str, Any] = {"output_type": message_type, "data": data, "metadata": {}}
@@ -103,10 +110,14 @@ class OutputCollector:
     def _update(self, content: Mapping[str, Any]) -> None:
         earlier = self._displays.get(_display_id(content), [])
         data = self._safe_data(content.get("data")) if earlier else {}
-        for output in earlier if data else []:
-            output["data"] = data
+        if data and self._has_room(len(earlier)):
+            for output in earlier:
+                output["data"] = data
 
     def _error(self, content: Mapping[str, Any]) -> None:
+        # One is kept in any case: it says why the cell has ended.
+        if not self._has_room() and any(output["output_type"] == "error" for output in self._outputs[-1:]):
+            return
         self._clear_if_due()
         lines = content.get("traceback")
         traceback = (
@@ -136,6 +147,14 @@ class OutputCollector:
         if "text/plain" in data:
             safe["text/plain"] = self._afford(_text(data["text/plain"]))
         return safe
+
+    def _has_room(self, outputs: int = 1) -> bool:
+        """Take the bytes of so many outputs, the first one's excepted; whether there were that many left."""
+        size = outputs * OUTPUT_BYTES if self._outputs and not self._clear_at_next else 0
+        if self._notebook.take(self._own.take(size)) == size:
+            return True
+        self._dropped += size
+        return False
 
     def _afford(self, text: str) -> str:
         size = len(text.encode())

@@ -1,8 +1,11 @@
 from __future__ import annotations
 
 import base64
+from typing import Any
 
-from autograder.boxes.outputs import Budget, OutputCollector
+import pytest
+
+from autograder.boxes.outputs import OUTPUT_BYTES, Budget, OutputCollector
 
 
 def collector(cell: int = 10_000, notebook: int = 100_000) -> OutputCollector:
@@ -34,6 +37,44 @@ def test_a_talkative_cell_leaves_nothing_for_the_next_once_the_notebook_is_full(
     first.handle("stream", {"name": "stdout", "text": "x" * 20})
     second.handle("stream", {"name": "stdout", "text": "y" * 20})
     assert second.outputs()[0]["text"] == "yy"
+
+
+@pytest.mark.parametrize(
+    ("message_type", "content"),
+    [
+        ("display_data", {"data": {"text/plain": ""}}),
+        ("execute_result", {"data": {"text/plain": ""}}),
+        ("error", {"ename": "x" * 200, "evalue": "", "traceback": [""] * 200}),
+    ],
+)
+def test_a_million_outputs_with_nothing_in_them_do_not_fill_the_memory(
+    message_type: str, content: dict[str, Any]
+) -> None:
+    collected = collector()
+    for _ in range(1000):
+        collected.handle(message_type, content)
+    *kept, note = collected.outputs()
+    assert len(kept) <= 10_000 / OUTPUT_BYTES + 1
+    assert "were dropped" in note["text"]
+
+
+def test_an_update_of_many_displays_at_once_counts_for_each() -> None:
+    # They go through all of them: a million updates of a million displays kept the grader busy for days.
+    collected = collector()
+    for _ in range(100):
+        collected.handle("display_data", {"data": {"text/plain": ""}, "transient": {"display_id": "same"}})
+    for number in range(3):
+        text = {"data": {"text/plain": str(number)}, "transient": {"display_id": "same"}}
+        collected.handle("update_display_data", text)
+    assert {o["data"]["text/plain"] for o in collected.outputs() if "data" in o} == {"1"}
+
+
+def test_the_error_that_ends_a_cell_is_kept_whatever_was_printed_before() -> None:
+    collected = collector(cell=10)
+    collected.handle("stream", {"name": "stdout", "text": "x" * 1000})
+    for _ in range(3):
+        collected.handle("error", {"ename": "ValueError", "evalue": "v", "traceback": []})
+    assert [o.get("ename") for o in collected.outputs()].count("ValueError") == 1
 
 
 def test_drops_what_a_browser_would_execute_and_keeps_its_plain_twin() -> None:
