@@ -14,7 +14,6 @@ import contextlib
 import ctypes
 import faulthandler
 import io
-import json
 import os
 import signal
 import socket
@@ -26,6 +25,7 @@ import types
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, NoReturn
 
+from autograder.boxes.channel import Channel, ChannelClosed, close_all
 from autograder.judge.subjects.command_subject import CommandSubject
 from autograder.process_trees import die_with_parent
 
@@ -43,7 +43,8 @@ class WarmPython:
     """A process that forks whenever a program is to be run. To be made while this process has no other threads."""
 
     def __init__(self) -> None:
-        self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        own, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._channel = Channel(own)
         self.pid = os.fork()
         if self.pid == 0:
             _end_after(_serve, theirs)
@@ -58,12 +59,12 @@ class WarmPython:
         }
         (out, its_out), (errors, its_errors) = os.pipe(), os.pipe()
         try:
-            socket.send_fds(self._socket, [json.dumps(order).encode()], [its_out, its_errors])
+            self._channel.send(order, [its_out, its_errors])
         finally:
             os.close(its_out)
             os.close(its_errors)
-        pid = int(self._socket.recv(100))
-        return Program(pid, os.fdopen(out, "rb"), os.fdopen(errors, "rb"))
+        answer, _ = self._channel.receive()
+        return Program(answer["pid"], os.fdopen(out, "rb"), os.fdopen(errors, "rb"))
 
 
 class Program:
@@ -127,15 +128,16 @@ def _end_after(life: Callable[..., NoReturn], *arguments: Any) -> NoReturn:
         os._exit(1)
 
 
-def _serve(orders: socket.socket) -> NoReturn:
+def _serve(connection: socket.socket) -> NoReturn:
     """The warm process: never returns, and ends with the process that made it."""
     die_with_parent()
-    os.dup2(orders.detach(), 3)
+    os.dup2(connection.detach(), 3)
     os.closerange(4, os.sysconf("SC_OPEN_MAX") if os.sysconf("SC_OPEN_MAX") < 65536 else 65536)
-    orders = socket.socket(fileno=3)
+    orders = Channel(socket.socket(fileno=3))
     while True:
-        order, streams, _, _ = socket.recv_fds(orders, 1_000_000, 2)
-        if not order:
+        try:
+            order, streams = orders.receive()
+        except ChannelClosed:
             os._exit(0)
         told, telling = os.pipe()
         middle = os.fork()
@@ -146,15 +148,14 @@ def _serve(orders: socket.socket) -> NoReturn:
                 orders.close()
                 os.close(told)
                 os.close(telling)
-                _end_after(_live, json.loads(order), streams, maker)
+                _end_after(_live, order, streams, maker)
             os.write(telling, str(program).encode())
             os._exit(0)
         os.waitpid(middle, 0)  # from here on the program is the judge's child
-        orders.send(os.read(told, 100))
+        orders.send({"pid": int(os.read(told, 100))})
         os.close(told)
         os.close(telling)
-        for stream in streams:
-            os.close(stream)
+        close_all(streams)
 
 
 def _live(order: Mapping[str, Any], streams: Sequence[int], maker: int) -> NoReturn:

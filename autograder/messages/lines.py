@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
+import select
 import socket
+import sys
 import threading
+import time
 from typing import TYPE_CHECKING, Any, Self, TypeVar, overload
 
 import msgspec
@@ -20,6 +24,14 @@ MAX_LINE = 1_000_000
 
 class Hangup(ConnectionError):
     """The other side is gone, or said something that is no message."""
+
+
+class Silent(Hangup):
+    """The other side said nothing in time."""
+
+
+class TooLong(Hangup):
+    """The other side said more at once than is listened to."""
 
 
 class NotUnderstood(ValueError):
@@ -39,10 +51,15 @@ MessageT = TypeVar("MessageT", bound=Message)
 
 
 class Lines:
-    """One conversation. Any thread may say something; one listens."""
+    """One conversation. Any thread may say something; one listens.
 
-    def __init__(self, connection: socket.socket) -> None:
-        self._socket = connection
+    Args:
+        connection: One end of a Unix socket; belongs to this object from now on.
+        largest: Bytes of one message that are listened to.
+    """
+
+    def __init__(self, connection: socket.socket, largest: int = MAX_LINE) -> None:
+        self._socket, self._largest = connection, largest
         self._buffer = bytearray()
         self._lock = threading.Lock()
 
@@ -66,16 +83,38 @@ class Lines:
             raise Hangup(str(error)) from error
         return cls(connection)
 
+    @classmethod
+    def with_parent(cls, largest: int = sys.maxsize) -> Self:
+        """Speak with whoever has started this process with a socket as its standard input.
+
+        No child of this process inherits that socket: so the end of the conversation is the end of this process.
+        """
+        connection = socket.socket(fileno=os.dup(0))
+        nothing = os.open(os.devnull, os.O_RDONLY)
+        os.dup2(nothing, 0)
+        os.close(nothing)
+        return cls(connection, largest)
+
     def say(self, message: Message) -> None:
         """Say one thing.
 
         Raises:
             Hangup: Nobody listens any more.
         """
-        line = encode(message)
+        self._send(encode(message))
+
+    def say_json(self, line: bytes) -> None:
+        """Say one thing that is JSON already, in one line.
+
+        Raises:
+            Hangup: Nobody listens any more.
+        """
+        self._send(line + b"\n")
+
+    def _send(self, data: bytes) -> None:
         try:
             with self._lock:
-                self._socket.sendall(line)
+                self._socket.sendall(data)
         except OSError as error:
             raise Hangup(str(error)) from error
 
@@ -95,18 +134,31 @@ class Lines:
             Hangup: They hung up, said too much at once, or something that is no message.
             NotUnderstood: It is another message than the expected ones.
         """
-        words = _words(self._line())
+        words = _words(self.hear_json())
         try:
             return msgspec.convert(words, type=kind)
         except (msgspec.ValidationError, ValueError) as error:
             raise NotUnderstood("this message is not expected here") from error
 
-    def _line(self) -> bytes:
+    def hear_json(self, within: float | None = None) -> bytes:
+        """Wait for the next message, and leave it as it came.
+
+        Args:
+            within: Seconds of wall time; None for any.
+
+        Raises:
+            Silent: They did not say it in time.
+            TooLong: They said too much at once.
+            Hangup: They hung up.
+        """
+        deadline = None if within is None else time.monotonic() + within
         searched = 0
         while (end := self._buffer.find(b"\n", searched)) < 0:
             searched = len(self._buffer)
-            if searched > MAX_LINE:
-                raise Hangup("a message is too long")
+            if searched > self._largest:
+                raise TooLong("a message is too long")
+            if deadline is not None and not self._readable(deadline):
+                raise Silent("the other side said nothing in time")
             try:
                 chunk = self._socket.recv(1 << 16)
             except OSError as error:
@@ -117,6 +169,16 @@ class Lines:
         line = bytes(self._buffer[:end])
         del self._buffer[: end + 1]
         return line
+
+    def _readable(self, deadline: float) -> bool:
+        waiting = select.poll()
+        waiting.register(self._socket, select.POLLIN)
+        return bool(waiting.poll(max(0.0, deadline - time.monotonic()) * 1000))
+
+    def finish(self) -> None:
+        """Say nothing more, from any thread; what the others still say can be heard."""
+        with contextlib.suppress(OSError):
+            self._socket.shutdown(socket.SHUT_WR)
 
     def close(self) -> None:
         """Hang up; who waits in :meth:`hear` is told."""

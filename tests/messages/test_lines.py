@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import socket
+import subprocess
+import sys
 import threading
 from typing import get_args
 
@@ -10,7 +14,7 @@ import msgspec
 import pytest
 
 from autograder.messages import checks, lines, workspaces
-from autograder.messages.lines import Hangup, Lines, NotUnderstood
+from autograder.messages.lines import Hangup, Lines, NotUnderstood, Silent, TooLong
 
 
 def _pair() -> tuple[socket.socket, Lines]:
@@ -121,3 +125,57 @@ def _talk_on(judge: Lines) -> None:
     # The first message may still go into the kernel's buffer.
     for _ in range(100):
         judge.say(checks.Release(1))
+
+
+def test_json_is_passed_on_as_it_came_and_waited_for_with_a_limit() -> None:
+    wire, theirs = socket.socketpair()
+    near = Lines(theirs, 100)
+    wire.sendall(b'{"a": 1}\n')
+    assert near.hear_json(10.0) == b'{"a": 1}'
+    with pytest.raises(Silent):
+        near.hear_json(0.01)
+    wire.sendall(b"x" * 200)
+    with pytest.raises(TooLong):
+        near.hear_json(10.0)
+
+
+def test_who_says_nothing_more_still_hears() -> None:
+    ours, theirs = socket.socketpair()
+    near, far = Lines(ours), Lines(theirs)
+    near.finish()
+    with pytest.raises(Hangup):
+        far.hear_json(10.0)
+    far.say_json(b"{}")
+    assert near.hear_json(10.0) == b"{}"
+
+
+CHILD = """
+import subprocess
+from autograder.messages.lines import Lines
+parent = Lines.with_parent()
+child = subprocess.Popen(["sleep", "600"])
+print("printed lines are not said")
+parent.say_json(str(child.pid).encode())
+parent.hear_json()
+"""
+
+
+def test_a_child_of_a_process_does_not_hold_its_conversation_open() -> None:
+    ours, its_own = socket.socketpair()
+    with its_own:
+        process = subprocess.Popen(
+            [sys.executable, "-c", CHILD],
+            stdin=its_own.fileno(),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+    near = Lines(ours)
+    child = int(near.hear_json(60.0))
+    try:
+        process.kill()
+        with pytest.raises(Hangup) as how:
+            near.hear_json(60.0)
+        assert not isinstance(how.value, Silent)
+    finally:
+        os.kill(child, signal.SIGKILL)
+        process.wait()

@@ -1,4 +1,4 @@
-"""The process that speaks with a Dask cluster for the grader: lines of JSON in, lines of JSON out.
+"""The process that speaks with a Dask cluster for the grader, in lines of JSON on its standard input.
 
 It is a process of its own for four reasons. Dask's client unpickles what workers say, and here nothing that comes
 out of a pickle runs (see inert_pickle.py). A limit on its memory ends an answer that is too large to be one. The
@@ -17,7 +17,6 @@ inert_pickle.install()
 import asyncio  # noqa: E402  (whoever imports pickle from here on gets the harmless one)
 import contextlib  # noqa: E402
 import logging  # noqa: E402
-import os  # noqa: E402
 import resource  # noqa: E402
 import sys  # noqa: E402
 import uuid  # noqa: E402
@@ -41,6 +40,7 @@ from autograder.grading.cluster.messages import (  # noqa: E402
     Unfit,
     encode,
 )
+from autograder.messages.lines import Hangup, Lines  # noqa: E402
 
 _MEMORY = 3 << 30
 """Bytes of address space. 0.2 GB of them are Python and Dask."""
@@ -49,21 +49,21 @@ _OFFER_SECONDS = 60.0
 """A worker that never made a box looks whether it can, which takes a second where the machine is busy."""
 _LINK_SECONDS = 5.0
 """Between two looks at whether the scheduler is there, when nothing else was heard of it."""
-_LONGEST_LINE = 1 << 30
 
 
 def main(address: str) -> None:
-    """Serve until standard input ends or the scheduler is gone.
+    """Serve until the grader hangs up or the scheduler is gone.
 
     Args:
         address: The scheduler's, such as ``tcp://host:8786``.
     """
     resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
     logging.disable(logging.CRITICAL)
-    asyncio.run(_serve(address))
+    grader = Lines.with_parent()
+    asyncio.run(_serve(address, grader))
 
 
-async def _serve(address: str) -> None:
+async def _serve(address: str, grader: Lines) -> None:
     try:
         client = await Client(
             address,
@@ -73,9 +73,9 @@ async def _serve(address: str) -> None:
             name="autograder",
         )
     except (OSError, ValueError, TypeError, TimeoutError) as error:
-        _tell(Broken(_first_line(error)))
+        _tell(grader, Broken(_first_line(error)))
         return
-    carrier = _Carrier(client)
+    carrier = _Carrier(client, grader)
     serving = [asyncio.create_task(part) for part in (carrier.take_commands(), carrier.watch_workers())]
     await asyncio.wait(serving, return_when=asyncio.FIRST_COMPLETED)
     for part in serving:
@@ -83,11 +83,12 @@ async def _serve(address: str) -> None:
     with contextlib.suppress(Exception):
         client.unsubscribe_topic("all")
         await client.close(timeout=1)
+    grader.close()  # ends the thread that listens
 
 
 class _Carrier:
-    def __init__(self, client: Any) -> None:
-        self._client = client
+    def __init__(self, client: Any, grader: Lines) -> None:
+        self._client, self._grader = client, grader
         self._batch = uuid.uuid4().hex[:12]
         self._workers: set[str] = set()
         self._futures: dict[int, Any] = {}
@@ -97,11 +98,11 @@ class _Carrier:
 
     async def take_commands(self) -> None:
         """Do what the grader says, until it says nothing more."""
-        reader = asyncio.StreamReader(limit=_LONGEST_LINE)
-        await asyncio.get_running_loop().connect_read_pipe(
-            lambda: asyncio.StreamReaderProtocol(reader), sys.stdin.buffer
-        )
-        while line := await reader.readline():
+        while True:
+            try:
+                line = await asyncio.to_thread(self._grader.hear_json)
+            except Hangup:
+                return
             command = msgspec.json.decode(line, type=Command)
             if isinstance(command, Give):
                 self._start(self._give(command))
@@ -113,7 +114,7 @@ class _Carrier:
         self._client.subscribe_topic("all", self._on_event)
         try:
             await asyncio.gather(*(self._introduce(*who) for who in await self._look()))
-            _tell(Asked())
+            _tell(self._grader, Asked())
             while True:
                 with contextlib.suppress(TimeoutError):
                     await asyncio.wait_for(self._changed.wait(), _LINK_SECONDS)
@@ -121,7 +122,7 @@ class _Carrier:
                 for who in await self._look():
                     self._start(self._introduce(*who))
         except Exception as error:
-            _tell(Broken(f"the scheduler is gone: {_first_line(error)}"))
+            _tell(self._grader, Broken(f"the scheduler is gone: {_first_line(error)}"))
 
     async def _look(self) -> list[tuple[str, str, int]]:
         """Tell who left; address, name and threads of those who are new."""
@@ -130,7 +131,7 @@ class _Carrier:
             for number, worker_address in list(self._given.items()):
                 if worker_address == address:
                     self._drop(number)
-            _tell(Left(address))
+            _tell(self._grader, Left(address))
         new = [
             (str(address), str(facts["name"]), int(facts["nthreads"]))
             for address, facts in known.items()
@@ -149,17 +150,18 @@ class _Carrier:
             asking = self._client.run(calls.offer_as_json, threads, workers=[address])
             said = (await asyncio.wait_for(asking, _OFFER_SECONDS))[address]
         except TimeoutError:
-            _tell(Unfit(address, name, f"it has not answered within {_OFFER_SECONDS:g} s"))
+            _tell(self._grader, Unfit(address, name, f"it has not answered within {_OFFER_SECONDS:g} s"))
         except Exception as error:
-            _tell(Unfit(address, name, _first_line(error)))
+            _tell(self._grader, Unfit(address, name, _first_line(error)))
         else:
             _tell(
-                Joined(address, name, said) if isinstance(said, bytes) else Unfit(address, name, "no offer")
+                self._grader,
+                Joined(address, name, said) if isinstance(said, bytes) else Unfit(address, name, "no offer"),
             )
 
     async def _give(self, give: Give) -> None:
         if give.worker not in self._workers:
-            _tell(Failed(give.number, "the worker is gone"))
+            _tell(self._grader, Failed(give.number, "the worker is gone"))
             return
         key = f"autograder-{self._batch}-{give.number}"
         future = self._client.submit(
@@ -177,7 +179,7 @@ class _Carrier:
         except Exception as error:
             news = Failed(give.number, _first_line(error))
         if self._futures.get(give.number) is future:
-            _tell(news)
+            _tell(self._grader, news)
             self._drop(give.number)
 
     async def _answer(self, number: int, key: str, future: Any) -> News:
@@ -213,10 +215,9 @@ def _first_line(error: BaseException) -> str:
     return text.splitlines()[0][:300]
 
 
-def _tell(news: News) -> None:
-    line = memoryview(encode(news) + b"\n")
-    while line:
-        line = line[os.write(1, line) :]
+def _tell(grader: Lines, news: News) -> None:
+    with contextlib.suppress(Hangup):  # then it is told nothing more, and this process ends
+        grader.say_json(encode(news))
 
 
 if __name__ == "__main__":

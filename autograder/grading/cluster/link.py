@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import queue
+import socket
 import subprocess
 import sys
 import tempfile
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, Self
 import msgspec
 
 from autograder.grading.cluster.messages import Broken, Command, News, encode
+from autograder.messages.lines import Hangup, Lines
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -33,13 +35,16 @@ class Link:
 
     def __enter__(self) -> Self:
         self._log = tempfile.TemporaryFile()
+        own, its_own = socket.socketpair()
+        self._lines = Lines(own, sys.maxsize)
         self._client = subprocess.Popen(
             [sys.executable, "-m", "autograder.grading.cluster.dask_client", self._address],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
+            stdin=its_own.fileno(),
+            stdout=self._log,
             stderr=self._log,
             start_new_session=True,  # Ctrl-C goes to the grader, which then ends the client process
         )
+        its_own.close()
         threading.Thread(target=self._listen, daemon=True).start()
         return self
 
@@ -49,20 +54,19 @@ class Link:
         """End the client process, at once where something went wrong. The scheduler takes back what it was given."""
         if kind is not None:
             self._client.kill()
-        with contextlib.suppress(OSError):
-            self._stdin.close()
+        self._lines.finish()
         try:
             self._client.wait(_GOODBYE_SECONDS)
         except subprocess.TimeoutExpired:
             self._client.kill()
             self._client.wait()
+        self._lines.close()
         self._log.close()
 
     def say(self, command: Command) -> None:
         """Tell the client process to do something. Where it is gone, :meth:`hear` says so."""
-        with contextlib.suppress(OSError):
-            self._stdin.write(encode(command) + b"\n")
-            self._stdin.flush()
+        with contextlib.suppress(Hangup):
+            self._lines.say_json(encode(command))
 
     def hear(self, within: float | None) -> News | None:
         """The next thing that happened; None where nothing did.
@@ -75,22 +79,15 @@ class Link:
         except queue.Empty:
             return None
 
-    @property
-    def _stdin(self):  # type: ignore[no-untyped-def]
-        assert self._client.stdin is not None
-        return self._client.stdin
-
     def _listen(self) -> None:
         """Take up what the client process says, always: one that has to wait for us would not listen to us."""
-        assert self._client.stdout is not None
-        with self._client.stdout as lines:
-            try:
-                for line in lines:
-                    self._news.put(msgspec.json.decode(line, type=News))
-            except (msgspec.MsgspecError, ValueError, MemoryError) as error:
-                self._news.put(Broken(f"the client process spoke nonsense: {error}"))
-                return
-        self._news.put(Broken(f"the client process ended{self._last_words()}"))
+        try:
+            while True:
+                self._news.put(msgspec.json.decode(self._lines.hear_json(), type=News))
+        except Hangup:
+            self._news.put(Broken(f"the client process ended{self._last_words()}"))
+        except (msgspec.MsgspecError, ValueError, MemoryError) as error:
+            self._news.put(Broken(f"the client process spoke nonsense: {error}"))
 
     def _last_words(self) -> str:
         with contextlib.suppress(ValueError, OSError):

@@ -1,4 +1,4 @@
-"""A process that executes tasks one after the other: JSON lines in, JSON lines out.
+"""A process that executes tasks one after the other: lines of JSON on the socket that is its standard input.
 
 It is a process of its own also when there is only one notebook to grade, because it makes itself the parent
 of every daemon that a submission starts, and ends them all. When the grader that started it goes away, so
@@ -30,7 +30,6 @@ from autograder.boxes.runner import run_notebook
 from autograder.boxes.sandbox import NoSandbox
 from autograder.boxes.scratch import scratch_folder
 from autograder.boxes.verdicts_without_judge import grader_trouble
-from autograder.clean_stdout import private_stdout
 from autograder.grading.returning.page_budget import too_costly
 from autograder.grading.running.workspace_service import arrange, served
 from autograder.grading.task import Task, decode_task, encode
@@ -38,6 +37,7 @@ from autograder.judge.bench.patience import Patience
 from autograder.judge.serving import attached
 from autograder.judge.serving.domain import lease
 from autograder.judge.settings import boxed_ros_environment, ros_environment
+from autograder.messages.lines import Hangup, Lines
 from autograder.process_trees import adopt_orphans, end_descendants
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ MOST_EVIDENCE = 4_000_000
 
 
 def main(arguments: list[str]) -> None:
-    """Work until standard input ends.
+    """Work until the grader hangs up.
 
     Args:
         arguments: The scratch folder, what makes a judge (``module:class``), and where the fork servers listen,
@@ -64,15 +64,14 @@ def main(arguments: list[str]) -> None:
     """
     scratch, judge = Path(arguments[0]), _imported(arguments[1])
     addresses = msgspec.json.decode(arguments[2], type=Addresses)
-    results = private_stdout()
     raise_own()
     adopt_orphans()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
-    for line in _lines():
+    grader = Lines.with_parent()
+    for line in _tasks(grader):
         execution = execute(decode_task(line), scratch, judge, addresses)
         end_descendants()
-        results.write(encode(execution) + b"\n")
-        results.flush()
+        grader.say_json(encode(execution))
 
 
 def execute(task: Task, scratch: Path, judge: Any, addresses: Addresses) -> Execution:
@@ -223,18 +222,19 @@ def _imported(name: str) -> Any:
     return getattr(importlib.import_module(module), attribute)
 
 
-def _lines() -> Iterator[bytes]:
+def _tasks(grader: Lines) -> Iterator[bytes]:
     """Tasks as they come. When the grader goes away, end this process; in the middle of a task by force, if it must be.
 
-    The end of standard input is the one sign of it: the system sends its own (PR_SET_PDEATHSIG) when the thread ends
+    The end of the conversation is the one sign of it: the system sends its own (PR_SET_PDEATHSIG) when the thread ends
     that has started this process, and in a grader threads come and go.
     """
     lines: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
     idle = threading.Event()
 
     def read() -> None:
-        for line in sys.stdin.buffer:
-            lines.put(line)
+        with contextlib.suppress(Hangup):
+            while True:
+                lines.put(grader.hear_json())
         lines.put(None)
         if not idle.is_set():
             os.kill(os.getpid(), signal.SIGTERM)

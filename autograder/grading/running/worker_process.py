@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
-import select
+import socket
 import subprocess
 import sys
 import tempfile
 import threading
-import time
 from dataclasses import replace
-from typing import IO, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -20,6 +17,7 @@ from autograder.boxes.verdicts_without_judge import grader_trouble
 from autograder.grading.running import shared_fork_servers
 from autograder.grading.running.worker import JUDGE
 from autograder.grading.task import Task, decode_execution, encode
+from autograder.messages.lines import Hangup, Lines, Silent, TooLong
 from autograder.process_trees import end_processes_in
 
 if TYPE_CHECKING:
@@ -52,10 +50,10 @@ class WorkerProcess:
         self._scratch = scratch
         self._command = [sys.executable, "-m", "autograder.grading.running.worker", str(scratch), judge]
         self._boxed = boxed
-        # Standard error of the worker goes to a file: a pipe that nobody reads would fill up. Lives with
-        # the worker.
+        # What the worker prints goes to a file: a pipe that nobody reads would fill up. Lives with the worker.
         self._log = tempfile.TemporaryFile()  # noqa: SIM115
         self._worker: subprocess.Popen[bytes] | None = None
+        self._lines: Lines | None = None
         self._addresses: Addresses | None = None
         self._stopping = False
         self._changing = threading.Lock()
@@ -64,8 +62,8 @@ class WorkerProcess:
         """End the worker and what it runs, from any thread; a task that is being executed ends with trouble."""
         with self._changing:
             self._stopping = True
-            if self._worker is not None:
-                _close(self._worker.stdin)
+            if self._lines is not None:
+                self._lines.finish()
 
     @property
     def stopping(self) -> bool:
@@ -109,44 +107,49 @@ class WorkerProcess:
         if task.boxed != self._boxed:
             self.end()
             self._boxed = task.boxed
-        worker = self._running_worker()
-        assert worker.stdin is not None
-        assert worker.stdout is not None
-        worker.stdin.write(encode(task) + b"\n")
-        worker.stdin.flush()
-        limits = task.limits
-        within = limits.start_seconds + limits.notebook_seconds + limits.interrupt_grace + _EXTRA_SECONDS
-        line = _read_line(worker.stdout.fileno(), time.monotonic() + within)
+        lines = self._conversation()
         try:
-            return decode_execution(line)
+            lines.say_json(encode(task))
+            return decode_execution(lines.hear_json(task.limits.longest + _EXTRA_SECONDS))
+        except Silent as error:
+            raise WorkerLost("the grader's worker process did not answer in time") from error
+        except TooLong as error:
+            raise WorkerLost("the grader's worker process returned too much") from error
+        except Hangup as error:
+            raise WorkerLost("the grader's worker process ended while it ran this submission") from error
         except msgspec.MsgspecError as error:
             raise WorkerLost(
                 f"the grader's worker process said something else than a result: {error}"
             ) from error
 
-    def _running_worker(self) -> subprocess.Popen[bytes]:
+    def _conversation(self) -> Lines:
+        """The conversation with the worker, which is started where it does not run."""
         with self._changing:
             if self._stopping:
                 raise WorkerLost("the grading run was stopped")
-            if self._worker is None:
+            if self._lines is None:
                 self._addresses = shared_fork_servers.addresses(self._boxed)
                 addresses = msgspec.json.encode(self._addresses).decode()
-                self._worker = subprocess.Popen(
-                    [*self._command, addresses],
-                    stdin=subprocess.PIPE,
-                    stdout=subprocess.PIPE,
-                    stderr=self._log,
-                    # Ctrl-C goes to the grader, which then ends its workers in good order.
-                    start_new_session=True,
-                )
-            return self._worker
+                own, its_own = socket.socketpair()
+                lines = Lines(own, _RESULT_BYTES)
+                with its_own:
+                    self._worker = subprocess.Popen(
+                        [*self._command, addresses],
+                        stdin=its_own.fileno(),
+                        stdout=self._log,
+                        stderr=self._log,
+                        # Ctrl-C goes to the grader, which then ends its workers in good order.
+                        start_new_session=True,
+                    )
+                self._lines = lines
+            return self._lines
 
     def end(self) -> None:
-        """End the worker in good order. Only for the thread that executes: it alone reads from its pipe."""
-        worker = self._worker
-        if worker is None:
+        """End the worker in good order. Only for the thread that executes: it alone listens to the worker."""
+        worker, lines = self._worker, self._lines
+        if worker is None or lines is None:
             return
-        _close(worker.stdin)
+        lines.finish()
         try:
             worker.wait(GOODBYE_SECONDS)
         except subprocess.TimeoutExpired:
@@ -156,34 +159,5 @@ class WorkerProcess:
             # It may not have come to tidying up after itself.
             end_processes_in(self._scratch)
         with self._changing:
-            self._worker = None
-        _close(worker.stdout)
-
-
-def _close(pipe: IO[bytes] | None) -> None:
-    with contextlib.suppress(OSError):
-        assert pipe is not None
-        pipe.close()
-
-
-def _read_line(descriptor: int, deadline: float) -> bytes:
-    """One line from a pipe.
-
-    Raises:
-        WorkerLost: The pipe was closed, or the deadline passed.
-    """
-    pieces: list[bytes] = []
-    size = 0
-    while True:
-        ready, _, _ = select.select([descriptor], [], [], max(0.0, deadline - time.monotonic()))
-        if not ready:
-            raise WorkerLost("the grader's worker process did not answer in time")
-        piece = os.read(descriptor, 1 << 16)
-        if not piece:
-            raise WorkerLost("the grader's worker process ended while it ran this submission")
-        pieces.append(piece)
-        size += len(piece)
-        if piece.endswith(b"\n"):
-            return b"".join(pieces)
-        if size > _RESULT_BYTES:
-            raise WorkerLost("the grader's worker process returned too much")
+            self._worker = self._lines = None
+        lines.close()

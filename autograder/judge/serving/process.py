@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import select
 import signal
 import socket
 import subprocess
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING, Protocol, Self
 
 import msgspec
 
-from autograder.messages.lines import listen
+from autograder.messages.lines import Hangup, Lines, Silent, listen
 from autograder.messages.orders import Close, Open, Report
 from autograder.process_trees import signal_group
 
@@ -27,6 +26,8 @@ START_LIMIT = 60.0
 """Seconds of wall time in which a judge must be up; it takes well under one on an idle machine."""
 ANSWER_LIMIT = 30.0
 """Seconds of wall time in which a judge answers an order."""
+_REPORT_BYTES = 64_000_000
+"""More than a recorded reference output has, or a verdict with its evidence."""
 
 
 class JudgeDied(RuntimeError):
@@ -64,7 +65,7 @@ class JudgeProcess:
         """True if reports carry the evidence of their verdicts."""
         self._start = start or _Child
         self._process: StartedJudge | None = None
-        self._control: socket.socket | None = None
+        self._orders: Lines | None = None
 
     def __enter__(self) -> Self:
         """Start the process and wait until it listens.
@@ -72,12 +73,12 @@ class JudgeProcess:
         Raises:
             JudgeDied: It did not come up.
         """
-        self._control, orders = socket.socketpair()
+        own, its_own = socket.socketpair()
+        self._orders = Lines(own, _REPORT_BYTES)
         try:
-            with orders, listen(self.socket_path) as listener:
-                self._process = self._start(listener.fileno(), orders.fileno())
-            self._answers = self._control.makefile("rb")
-            if self._read(START_LIMIT) != b"ready\n":
+            with its_own, listen(self.socket_path) as listener:
+                self._process = self._start(listener.fileno(), its_own.fileno())
+            if self._answer(self._orders, START_LIMIT) != b"ready":
                 raise JudgeDied("the judge said something else than that it is ready")
         except (JudgeDied, OSError) as error:
             self.stop()
@@ -120,32 +121,30 @@ class JudgeProcess:
     def stop(self) -> None:
         """End the judge and whatever it has forked."""
         process, self._process = self._process, None
-        control, self._control = self._control, None
-        if control is not None:
-            control.close()
+        orders, self._orders = self._orders, None
+        if orders is not None:
+            orders.close()
         if process is not None:
             process.end()
         self.socket_path.unlink(missing_ok=True)
 
     def _order(self, order: Open | Close) -> bytes:
-        if self._control is None:
+        if self._orders is None:
             raise JudgeDied("the judge was never started or is stopped")
         try:
-            self._control.sendall(msgspec.json.encode(order) + b"\n")
-        except OSError as error:
+            self._orders.say_json(msgspec.json.encode(order))
+        except Hangup as error:
             raise JudgeDied("the judge is gone") from error
-        return self._read(ANSWER_LIMIT)
+        return self._answer(self._orders, ANSWER_LIMIT)
 
-    def _read(self, limit: float) -> bytes:
-        assert self._control is not None
-        ready, _, _ = select.select([self._control], [], [], limit)
+    @staticmethod
+    def _answer(orders: Lines, limit: float) -> bytes:
         try:
-            line = self._answers.readline() if ready else b""
-        except OSError:
-            line = b""
-        if not line:
-            raise JudgeDied("the judge does not answer" if not ready else "the judge is gone")
-        return line
+            return orders.hear_json(limit)
+        except Silent as error:
+            raise JudgeDied("the judge does not answer") from error
+        except Hangup as error:
+            raise JudgeDied("the judge is gone") from error
 
 
 class _Child:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -224,7 +225,7 @@ import signal, sys, time
 from autograder.grading.running import worker
 worker.LAST_SECONDS = 0.5
 signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
-for line in worker._lines():
+for line in worker._tasks(worker.Lines.with_parent()):
     print("at work", flush=True)
     try:
         time.sleep(3600)
@@ -235,16 +236,18 @@ for line in worker._lines():
 
 def test_a_worker_that_waits_for_what_never_comes_ends_with_its_batch(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
-    worker = subprocess.Popen(
-        [sys.executable, "-c", WORKER, str(tmp_path / "pipe")], stdin=subprocess.PIPE, stdout=subprocess.PIPE
-    )
+    grader, its_own = socket.socketpair()
+    with its_own:
+        worker = subprocess.Popen(
+            [sys.executable, "-c", WORKER, str(tmp_path / "pipe")],
+            stdin=its_own.fileno(),
+            stdout=subprocess.PIPE,
+        )
     try:
-        assert worker.stdin
         assert worker.stdout
-        worker.stdin.write(b"a task\n")
-        worker.stdin.flush()
+        grader.sendall(b"a task\n")
         assert worker.stdout.readline() == b"at work\n"
-        worker.stdin.close()
+        grader.close()
         assert worker.wait(60.0) == 1
     finally:
         worker.kill()
