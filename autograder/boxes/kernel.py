@@ -15,7 +15,7 @@ import socket
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import zmq
 from jupyter_client.session import Session
@@ -27,6 +27,7 @@ from autograder.boxes.limits import Left, until, wall_time
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from autograder.boxes.boxed_processes import ForkedProcess
     from autograder.boxes.guards import Guard
     from autograder.boxes.limits import Limits
 
@@ -45,36 +46,6 @@ _TOO_LARGE = "\n[output that was too large was dropped]\n"
 
 class KernelFailed(RuntimeError):
     """The kernel did not start or did not answer; the message says why."""
-
-
-class KernelProcess(Protocol):
-    """The process of a kernel, wherever it runs."""
-
-    def fileno(self) -> int:
-        """Readable when the process has ended."""
-        ...
-
-    @property
-    def alive(self) -> bool:
-        """True if it still runs."""
-        ...
-
-    @property
-    def lost(self) -> bool:
-        """True if nobody can tell any more what became of it."""
-        ...
-
-    def interrupt(self) -> None:
-        """Send what the stop button of JupyterLab sends."""
-        ...
-
-    def wait(self, within: float) -> bool:
-        """Wait so many seconds for its end; whether it came."""
-        ...
-
-    def end(self) -> None:
-        """Kill it and all that it has started; may be called twice."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -96,7 +67,7 @@ class Channels:
     log: int
 
 
-Start = Callable[[Channels], KernelProcess]
+Start = Callable[[Channels], "ForkedProcess"]
 
 
 class Kernel:

@@ -1,7 +1,13 @@
-"""A worker process that is kept from task to task, and the conversation with it."""
+"""A worker process that is kept from task to task, the conversation with it, and the fork servers that it asks.
+
+The fork servers are started at the first need and kept until this process ends: a batch starts them once, and so does
+plain ``nbgrader autograde``, which executes one notebook after the other. They end with this process, in whatever way
+it ends.
+"""
 
 from __future__ import annotations
 
+import atexit
 import socket
 import subprocess
 import sys
@@ -12,11 +18,13 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from autograder import course
 from autograder.boxes.execution import Execution
+from autograder.boxes.fork_server import ForkServers
 from autograder.boxes.verdicts_without_judge import grader_trouble
-from autograder.grading.running import shared_fork_servers
 from autograder.grading.running.worker import JUDGE
 from autograder.grading.task import Task, decode_execution, encode
+from autograder.judge.settings import boxed_ros_environment, ros_environment
 from autograder.messages.lines import Hangup, Lines, Silent, TooLong
 from autograder.process_trees import end_processes_in
 
@@ -31,6 +39,9 @@ GOODBYE_SECONDS = 2.0
 """Seconds after which a worker that was asked to end is killed, so that Ctrl-C takes less than three in all."""
 _RESULT_BYTES = 64_000_000
 _EXTRA_SECONDS = 60.0
+_JUDGE_MODULE = "autograder.judge.serving.attached"
+_fork_servers: dict[bool, ForkServers] = {}
+_changing = threading.Lock()
 
 
 class WorkerLost(RuntimeError):
@@ -95,8 +106,8 @@ class WorkerProcess:
 
     def _is_stale(self) -> bool:
         """True if the worker knows other fork servers than there are: another worker may have started them anew."""
-        holds = shared_fork_servers.holds(self._boxed)
-        return not holds or self._addresses != shared_fork_servers.addresses(self._boxed)
+        holds = _fork_servers_run(self._boxed)
+        return not holds or self._addresses != _addresses_of_fork_servers(self._boxed)
 
     def _last_words(self) -> str:
         self._log.seek(0)
@@ -128,7 +139,7 @@ class WorkerProcess:
             if self._stopping:
                 raise WorkerLost("the grading run was stopped")
             if self._lines is None:
-                self._addresses = shared_fork_servers.addresses(self._boxed)
+                self._addresses = _addresses_of_fork_servers(self._boxed)
                 addresses = msgspec.json.encode(self._addresses).decode()
                 own, its_own = socket.socketpair()
                 lines = Lines(own, _RESULT_BYTES)
@@ -161,3 +172,41 @@ class WorkerProcess:
         with self._changing:
             self._worker = self._lines = None
         lines.close()
+
+
+def _addresses_of_fork_servers(sandbox: bool) -> Addresses:
+    """Where the fork servers listen, which are started where they do not run.
+
+    Args:
+        sandbox: With one for the supervisors of boxes.
+    """
+    with _changing:
+        kept = _fork_servers.get(sandbox)
+        if kept is None or not kept.alive:
+            if kept is not None:
+                kept.stop()
+            variables = boxed_ros_environment() if sandbox else ros_environment()
+            kept = _fork_servers[sandbox] = ForkServers(
+                _JUDGE_MODULE,
+                boxed=sandbox,
+                environment=variables,
+                of_judges=course.variables(),
+                interfaces=course.interface_modules(),
+            )
+        return kept.addresses
+
+
+def _fork_servers_run(sandbox: bool) -> bool:
+    """True if all of them run that were started."""
+    with _changing:
+        kept = _fork_servers.get(sandbox)
+        return kept is not None and kept.alive
+
+
+@atexit.register
+def _stop_fork_servers() -> None:
+    """End them all with what came from them."""
+    with _changing:
+        for kept in _fork_servers.values():
+            kept.stop()
+        _fork_servers.clear()
