@@ -10,6 +10,7 @@ import ctypes
 import os
 import select
 import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -89,6 +90,20 @@ def signal_group(leader: int, number: int) -> None:
     """Send a signal to a process group, where there still is one."""
     with contextlib.suppress(ProcessLookupError, PermissionError):
         os.killpg(leader, number)
+
+
+def end_soon(process: subprocess.Popen[bytes], within: float) -> None:
+    """Wait for a child that was asked to end, and kill it where it does not end in time.
+
+    Args:
+        process: The child.
+        within: Seconds.
+    """
+    try:
+        process.wait(within)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
 
 
 def end_descendants(within: float = 3.0, *, spare: Sequence[int] = ()) -> int:

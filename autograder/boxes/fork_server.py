@@ -31,6 +31,7 @@ from autograder.boxes.channel import Channel
 from autograder.boxes.environment import base_environment
 from autograder.boxes.limits import raise_own
 from autograder.boxes.scratch import HeldFolder
+from autograder.process_trees import end_soon
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -242,11 +243,7 @@ class ForkServer:
         assert self._process.stdin is not None
         with contextlib.suppress(OSError):
             self._process.stdin.close()
-        try:
-            self._process.wait(_GOODBYE_SECONDS)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
+        end_soon(self._process, _GOODBYE_SECONDS)
         with contextlib.suppress(OSError):
             os.unlink(self.address)  # noqa: PTH108
 

@@ -13,8 +13,7 @@ from autograder.boxes.guards import BoxGuard
 from autograder.boxes.limits import Limits
 from autograder.boxes.mounts import SYSTEM, Bind, box_arguments, installation
 from autograder.boxes.sandbox import SCRATCH_BYTES, SCRATCH_INODES
-from autograder.boxes.seccomp_filter import filter_for_boxes
-from autograder.boxes.supervisor import file_with, furnish
+from autograder.boxes.supervisor import bubblewrap, furnish
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -62,9 +61,7 @@ class OneCommandBox:
         Raises:
             OSError: There are no such namespaces here.
         """
-        user, group = os.geteuid(), os.getegid()
-        syscalls.unshare(syscalls.CLONE_NEWUSER | syscalls.CLONE_NEWNET | syscalls.CLONE_NEWNS)
-        syscalls.map_only_user(0, user, group)
+        syscalls.leave_the_host()
         syscalls.bring_loopback_up()
         furnish(self._scratch, SCRATCH_BYTES, SCRATCH_INODES)
 
@@ -80,13 +77,8 @@ class OneCommandBox:
         for name, value in box_environment(python, environment).items():
             words += ["--setenv", name, value]
         words += ["--chdir", str(self._folder)]
-        descriptors = []
-        seccomp = filter_for_boxes(hidden_memory=self._guard.hidden_memory)
-        if seccomp:
-            descriptors.append(file_with(seccomp))
-            words += ["--seccomp", str(descriptors[-1])]
-        descriptors.append(file_with(b"".join(os.fsencode(word) + b"\0" for word in words)))
-        return ["bwrap", "--args", str(descriptors[-1]), "--", *command], descriptors
+        begin, descriptors = bubblewrap(words, hidden_memory=self._guard.hidden_memory)
+        return [*begin, *command], descriptors
 
     def limit(self) -> None:
         """Take the limits of a box; for the process that becomes the command's."""

@@ -113,9 +113,7 @@ class _Supervisor:
                     self._started[message["name"]].kill()
 
     def _open(self, scratch: str, size: int, inodes: int, files: str) -> None:
-        user, group = os.geteuid(), os.getegid()
-        syscalls.unshare(syscalls.CLONE_NEWUSER | syscalls.CLONE_NEWNET | syscalls.CLONE_NEWNS)
-        syscalls.map_only_user(0, user, group)
+        syscalls.leave_the_host()
         die_with_parent()  # taken away by the change of rights
         syscalls.bring_loopback_up()
         place = Path(scratch)
@@ -143,16 +141,10 @@ class _Supervisor:
         if name in self._started:
             raise ValueError(f"there is a box named {name} already")
         info, writing = os.pipe()
-        kept = [writing]
-        seccomp = filter_for_boxes(hidden_memory=hidden_memory)
-        if seccomp:
-            kept.append(file_with(seccomp))
-            arguments = [*arguments, "--seccomp", str(kept[-1])]
-        # In a file, because a box sees the command line of its first process, and folders of the host are in it.
-        kept.append(file_with(b"".join(os.fsencode(word) + b"\0" for word in arguments)))
+        words, kept = bubblewrap([*arguments, "--info-fd", str(writing)], hidden_memory=hidden_memory)
+        kept.append(writing)
 
         idle = not command
-        words = ["bwrap", "--info-fd", str(writing), "--args", str(kept[-1]), "--"]
         try:
             process = subprocess.Popen(
                 [*words, *(command or ("/bin/cat",))],
@@ -226,7 +218,27 @@ def furnish(place: Path, size: int, inodes: int) -> None:
         (place / ETC / name).write_bytes(data)
 
 
-def file_with(data: bytes) -> int:
+def bubblewrap(arguments: Sequence[str], *, hidden_memory: bool) -> tuple[list[str], list[int]]:
+    """The beginning of a command line, which a command is to follow, and the descriptors that it needs.
+
+    Args:
+        arguments: What the box is like (:func:`autograder.boxes.mounts.box_arguments`).
+        hidden_memory: See :func:`autograder.boxes.seccomp_filter.filter_for_boxes`.
+
+    Returns:
+        The words, and descriptors to be inherited, which the caller closes.
+    """
+    kept = []
+    seccomp = filter_for_boxes(hidden_memory=hidden_memory)
+    if seccomp:
+        kept.append(_file_with(seccomp))
+        arguments = [*arguments, "--seccomp", str(kept[-1])]
+    # In a file, because a box sees the command line of its first process, and folders of the host are in it.
+    kept.append(_file_with(b"".join(os.fsencode(word) + b"\0" for word in arguments)))
+    return ["bwrap", "--args", str(kept[-1]), "--"], kept
+
+
+def _file_with(data: bytes) -> int:
     """A descriptor of an anonymous file with this content, at its beginning."""
     descriptor = os.memfd_create("for-bubblewrap")
     os.write(descriptor, data)

@@ -15,6 +15,7 @@ import msgspec
 
 from autograder.grading.cluster.messages import Broken, Command, News, encode
 from autograder.messages.lines import Hangup, Lines
+from autograder.process_trees import end_soon
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -55,11 +56,7 @@ class Link:
         if kind is not None:
             self._client.kill()
         self._lines.finish()
-        try:
-            self._client.wait(_GOODBYE_SECONDS)
-        except subprocess.TimeoutExpired:
-            self._client.kill()
-            self._client.wait()
+        end_soon(self._client, _GOODBYE_SECONDS)
         self._lines.close()
         self._log.close()
 

@@ -26,7 +26,7 @@ from autograder.grading.running.worker import JUDGE
 from autograder.grading.task import Task, decode_execution, encode
 from autograder.judge.settings import boxed_ros_environment, ros_environment
 from autograder.messages.lines import Hangup, Lines, Silent, TooLong
-from autograder.process_trees import end_processes_in
+from autograder.process_trees import end_processes_in, end_soon
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -161,11 +161,7 @@ class WorkerProcess:
         if worker is None or lines is None:
             return
         lines.finish()
-        try:
-            worker.wait(GOODBYE_SECONDS)
-        except subprocess.TimeoutExpired:
-            worker.kill()
-            worker.wait()
+        end_soon(worker, GOODBYE_SECONDS)
         if worker.returncode != 0:
             # It may not have come to tidying up after itself.
             end_processes_in(self._scratch)
