@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder import course
+from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.rebuilding.task_making import tasks_of
 from autograder.grading.task import encode
@@ -219,10 +220,15 @@ def _running(command: list[str], folder: Path, ready: str) -> Iterator[Watch]:
 
 
 def _bytes(path: Path) -> tuple[float, float]:
-    """Mean bytes of the tasks of a class, and of their results as the journal has them."""
+    """Mean bytes of the tasks of a class, and of their results as the store has them."""
     directory = ClassDirectory(path)
     tasks = [len(encode(task)) for found in directory.submissions()[0] for task in tasks_of(directory, found)]
-    results = [file.stat().st_size for file in (directory.state / "journal").rglob("*.json")]
+    with ClassStore(directory) as store:
+        results = [
+            len(encode(result))
+            for found in directory.submissions()[0]
+            for result in store.results(found.student, found.assignment).values()
+        ]
     return sum(tasks) / len(tasks), sum(results) / max(1, len(results))
 
 

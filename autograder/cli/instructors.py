@@ -333,11 +333,12 @@ def compare(folder: Path, before: str, after: str) -> None:
 
     BEFORE and AFTER are runs, by the times in the first line that this prints.
     """
+    from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.table import point_differences
 
-    with grading_errors():
-        old, new, found = point_differences.compare(ClassDirectory(folder).state, before, after)
+    with grading_errors(), ClassStore(ClassDirectory(folder)) as store:
+        old, new, found = point_differences.compare(store, before, after)
     click.echo(f"{old} → {new}: {counted(len(found), 'difference')}")
     for difference in found:
         click.echo(printable(difference.line()))
@@ -348,11 +349,15 @@ def compare(folder: Path, before: str, after: str) -> None:
 @click.argument("student")
 def attempts(folder: Path, student: str) -> None:
     """Say what came of each time that STUDENT was graded in the class FOLDER."""
-    from autograder.grading.entering.attempts import read
+    from autograder.grading.class_store import ClassStore
+    from autograder.grading.classes.class_directory import ClassDirectory
 
-    with grading_errors():
-        for attempt in read(folder, student):
-            click.echo(printable(attempt.line()))
+    with grading_errors(), ClassStore(ClassDirectory(folder)) as store:
+        found = store.attempts(student)
+    if not found:
+        fail(f"Nobody of the id {student!r} was graded here since attempts are noted.")
+    for attempt in found:
+        click.echo(printable(attempt.line()))
 
 
 @click.command()

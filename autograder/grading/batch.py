@@ -1,8 +1,8 @@
 """Grading a class: rebuild, execute in parallel, write one after the other.
 
 The order makes it fail closed. What is not known to be right in the gradebook is taken back first; then each
-result goes into the journal and from there, by one writer, into the gradebook. A run that is killed has left
-zeros and results, never a wrong grade, and the next run goes on from there.
+result goes into the store of the class and from there, by one writer, into the gradebook. A run that is killed has
+left zeros and results, never a wrong grade, and the next run goes on from there.
 
 Nothing of a submission is held longer than it takes to write it down, so that a class of any size fits.
 """
@@ -12,22 +12,19 @@ from __future__ import annotations
 import contextlib
 import functools
 import time
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
 
 from autograder.grading.asked_for import AskedFor, check_known
+from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Refused, Submission
 from autograder.grading.classes.configuration import check_configuration
 from autograder.grading.classes.timestamps import handed_in_at, is_not_believed
 from autograder.grading.collecting.outcomes import WaitingList
 from autograder.grading.collecting.tidying import Tidied, tidy
 from autograder.grading.entering import gradebook
-from autograder.grading.entering.entry_records import Records
-from autograder.grading.entering.final_results import Journal
-from autograder.grading.entering.kept_evidence import EvidenceFolder
 from autograder.grading.errors import MasterUnusable, is_disk_full
 from autograder.grading.following.origins import news
 from autograder.grading.rebuilding.course_version import course_version
@@ -40,7 +37,6 @@ from autograder.grading.running import places
 from autograder.grading.running.progress import BatchProgress
 from autograder.grading.running.timings import Timings
 from autograder.grading.table.entries import SubmissionEntry, read_entries
-from autograder.grading.table.point_differences import Difference, Runs
 from autograder.grading.table.roster import enter_roster, read_roster
 from autograder.grading.table.true_rows import true_rows
 from autograder.grading.table.what_counts import read_what_counts
@@ -52,10 +48,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from autograder.boxes.execution import Execution
+    from autograder.grading.class_records import Entered
     from autograder.grading.entering.writer import Writer
     from autograder.grading.rebuilding.source_points import GradedCell
     from autograder.grading.running.places import Execute
     from autograder.grading.table.entries import Entries
+    from autograder.grading.table.point_differences import Difference
     from autograder.grading.table.roster import Roster
     from autograder.grading.task import Task
 
@@ -117,7 +115,8 @@ def grade(
         roster = read_roster(directory)
         in_sections = roster.of_sections(sections) if sections else ()
         asked = AskedFor(assignments, [*students, *in_sections])
-        batch = _Batch(directory, console, roster, asked, feedback=feedback, dry_run=dry_run)
+        store = stack.enter_context(ClassStore(directory))
+        batch = _Batch(directory, store, console, roster, asked, feedback=feedback, dry_run=dry_run)
         batch.collect()
         batch.plan(again)
         # Before anything is taken back: where nobody can execute anything, all stays as it is.
@@ -132,6 +131,7 @@ class _Batch:
     def __init__(
         self,
         directory: ClassDirectory,
+        store: ClassStore,
         console: Console,
         roster: Roster,
         asked: AskedFor,
@@ -143,17 +143,16 @@ class _Batch:
         self._asked = asked
         self._dry_run = dry_run
         self._directory = directory
+        self._store = store
+        self._entered: dict[tuple[str, str], Entered] = {}
         self._console = console
         self._fingerprints = Fingerprints(directory)
-        released = read_released(directory, self._fingerprints)
+        released = read_released(directory, store, self._fingerprints)
         self._cells: dict[str, tuple[GradedCell, ...]] = released.cells
         self._not_usable = released.unusable
         self._what_counts = read_what_counts(directory, released.cells)
         if not released.cells and released.unusable:
             raise MasterUnusable(next(iter(released.unusable.values())))
-        self._journal = Journal(directory.state / "journal")
-        self._evidence = EvidenceFolder(directory)
-        self._records = Records(directory)
         self._works: list[Work] = []
         self._others: list[Work] = []
         self._refused: list[Refused] = []
@@ -162,7 +161,7 @@ class _Batch:
         self._entries: Entries = {}
         self._timings = Timings()
         self._returned = UpToDate(
-            directory, self._records, lambda: self._writer, self._timings, self._problem, feedback=feedback
+            directory, store, lambda: self._writer, self._timings, self._problem, feedback=feedback
         )
         self._began = time.monotonic()
         self._executed = 0
@@ -173,7 +172,7 @@ class _Batch:
     def _writer(self) -> Writer:
         from autograder.grading.entering.writer import Writer
 
-        return Writer(self._directory, self._records)
+        return Writer(self._directory, self._store)
 
     def collect(self) -> None:
         """Find the submissions.
@@ -190,7 +189,7 @@ class _Batch:
             enter_roster(self._directory)
             tidied = tidy(self._directory)
         self._notices += tidied.notices
-        for text in news(self._directory, assignments or self._cells):
+        for text in news(self._directory, self._store, assignments or self._cells):
             self._notices.append(text)
             self._console.print(f"note: {text}", markup=False, highlight=False, soft_wrap=True)
         found, refused = self._directory.submissions()
@@ -244,22 +243,23 @@ class _Batch:
             for assignment in sorted({work.submission.assignment for work in [*self._works, *self._others]})
         }
         self._entries = read_entries(self._directory.gradebook_url)
+        self._entered = self._store.entered()
         for work in self._others:
             self._settle(work, in_gradebook)
         older = sum(
-            record is not None and record.course not in ("", course_version())
-            for record in (self._records.get(work.submission) for work in self._works)
+            work.key in self._entered and self._entered[work.key].course != course_version()
+            for work in self._works
         )
         if older:
             self._notices.append(
                 f"{older} submissions had been graded with another version of the course; `./course compare` says "
                 "who has other points since, and `./course grade --dry-run` says it before a run"
             )
+        if again:
+            self._store.forget_results(work.submission for work in self._works)
+            return
         for work in self._works:
-            if again:
-                self._journal.forget(work.submission, work.notebooks)
-            else:
-                self._settle(work, in_gradebook)
+            self._settle(work, in_gradebook)
 
     @property
     def unsettled(self) -> list[Submission]:
@@ -311,10 +311,8 @@ class _Batch:
         entries = read_entries(url)
         judged = {key: work.rows for key, work in works.items() if work.rows is not None}
         for student, assignment in sorted(entries.keys() - works.keys()):
-            folder = self._directory.path / "submitted" / student / assignment
-            record = self._records.get(Submission(student, assignment, folder))
-            if record is not None:
-                judged[student, assignment] = record.rows
+            if (student, assignment) in self._entered:
+                judged[student, assignment] = self._entered[student, assignment].rows
                 self._notices.append(
                     f"{student}/{assignment} is not in submitted any more; its points stay in the gradebook"
                 )
@@ -332,7 +330,7 @@ class _Batch:
             changes = would_change(self._directory, self._works, entries, self._cells)
         else:
             write_csv(self._directory.path / "grades.csv", rows)
-            Runs(self._directory.state).keep(course_version(), rows)
+            self._store.keep_run(course_version(), rows)
         return GradeReport(
             path=self._directory.path,
             rows=tuple(row for row in rows if self._asked.has(row.student, row.assignment)),
@@ -349,32 +347,32 @@ class _Batch:
 
     def _settle(self, work: Work, in_gradebook: dict[str, dict[str, dict[str, gradebook.Scores]]]) -> None:
         """Find out whether the gradebook has the grades of exactly this submission."""
-        record = self._records.get(work.submission)
+        entered = self._entered.get(work.key)
         scores = in_gradebook[work.submission.assignment].get(work.submission.student, {})
-        if record is None or not self._records.holds(work.submission, record, scores):
+        if entered is None or not entered.is_in(scores):
+            return
+        if not self._directory.has_converted(work.submission, entered.tasks):
             return
         try:
             handed_in_at(work.submission.folder)
         except ValueError:
             return  # the writer refuses it, with the reason
-        if record.fingerprint != work.fingerprint:
+        if entered.fingerprint != work.fingerprint:
             # Other bytes, but perhaps the same work: saved again, or the course was changed elsewhere.
-            keys = {task.notebook: task.key() for task in self._tasks_of(work.submission)}
-            if record.keys != keys:
+            if entered.tasks != {task.notebook: task.key() for task in self._tasks_of(work.submission)}:
                 return
-            self._records.put(work.submission, replace(record, fingerprint=work.fingerprint))
-        work.rows = record.rows
+            self._store.note_fingerprint(work.submission, work.fingerprint)
+        work.rows = entered.rows
+        work.shown = entered.shown
         work.written = True
 
     def _take_known(self, work: Work) -> None:
-        """Take the results that are in the journal; enter the submission if it is complete with them."""
-        if not self._journal.has(work.submission, work.notebooks):
-            return
-        for task in self._tasks_of(work.submission):
-            known = self._journal.get(task)
-            if known is not None:
+        """Take the results that an earlier run has kept; enter the submission if it is complete with them."""
+        known = self._store.results(*work.key)
+        for task in self._tasks_of(work.submission) if known else ():
+            if (key := task.key()) in known:
                 self._reused += 1
-                work.results[task.notebook] = task, known
+                work.results[task.notebook] = task, known[key]
         if work.complete:
             self._write(work)
 
@@ -397,8 +395,7 @@ class _Batch:
         """Keep a result, and enter its submission if that makes it complete."""
         self._executed += 1
         self._timings.count(task.cells, execution)
-        execution = self._evidence.keep(task, execution)
-        self._journal.put(task, execution)
+        execution = self._store.keep(task, execution)
         if execution.trouble:
             self._problems.append(f"{task.label} could not be checked: {execution.trouble}")
         work.results[task.notebook] = task, execution

@@ -96,12 +96,39 @@ class GradebookTrouble(GradingError):
         )
 
 
+class StoreTrouble(GradingError):
+    """What the grader knows of a class cannot be read or written.
+
+    Args:
+        file: Where it is.
+        said: What is wrong with it.
+    """
+
+    def __init__(self, file: Path, said: str) -> None:
+        advice = next(
+            (words for sign, words in _STORE_ADVICE.items() if sign in said), _STORE_ADVICE["malformed"]
+        )
+        super().__init__(
+            f"{file}, which holds what was graded, cannot be read or written ({said}). {advice} The gradebook is not "
+            "touched by that, and nobody has been given points that were not earned."
+        )
+
+
 _GRADEBOOK_ADVICE = {
     "locked": "Another program has it open for writing: close that, and run the same command again.",
     "readonly": "Look at its owner and its mode, and at those of its folder; then run the same command again.",
     "not a database": "Put back a copy of it; the next run enters all grades anew.",
     "malformed": "Put back a copy of it; the next run enters all grades anew.",
     "connection": "Look whether the database server runs, and whether its address and your right to it are right.",
+}
+
+_STORE_ADVICE = {
+    "locked": _GRADEBOOK_ADVICE["locked"],
+    "readonly": _GRADEBOOK_ADVICE["readonly"],
+    "unable to open": _GRADEBOOK_ADVICE["readonly"],
+    "disk I/O error": "Look whether your quota is used up and the disk is sound; then run the same command again.",
+    "malformed": "Put back a copy of it. Without a copy, rename it: the next run grades everything anew, and what was "
+    "noted of earlier attempts, runs and appeals is in the renamed file alone.",
 }
 
 
@@ -140,7 +167,7 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
                 f"The gradebook of {path} is in PostgreSQL, and there is nothing here to speak with it. "
                 "Type: ./course setup --with postgresql"
             ) from error
-        said = _said_by_database(error)
+        said = said_by_database(error)
         if said:
             raise GradebookTrouble(path, said) from error
         if isinstance(error, PermissionError):
@@ -150,7 +177,7 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
         raise
 
 
-def _said_by_database(error: BaseException | None) -> str:
+def said_by_database(error: BaseException | None) -> str:
     """The words of the database at the bottom of ``error``; empty where there is none."""
     while error is not None:
         if type(error).__module__.startswith(("sqlite3", "sqlalchemy")):

@@ -18,9 +18,9 @@ from traitlets.config import Application
 from autograder.cards.readable import printable
 from autograder.grading.asked_for import check_known
 from autograder.grading.batch import grade
+from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission, reason_against_name
 from autograder.grading.classes.configuration import check_configuration
-from autograder.grading.entering.entry_records import Records
 from autograder.grading.entering.writer import Writer
 from autograder.grading.errors import GradingError
 
@@ -106,17 +106,16 @@ class _OurFeedback(_Ours, GenerateFeedback):
 
     def _convert(self, directory: ClassDirectory, chosen: dict[str, list[str]]) -> list[str]:
         check_configuration(directory)
-        records = Records(directory)
-        writer = Writer(directory, records)
         problems = []
-        with directory.lock():
+        with directory.lock(), ClassStore(directory) as store:
+            writer = Writer(directory, store)
             for submission in self._submissions(directory, chosen):
                 name = f"{submission.student}/{submission.assignment}"
                 if reason := reason_against_name(submission.student):
                     problems.append(f"{name}: {reason}; rename the folder")
                     continue
                 writer.write_feedback(submission)
-                if not records.has_pages(submission, directory.notebooks(submission.assignment)):
+                if not directory.has_pages(submission, directory.notebooks(submission.assignment)):
                     problems.append(
                         f"{name}: its page could not be made (see {directory.state / 'nbgrader.log'})"
                     )

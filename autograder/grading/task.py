@@ -1,4 +1,4 @@
-"""One notebook of one student, ready to be executed anywhere: plain data without a path or a secret."""
+"""One notebook of one student, ready to be executed anywhere, and the points that its verdicts are worth."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from dataclasses import dataclass, field
 
 import msgspec
 
-from autograder.boxes.execution import Cell, Execution
+from autograder.boxes.execution import Cell, Check, Execution
 from autograder.boxes.limits import Limits
 from autograder.boxes.verdicts_without_judge import zero_points
+from autograder.verdict import Verdict  # noqa: TC001
 
 UNREADABLE = "unreadable"
 """The diagnosis of what was handed in and is no notebook."""
@@ -64,6 +65,21 @@ class Task:
             if cell.check is not None
         }
         return Execution(cells=(), verdicts=verdicts)
+
+
+def points(check: Check, verdict: Verdict) -> float:
+    """The points that a verdict is worth: the judge's share of what the cell carries."""
+    share = verdict.score / verdict.max_score if verdict.max_score > 0 else 0.0
+    return round(min(1.0, max(0.0, share)) * check.worth, 4)
+
+
+def scores_of(task: Task, execution: Execution) -> dict[str, float]:
+    """The points of each check cell of a task, by grade_id."""
+    return {
+        cell.name: points(cell.check, execution.verdicts[index])
+        for index, cell in enumerate(task.cells)
+        if cell.check is not None
+    }
 
 
 def encode(value: Task | Execution) -> bytes:

@@ -33,6 +33,7 @@ class Work:
         results: What is known of the notebooks that are not written down yet, by notebook.
         rows: What the judge says of it, or why it says nothing; None while nothing is known.
         written: Whether the gradebook holds exactly these results.
+        shown: Stands for what the gradebook said when its pages were made; empty where there are none of these results.
     """
 
     submission: Submission
@@ -41,6 +42,7 @@ class Work:
     results: dict[str, tuple[Task, Execution]] = field(default_factory=dict)
     rows: tuple[Row, ...] | None = None
     written: bool = False
+    shown: str = ""
 
     @property
     def key(self) -> tuple[str, str]:

@@ -3,7 +3,7 @@
 Each round hands in new work for a whole class, starts a batch in a process of its own, ends that process with
 ``SIGKILL`` or ``SIGTERM`` at a moment drawn from the time that a batch takes, and asks:
 
-* the gradebook opens and is sound;
+* gradebook and store open and are sound;
 * either no grade was touched yet, or each is zero or the right one, never one of an earlier round;
 * every process of the batch and of its boxes ends by itself, and no mount of a box is left;
 * the same command then finishes the rest, and what was graded before the kill is not run again;
@@ -32,7 +32,8 @@ import psutil
 sys.path.insert(0, str(Path(__file__).parent))
 from tiny_class import LISTENER, TALKER, TinyClass, make_tiny_class
 
-from autograder.grading.entering.attempts import read
+from autograder.grading.class_store import ClassStore
+from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.process_trees import adopt_orphans
 
 BATCH = """
@@ -114,9 +115,11 @@ class Trial:
 
     def grades(self) -> State:
         """What the gradebook says, read as a file by somebody who knows nothing of nbgrader."""
+        for name in (".autograder/class.db", "gradebook.db"):
+            with contextlib.closing(sqlite3.connect(self.tiny.path / name)) as book:
+                (sound,) = book.execute("PRAGMA integrity_check").fetchone()
+                demand(sound == "ok", f"{name} is damaged: {sound}")
         with contextlib.closing(sqlite3.connect(self.tiny.path / "gradebook.db")) as book:
-            (sound,) = book.execute("PRAGMA integrity_check").fetchone()
-            demand(sound == "ok", f"the gradebook is damaged: {sound}")
             rows = book.execute(
                 "SELECT submitted_assignment.student_id, base_cell.name, grade.auto_score FROM grade"
                 " JOIN base_cell ON base_cell.id = grade.cell_id"
@@ -162,10 +165,9 @@ class Trial:
         for student in STUDENTS:
             page = self.tiny.path / "feedback" / student / "lab_1_2" / "lab_1_2.html"
             demand(page.is_file(), f"{student} has no page")
-            scores = {
-                f"{row.exercise.replace('.', '-')}": row.score
-                for row in read(self.tiny.path, student)[-1].rows
-            }
+            with ClassStore(ClassDirectory(self.tiny.path)) as store:
+                last = store.attempts(student)[-1]
+            scores = {f"{row.exercise.replace('.', '-')}": row.score for row in last.rows}
             demand(scores == self.right[student], f"the last attempt of {student} is noted with {scores}")
         await_orphans()
         left = list(self.temporary.iterdir())

@@ -13,10 +13,10 @@ import pytest
 from conftest import LISTENER, TALKER, FakeEngine, TinyClass
 from nbgrader.api import Gradebook
 
+from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
 from autograder.grading.entering import gradebook
-from autograder.grading.entering.final_results import Journal
 from autograder.grading.entering.gradebook import NotebookEntry
 from autograder.grading.errors import (
     ClassBusy,
@@ -372,18 +372,18 @@ def test_a_full_disk_is_said_and_costs_nothing(
 ) -> None:
     for student in ("ada", "ben"):
         tiny.submit(student)
-    usual = Journal.put
+    usual = ClassStore.keep
 
-    def full(self: Journal, task: Any, execution: Any) -> None:
+    def full(self: ClassStore, task: Any, execution: Any) -> Any:
         if task.student == "ben":
             raise OSError(errno.ENOSPC, "No space left on device")
-        usual(self, task, execution)
+        return usual(self, task, execution)
 
-    monkeypatch.setattr(Journal, "put", full)
+    monkeypatch.setattr(ClassStore, "keep", full)
     with pytest.raises(DiskFull, match="Free some room"):
         tiny.grade()
     assert tiny.scores("ada")[TALKER] == 10
-    monkeypatch.setattr(Journal, "put", usual)
+    monkeypatch.setattr(ClassStore, "keep", usual)
     fake_engine.ran.clear()
     tiny.grade()
     assert fake_engine.ran == ["ben"]

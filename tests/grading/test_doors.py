@@ -17,9 +17,9 @@ from nbgrader.converters import Autograde, GenerateFeedback, NbGraderException
 from nbgrader.coursedir import CourseDirectory
 
 from autograder.cli import cli
+from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.entering import gradebook
-from autograder.grading.entering.final_results import Journal
 from autograder.grading.errors import ClassIncomplete
 
 if TYPE_CHECKING:
@@ -186,7 +186,7 @@ def test_a_result_that_cannot_be_kept_is_no_result(
     def full(*_: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(Journal, "put", full)
+    monkeypatch.setattr(ClassStore, "keep", full)
     tiny.submit("ada")
     with pytest.raises(NbGraderException):
         nbgrader_autograde(tiny)

@@ -1,4 +1,4 @@
-"""Journal, seeds, names, points, CSV."""
+"""Seeds, names, points, CSV."""
 
 from __future__ import annotations
 
@@ -13,16 +13,13 @@ from pathlib import Path
 import pytest
 
 from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution
-from autograder.boxes.limits import Limits
 from autograder.cards.readable import printable
 from autograder.grading.classes.class_directory import reason_against_name
 from autograder.grading.classes.new_class import NewClass
 from autograder.grading.classes.seeds import create_secret, read_secret, seed_for
-from autograder.grading.entering.final_results import Journal
-from autograder.grading.entering.points import points
 from autograder.grading.errors import DiskFull, NotAClass, is_disk_full
 from autograder.grading.reporting.rows import Row, write_csv
-from autograder.grading.task import Task, decode_execution, decode_task, encode
+from autograder.grading.task import Task, decode_execution, decode_task, encode, points
 from autograder.regular_files import write_whole
 from autograder.verdict import State, Verdict
 
@@ -44,43 +41,6 @@ def test_a_task_and_an_execution_travel_as_json() -> None:
     assert decode_task(encode(task)) == task
     assert decode_execution(encode(DONE)) == DONE
     assert b"\n" not in encode(replace(TASK, cells=(Cell("a\nb"),)))
-
-
-def test_the_journal_gives_back_what_belongs_to_the_very_task(tmp_path: Path) -> None:
-    journal = Journal(tmp_path)
-    assert journal.get(TASK) is None
-    journal.put(TASK, DONE)
-    assert journal.get(TASK) == DONE
-
-
-@pytest.mark.parametrize(
-    "changed",
-    [
-        replace(TASK, cells=(*TASK.cells, Cell("2"))),
-        replace(TASK, seed="other"),
-        replace(TASK, course="v2"),
-        replace(TASK, limits=Limits(cell_seconds=1)),
-        replace(TASK, files={"a": b"b"}),
-    ],
-)
-def test_whatever_matters_makes_it_another_task(tmp_path: Path, changed: Task) -> None:
-    journal = Journal(tmp_path)
-    journal.put(TASK, DONE)
-    assert journal.get(changed) is None
-
-
-def test_trouble_of_the_grader_is_not_kept(tmp_path: Path) -> None:
-    journal = Journal(tmp_path)
-    journal.put(TASK, replace(DONE, trouble="no domain was free"))
-    assert journal.get(TASK) is None
-
-
-def test_a_damaged_entry_counts_as_none(tmp_path: Path) -> None:
-    journal = Journal(tmp_path)
-    journal.put(TASK, DONE)
-    (entry,) = [path for path in tmp_path.rglob("*") if path.is_file()]
-    entry.write_bytes(entry.read_bytes()[:-10])
-    assert journal.get(TASK) is None
 
 
 def test_a_file_is_replaced_whole_or_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

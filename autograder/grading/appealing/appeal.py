@@ -7,19 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 from autograder import exercises
 from autograder.appeals.appeal_file import Appeal, Cell, dump
-from autograder.grading.classes.class_directory import ClassDirectory, Submission
-from autograder.grading.entering.entry_records import Records
-from autograder.grading.entering.kept_evidence import EvidenceFolder
+from autograder.grading.class_store import ClassStore
+from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.errors import GradingError, clear_disk_errors, course_command
 from autograder.judge.verdicts import reference
 from autograder.judge.verdicts.keeping import NoEvidence, unpack
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-    from autograder.grading.entering.kept_evidence import RunCell
+    from autograder.grading.class_records import Entered, RunCell
 
 FOLDER = "appeals"
 """The folder of a class in which the files are written."""
@@ -42,8 +41,8 @@ def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = N
         task = exercises.get(exercise_id).task
     except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
         raise GradingError(f"{error} `./course check` lists the exercises.") from error
-    with clear_disk_errors(directory.path):
-        content = dump(_appeal(directory, student, exercise_id, task))
+    with clear_disk_errors(directory.path), ClassStore(directory) as store:
+        content = dump(_appeal(directory, store, student, exercise_id, task))
         to = (to or directory.path / FOLDER / f"{student}-{exercise_id}.json").absolute()
         try:
             write_whole(to, content)
@@ -52,29 +51,29 @@ def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = N
     return to
 
 
-def _appeal(directory: ClassDirectory, student: str, exercise_id: str, task: str) -> Appeal:
+def _appeal(
+    directory: ClassDirectory, store: ClassStore, student: str, exercise_id: str, task: str
+) -> Appeal:
     again = course_command("grade", directory.path, "--student", student)
-    found = EvidenceFolder(directory).find(student, exercise_id)
-    if found is None:
-        raise GradingError(_why_nothing(directory, student, exercise_id, again))
-    assignment, notebook, kept = found
-    folder = directory.path / "submitted" / student / assignment
-    entered = Records(directory).get(Submission(student, assignment, folder))
-    if entered is None or entered.keys.get(notebook) != kept.key:
+    kept, entered = store.evidence(student, exercise_id), store.entered()
+    if kept is None:
+        raise GradingError(_why_nothing(directory, entered, student, exercise_id, again))
+    known = entered.get((student, kept.assignment))
+    if known is None or known.tasks.get(kept.notebook) != kept.task:
         raise GradingError(
-            f"The gradebook does not have the points that the judge gave {student} in {notebook} when it saw this, as "
-            f"after `--dry-run` or after a run that could not check it. Enter them first: {again}"
+            f"The gradebook does not have the points that the judge gave {student} in {kept.notebook} when it saw "
+            f"this, as after `--dry-run` or after a run that could not check it. Enter them first: {again}"
         )
     try:
-        seen, cells = unpack(kept.checks[exercise_id]), kept.cells()
+        seen, cells = unpack(kept.checks[exercise_id]), kept.run_cells()
     except (NoEvidence, ValueError) as error:
         raise GradingError(
             f"What is kept of {exercise_id} by {student} is damaged ({error}). Have it judged anew: {again} --again"
         ) from error
     return Appeal(
         student=student,
-        assignment=assignment,
-        notebook=notebook,
+        assignment=kept.assignment,
+        notebook=kept.notebook,
         task=task,
         course=kept.course,
         solution=list(_before(cells, exercise_id)),
@@ -98,12 +97,16 @@ def _expected(exercise_id: str, digest: str) -> Any:
     return json.loads(exercises.reference_path(exercise_id).read_text(encoding="utf-8"))
 
 
-def _why_nothing(directory: ClassDirectory, student: str, exercise_id: str, again: str) -> str:
-    records = Records(directory)
+def _why_nothing(
+    directory: ClassDirectory,
+    entered: Mapping[tuple[str, str], Entered],
+    student: str,
+    exercise_id: str,
+    again: str,
+) -> str:
     for assignment in directory.assignments():
-        folder = directory.path / "submitted" / student / assignment
-        written = records.get(Submission(student, assignment, folder))
-        for row in written.rows if written else ():
+        known = entered.get((student, assignment))
+        for row in known.rows if known else ():
             if row.exercise == exercise_id:
                 return (
                     f"Nothing that a judge saw of {exercise_id} by {student} is kept. The table says: {row.state}"

@@ -82,7 +82,7 @@ class ClassDirectory:
 
     @property
     def state(self) -> Path:
-        """The folder of the autograder's own files: secret, lock, journal, log. Nothing for students."""
+        """The folder of the autograder's own files: secret, lock, store, log. Nothing for students."""
         return self.path / STATE_NAME
 
     @property
@@ -198,6 +198,16 @@ class ClassDirectory:
                         Refused(folder, f"there is no assignment of that name (the class has: {known})")
                     )
         return taken, refused
+
+    def has_converted(self, submission: Submission, notebooks: Iterable[str]) -> bool:
+        """True if ``autograded`` has all of these notebooks of a submission."""
+        folder = self.path / "autograded" / submission.student / submission.assignment
+        return all((folder / f"{notebook}{SUFFIX}").is_file() for notebook in notebooks)
+
+    def has_pages(self, submission: Submission, notebooks: Iterable[str]) -> bool:
+        """True if ``feedback`` has a page for each of these notebooks of a submission."""
+        folder = self.path / "feedback" / submission.student / submission.assignment
+        return all((folder / f"{notebook}.html").is_file() for notebook in notebooks)
 
     @contextlib.contextmanager
     def lock(self) -> Iterator[None]:

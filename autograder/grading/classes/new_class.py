@@ -15,11 +15,12 @@ from nbgrader.converters import GenerateAssignment
 from nbgrader.coursedir import CourseDirectory
 
 from autograder.boxes.limits import Limits
+from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, SUFFIX, ClassDirectory
 from autograder.grading.classes.seeds import create_secret
 from autograder.grading.entering.writer import quiet
 from autograder.grading.errors import ClassExists, GradingError, clear_disk_errors, course_command
-from autograder.grading.following.origins import remember
+from autograder.grading.following.origins import note_origins
 from autograder.grading.rebuilding import nodes
 from autograder.masters.layout import lab_name, masters, relinked
 from autograder.masters.master_errors import MasterError
@@ -194,7 +195,8 @@ def _fill(path: Path, sources: Sources, config: str) -> None:
         (path / "source" / name).mkdir(parents=True)
         write_source(ClassDirectory(path), name, notebook, sources)
     release(ClassDirectory(path))
-    remember(ClassDirectory(path), sources)
+    with ClassStore(ClassDirectory(path)) as store:
+        note_origins(store, sources)
 
 
 def write_source(

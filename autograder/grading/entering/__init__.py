@@ -1,1 +1,1 @@
-"""The results of tasks, entered into journal and gradebook by one writer."""
+"""The results of tasks, entered into the gradebook by one writer."""

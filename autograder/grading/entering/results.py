@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.boxes.execution import Cell, CellRun, CellType, Check, Ended, Execution
 from autograder.cards.bundle import mimebundle
-from autograder.grading.entering.points import points
 from autograder.grading.rebuilding import nodes
 from autograder.grading.rebuilding.demonstrations import LEFT_OUT
 from autograder.grading.returning.sanitize import harmless_output, make_harmless
 from autograder.grading.running import sandboxing
+from autograder.grading.task import points
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

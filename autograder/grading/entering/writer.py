@@ -6,24 +6,24 @@ import contextlib
 import logging
 import shutil
 import warnings
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
+from autograder.grading.class_records import Attempt, Entered
 from autograder.grading.classes.timestamps import handed_in_at
 from autograder.grading.entering import conversion, gradebook
-from autograder.grading.entering.attempts import Attempt, note, now
-from autograder.grading.entering.entry_records import Records, Written
-from autograder.grading.entering.points import scores_of
 from autograder.grading.errors import is_disk_full
 from autograder.grading.returning import feedback
 from autograder.grading.table.entries import read_entries
 from autograder.grading.table.late_policy import penalties
+from autograder.grading.task import scores_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from datetime import datetime
     from pathlib import Path
 
     from autograder.boxes.execution import Execution
+    from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
     from autograder.grading.reporting.rows import Row
     from autograder.grading.task import Task
@@ -38,18 +38,18 @@ class Writer:
 
     Args:
         directory: The class, locked by this process.
-        records: Where it is noted what was written.
+        store: Where it is noted what was entered.
     """
 
-    def __init__(self, directory: ClassDirectory, records: Records) -> None:
+    def __init__(self, directory: ClassDirectory, store: ClassStore) -> None:
         self._directory = directory
-        self._records = records
+        self._store = store
         self._pages = feedback.FeedbackPages(directory)
 
     def take_back(self, submissions: Sequence[Submission]) -> None:
         """Remove what an earlier run left of these submissions: grades, converted notebooks, feedback."""
+        self._store.forget_entered(submissions)
         for submission in submissions:
-            self._records.forget(submission)
             for step in ("autograded", "feedback"):
                 _remove(self._folder(step, submission))
         pairs = [(submission.assignment, submission.student) for submission in submissions]
@@ -84,20 +84,17 @@ class Writer:
         except Exception as error:
             self.take_back([submission])
             raise NotWritten(f"{submission.student}/{submission.assignment}: {error}") from error
-        # Before the record: a run that is killed in between is gone through once more, and none goes unnoted.
-        course = results[0][0].course if results else ""
-        attempt = Attempt(now(), submission.assignment, fingerprint, course, rows)
-        note(self._directory, submission.student, attempt)
-        if any(execution.trouble for _, execution in results):
-            return  # the next run tries again
-        record = Written(
+        course = results[0][0].course
+        entered = Entered(
             fingerprint=fingerprint,
-            keys={task.notebook: task.key() for task, _ in results},
+            tasks={task.notebook: task.key() for task, _ in results},
             scores={task.notebook: scores_of(task, execution) for task, execution in results},
             rows=rows,
             course=course,
         )
-        self._records.put(submission, record)
+        attempt = Attempt(datetime.now(tz=UTC), submission.assignment, fingerprint, course, rows)
+        is_final = not any(execution.trouble for _, execution in results)
+        self._store.enter(submission, attempt, entered if is_final else None)
 
     def _convert_and_enter(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
         """Notebooks first: without grades they are only files."""
@@ -132,7 +129,7 @@ class Writer:
         gradebook.enter_penalties(url, assignment, student, costs)
 
     def write_feedback(self, submission: Submission) -> None:
-        """Make the HTML pages that go back to a student; ask ``Records.has_pages`` afterwards.
+        """Make the HTML pages that go back to a student; ask ``ClassDirectory.has_pages`` afterwards.
 
         Raises:
             OSError: There is no room on the disk.

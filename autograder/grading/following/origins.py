@@ -10,71 +10,51 @@ import hashlib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import msgspec
-
+from autograder.grading.class_records import Origin
 from autograder.grading.errors import course_command
 from autograder.masters.master_errors import MasterError
-from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from nbformat import NotebookNode
 
+    from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory
 
 
-class Origin(msgspec.Struct, frozen=True):
-    """The origin of a source of a class.
-
-    Attributes:
-        master: The master's file.
-        text: Stands for the whole of it.
-        work: Stands for its graded cells and those that students write.
-    """
-
-    master: str
-    text: str
-    work: str
-
-
-def remember(directory: ClassDirectory, made: Mapping[str, tuple[Path, NotebookNode]]) -> None:
-    """Write down what sources were just made of.
+def note_origins(store: ClassStore, made: Mapping[str, tuple[Path, NotebookNode]]) -> None:
+    """Note what sources were just made of.
 
     Args:
-        directory: The class.
+        store: The class's.
         made: The master and what came of it, by assignment.
-
-    Raises:
-        OSError: It could not be written.
     """
-    known = _read(directory)
-    for name, (master, notebook) in made.items():
-        known[name] = Origin(str(master.absolute()), _digest([master.read_text("utf-8")]), _work(notebook))
-    write_whole(_path(directory), msgspec.json.encode(known))
+    store.note_origins(
+        {
+            name: Origin(str(master.absolute()), _digest([master.read_text("utf-8")]), _work(notebook))
+            for name, (master, notebook) in made.items()
+        }
+    )
 
 
-def moved_on(directory: ClassDirectory, assignments: Iterable[str]) -> list[str]:
-    """The assignments whose masters ask for something else now than when the class got its sources."""
-    known = _read(directory)
-    return [name for name in assignments if name in known and _has_moved(known[name])]
-
-
-def news(directory: ClassDirectory, assignments: Iterable[str]) -> list[str]:
+def news(directory: ClassDirectory, store: ClassStore, assignments: Iterable[str]) -> list[str]:
     """The note before a class is graded: the tasks that were changed since, or that nobody can know.
 
     Args:
         directory: The class.
+        store: Its store, which knows the origins.
         assignments: Those that are graded.
     """
-    if not _path(directory).exists():
+    known = store.origins()
+    if not known:
         return [
             "This class was made before classes wrote down what their sources were made of, so nobody can tell whether "
             "the course asks for something else by now. The judge expects what the course says now. Compare a source "
             "with what the course has, or hand out and grade the new text; then it is written down: "
             + course_command("renew-class", directory.path)
         ]
-    return [warning(directory, name) for name in moved_on(directory, assignments)]
+    return [warning(directory, name) for name in assignments if name in known and _has_moved(known[name])]
 
 
 def warning(directory: ClassDirectory, assignment: str) -> str:
@@ -107,14 +87,3 @@ def _work(notebook: NotebookNode) -> str:
 
 def _digest(parts: Iterable[str]) -> str:
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()
-
-
-def _path(directory: ClassDirectory) -> Path:
-    return directory.state / "masters.json"
-
-
-def _read(directory: ClassDirectory) -> dict[str, Origin]:
-    try:
-        return msgspec.json.decode(_path(directory).read_bytes(), type=dict[str, Origin])
-    except (OSError, msgspec.MsgspecError):
-        return {}

@@ -6,10 +6,11 @@ import shutil
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
+from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release, sources_of, write_source
 from autograder.grading.errors import GradingError
-from autograder.grading.following.origins import remember
+from autograder.grading.following.origins import note_origins
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,7 +38,7 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
             raise GradingError(f"The class has no assignment {name}. It has: {', '.join(there)}.")
     made = {name: one for name, one in sources_of(course_root, assignments).items() if name in there}
     kept = directory.state / "sources-before" / f"{datetime.now(tz=UTC):%Y-%m-%dT%H-%M-%S.%f}"
-    with directory.lock():
+    with directory.lock(), ClassStore(directory) as store:
         for name in made:
             shutil.copytree(directory.path / "source" / name, kept / name)
         try:
@@ -48,7 +49,7 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
             for name in made:
                 shutil.copytree(kept / name, directory.path / "source" / name, dirs_exist_ok=True)
             raise
-        remember(directory, made)
+        note_origins(store, made)
     lines = [
         f"{name}: as the course has it now; hand out {directory.path / 'release' / name}" for name in made
     ]

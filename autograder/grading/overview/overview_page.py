@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
 import statistics
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from autograder.cards.readable import printable
+from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
-from autograder.grading.entering import attempts
-from autograder.grading.entering.final_results import Journal
 from autograder.grading.errors import GradingError, clear_disk_errors
 from autograder.grading.overview import statistics as figures
 from autograder.grading.reporting.rows import DROPPED, EXCUSED, columns
@@ -62,15 +60,17 @@ def write_report(
     """
     directory = ClassDirectory(path)
     to = (to or directory.path / NAME).absolute()
-    with clear_disk_errors(directory.path):
+    with clear_disk_errors(directory.path), ClassStore(directory) as store:
         table = read_table(directory, sections)
         if not figures.handed_in(table):
             raise GradingError("Nothing was handed in yet, so there is nothing to report.")
-        write_whole(to, _page(directory, table, names=names, folder=to.parent).encode())
+        write_whole(to, _page(directory, store, table, names=names, folder=to.parent).encode())
     return to
 
 
-def _page(directory: ClassDirectory, table: ClassTable, *, names: bool, folder: Path) -> str:
+def _page(
+    directory: ClassDirectory, store: ClassStore, table: ClassTable, *, names: bool, folder: Path
+) -> str:
     environment = page_templates("autograder.grading.overview")
     people = _people(directory, table, names=names, folder=folder)
     there = figures.handed_in(table)
@@ -92,10 +92,10 @@ def _page(directory: ClassDirectory, table: ClassTable, *, names: bool, folder: 
         median=statistics.median(totals) if totals else None,
         most=table.max_score(),
         bands=figures.bands(table),
-        items=figures.items(table, Journal(directory.state / "journal")),
+        items=figures.items(table, store),
         mistakes=figures.mistakes(table),
         times=_times(directory, table),
-        progress=_progress(directory, table),
+        progress=_progress(store, table),
         names=names,
     )
 
@@ -133,12 +133,9 @@ def _cell(row: Row | None) -> str:
     return f"{row.score:g}{mark}"
 
 
-def _progress(directory: ClassDirectory, table: ClassTable) -> list[figures.Progress]:
+def _progress(store: ClassStore, table: ClassTable) -> list[figures.Progress]:
     """The students who handed in again after a grading, those who gained most first."""
-    found = []
-    for student in table.students:
-        with contextlib.suppress(GradingError):  # nobody has graded anything of theirs
-            found += figures.progress(student, attempts.read(directory.path, student))
+    found = [one for student in table.students for one in figures.progress(student, store.attempts(student))]
     return sorted(found, key=lambda one: one.first - one.last)
 
 

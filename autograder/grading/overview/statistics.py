@@ -12,8 +12,8 @@ from autograder.grading.reporting.rows import EXCUSED, LATE, NOT_SUBMITTED, colu
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from autograder.grading.entering.attempts import Attempt
-    from autograder.grading.entering.final_results import Journal
+    from autograder.grading.class_records import Attempt
+    from autograder.grading.class_store import ClassStore
     from autograder.grading.reporting.rows import Row
     from autograder.grading.table.class_table import ClassTable
 
@@ -173,14 +173,14 @@ def totals(table: ClassTable) -> list[float]:
     return [points for student in handed_in(table) if (points := table.score(student)) is not None]
 
 
-def items(table: ClassTable, journal: Journal) -> list[ItemFigures]:
+def items(table: ClassTable, store: ClassStore) -> list[ItemFigures]:
     """The statistics of each exercise.
 
     Args:
         table: The class.
-        journal: Where the judge's verdicts are kept.
+        store: Where the judge's verdicts are kept.
     """
-    criteria = _criteria(table, journal)
+    criteria = _criteria(table, store)
     found = []
     for key, name in columns(table.rows).items():
         rows = [row for row in table.rows if _key(row) == key and not row.is_blank]
@@ -231,12 +231,12 @@ def _correlation(ours: Sequence[float], others: Sequence[float]) -> float | None
     return statistics.correlation(ours, others)
 
 
-def _criteria(table: ClassTable, journal: Journal) -> dict[tuple[str, str], list[CriterionFigures]]:
+def _criteria(table: ClassTable, store: ClassStore) -> dict[tuple[str, str], list[CriterionFigures]]:
     """The figures of each criterion, from the verdicts that the table's points came from."""
     counted = {(row.student, row.assignment) for row in table.rows if row.state in ("passed", "failed")}
     seen: dict[tuple[str, str], dict[str, CriterionFigures]] = defaultdict(dict)
     for student, assignment in sorted(counted):
-        for execution in journal.latest(student, assignment):
+        for execution in store.results(student, assignment).values():
             for verdict in execution.verdicts.values():
                 of_exercise = seen[assignment, verdict.exercise]
                 for criterion in verdict.criteria:

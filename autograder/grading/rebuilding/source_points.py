@@ -5,6 +5,7 @@ Reading a source means running nbgrader's steps on it, which takes a second for 
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,9 +14,9 @@ import msgspec
 from autograder.grading.entering import gradebook
 from autograder.grading.errors import ClassIncomplete, MasterUnusable, course_command
 from autograder.grading.reporting.rows import NO_EXERCISE
-from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
+    from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.rebuilding.fingerprints import Fingerprints
 
@@ -40,12 +41,6 @@ class GradedCell:
 
 
 @dataclass(frozen=True)
-class _Kept:
-    fingerprint: str
-    cells: dict[str, tuple[GradedCell, ...]]
-
-
-@dataclass(frozen=True)
 class Released:
     """The cells with points of a class's assignments.
 
@@ -58,17 +53,13 @@ class Released:
     unusable: dict[str, str]
 
 
-def read_released(directory: ClassDirectory, fingerprints: Fingerprints) -> Released:
+def read_released(directory: ClassDirectory, store: ClassStore, fingerprints: Fingerprints) -> Released:
     """The cells with points of all assignments."""
-    path = directory.state / "sources.json"
     assignments = directory.assignments()
     fingerprint = " ".join(fingerprints.of_sources(assignment) for assignment in assignments)
-    try:
-        kept = msgspec.json.decode(path.read_bytes(), type=_Kept)
-        if kept.fingerprint == fingerprint:
-            return Released(kept.cells, {})
-    except (OSError, msgspec.MsgspecError):
-        pass
+    with contextlib.suppress(msgspec.MsgspecError):
+        kept = msgspec.json.decode(store.graded_cells(fingerprint), type=dict[str, tuple[GradedCell, ...]])
+        return Released(kept, {})
     cells, unusable = {}, {}
     for assignment in assignments:
         try:
@@ -76,7 +67,7 @@ def read_released(directory: ClassDirectory, fingerprints: Fingerprints) -> Rele
         except MasterUnusable as error:
             unusable[assignment] = str(error)
     if not unusable:
-        write_whole(path, msgspec.json.encode(_Kept(fingerprint, cells)))
+        store.keep_graded_cells(fingerprint, msgspec.json.encode(cells))
     return Released(cells, unusable)
 
 

@@ -6,8 +6,8 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from autograder.grading.entering.points import points
 from autograder.grading.reporting.spreadsheet import csv_text
+from autograder.grading.task import points
 from autograder.regular_files import write_whole
 from autograder.verdict import State
 

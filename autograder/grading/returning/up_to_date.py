@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.timestamps import handed_in_at
@@ -11,8 +10,8 @@ from autograder.grading.table.entries import SubmissionEntry, read_entries
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.entering.entry_records import Records
     from autograder.grading.entering.writer import Writer
     from autograder.grading.running.timings import Timings
     from autograder.grading.work import Work
@@ -23,7 +22,7 @@ class UpToDate:
 
     Args:
         directory: The class.
-        records: What was entered of each submission, and what its pages say.
+        store: Where it is noted what the pages say.
         writer: Gives the one who writes into the gradebook; called only where there is something to write.
         timings: Where it is counted how long that takes.
         problem: Told where a page could not be made.
@@ -33,7 +32,7 @@ class UpToDate:
     def __init__(
         self,
         directory: ClassDirectory,
-        records: Records,
+        store: ClassStore,
         writer: Callable[[], Writer],
         timings: Timings,
         problem: Callable[[str], None],
@@ -41,7 +40,7 @@ class UpToDate:
         feedback: bool,
     ) -> None:
         self._directory = directory
-        self._records = records
+        self._store = store
         self._writer = writer
         self._timings = timings
         self._problem = problem
@@ -75,12 +74,11 @@ class UpToDate:
         submission = work.submission
         if not self._feedback:
             return
-        record = self._records.get(submission)
-        if self._records.has_pages(submission, work.notebooks) and record and record.shown == entry.shown():
+        if work.shown == entry.shown() and self._directory.has_pages(submission, work.notebooks):
             return
         with self._timings.measure("feedback"):
             self._writer().write_feedback(submission)
-        if not self._records.has_pages(submission, work.notebooks):
+        if not self._directory.has_pages(submission, work.notebooks):
             self._problem(f"feedback for {submission.student}/{submission.assignment} could not be made")
-        elif record:
-            self._records.put(submission, replace(record, shown=entry.shown()))
+        else:
+            self._store.note_shown(submission, entry.shown())

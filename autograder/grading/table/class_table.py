@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from autograder.grading.classes.class_directory import ClassDirectory, Submission
+from autograder.grading.class_store import ClassStore
 from autograder.grading.collecting.outcomes import Waiting, WaitingList
-from autograder.grading.entering.entry_records import Records
 from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import read_released
 from autograder.grading.reporting.rows import DROPPED, EXCUSED, NO_EXERCISE, NOT_SUBMITTED, Row, total
@@ -18,6 +17,8 @@ from autograder.grading.table.what_counts import read_what_counts
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
+
+    from autograder.grading.classes.class_directory import ClassDirectory
 
 
 @dataclass(frozen=True)
@@ -99,20 +100,22 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
     Raises:
         GradingError: The class, its sources or its list of students cannot be used, or nobody is in such a section.
     """
-    fingerprints, records = Fingerprints(directory), Records(directory)
+    fingerprints = Fingerprints(directory)
+    with ClassStore(directory) as store:
+        entered = store.entered()
+        cells = read_released(directory, store, fingerprints).cells
     entries = read_entries(directory.gradebook_url)
     found = {(one.student, one.assignment): one for one in directory.submissions()[0]}
     judged: dict[tuple[str, str], tuple[Row, ...]] = {}
     stale = []
     for key in sorted({*found, *entries}):
         submission = found.get(key)
-        record = records.get(submission or Submission(*key, directory.path / "submitted" / key[0] / key[1]))
-        if record is not None:
-            judged[key] = record.rows
-        if submission is not None and (record is None or record.fingerprint != fingerprints.of(submission)):
+        known = entered.get(key)
+        if known is not None:
+            judged[key] = known.rows
+        if submission is not None and (known is None or known.fingerprint != fingerprints.of(submission)):
             stale.append("/".join(key))
     roster = read_roster(directory)
-    cells = read_released(directory, fingerprints).cells
     what_counts = read_what_counts(directory, cells)
     rows = true_rows(
         roster.names, cells, judged, entries, found, excused=roster.excused, what_counts=what_counts

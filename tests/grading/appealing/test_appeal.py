@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import sqlite3
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -19,8 +20,8 @@ from autograder import exercises
 from autograder.appeals import appeal_file
 from autograder.cli import cli
 from autograder.grading.appealing.appeal import write_appeal
+from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.entering.kept_evidence import EvidenceFolder
 from autograder.grading.errors import GradingError
 from autograder.grading.running import sandboxing, worker
 from autograder.judge.verdicts import keeping, reference, trial
@@ -52,8 +53,9 @@ def graded(tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyP
 
 
 def kept(tiny: TinyClass, student: str = "ada") -> dict[str, bytes]:
-    found = EvidenceFolder(ClassDirectory(tiny.path)).find(student, ID)
-    return found[2].checks if found else {}
+    with ClassStore(ClassDirectory(tiny.path)) as store:
+        found = store.evidence(student, ID)
+    return found.checks if found else {}
 
 
 def test_everything_about_the_check_is_in_the_file_and_it_is_judged_the_same(graded: TinyClass) -> None:
@@ -72,9 +74,9 @@ def test_everything_about_the_check_is_in_the_file_and_it_is_judged_the_same(gra
     assert "the same verdict" in done.output
 
 
-def test_the_journal_and_the_gradebook_have_no_evidence(graded: TinyClass) -> None:
-    (entry,) = (graded.path / ".autograder" / "journal").rglob("*.json")
-    assert json.loads(entry.read_bytes())["execution"]["evidence"] == {}
+def test_results_and_the_gradebook_have_no_evidence(graded: TinyClass) -> None:
+    with ClassStore(ClassDirectory(graded.path)) as store:
+        assert [result.evidence for result in store.results("ada", "lab_1_2").values()] == [{}]
     assert graded.scores("ada") == {"lab_1_2-talker": 10.0, "lab_1_2-listener": 7.0}
 
 
@@ -113,8 +115,8 @@ def test_damaged_evidence_is_named(graded: TinyClass, fake_engine: FakeEngine) -
     graded.grade(again=True)
     with pytest.raises(GradingError, match=r"is damaged .*--student ada --again"):
         write_appeal(graded.path, "ada", ID)
-    (file,) = (graded.path / ".autograder" / "evidence").rglob("*.msgpack")
-    file.write_bytes(file.read_bytes()[:100])
+    with contextlib.closing(sqlite3.connect(graded.path / ".autograder" / "class.db")) as book, book:
+        book.execute("UPDATE evidence SET checks = substr(checks, 1, length(checks) - 3)")
     with pytest.raises(GradingError, match=r"Nothing that a judge saw .*--student ada --again"):
         write_appeal(graded.path, "ada", ID)
 

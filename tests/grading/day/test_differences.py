@@ -11,6 +11,8 @@ from test_true_table import DUE, EARLY, LATE, shown, total
 
 from autograder.cli import cli
 from autograder.grading import batch
+from autograder.grading.class_store import ClassStore
+from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.rebuilding import task_making
 
 if TYPE_CHECKING:
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def files(tiny: TinyClass) -> dict[str, bytes]:
-    """What a run leaves, without the journal and the logs."""
+    """What a run leaves, without the store and the logs."""
     found: dict[str, bytes] = {}
     for name in ("autograded", "feedback", "submitted"):
         found |= {str(path): path.read_bytes() for path in (tiny.path / name).rglob("*") if path.is_file()}
@@ -94,7 +96,8 @@ def test_two_runs_can_be_compared_at_any_time(tiny: TinyClass, fake_engine: Fake
     last = CliRunner().invoke(cli, ["compare", str(tiny.path)]).output
     assert "1 difference" in last
     assert "ada  lab_1_2.listener  7 → 9" in last
-    names = sorted(path.stem for path in (tiny.path / ".autograder" / "runs").iterdir())
+    with ClassStore(ClassDirectory(tiny.path)) as store:
+        names = store.runs()
     assert len(names) == 3, "a run that changes nothing is not kept"
     whole = CliRunner().invoke(cli, ["compare", str(tiny.path), names[0], names[-1]]).output
     assert "ada  lab_1_2.talker  4 → 10 (wrong_text → no mistake)" in whole

@@ -20,8 +20,8 @@ from instructor import by_person
 from autograder import exercises
 from autograder.boxes.execution import Execution
 from autograder.cli import cli
+from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
-from autograder.grading.entering.kept_evidence import EvidenceFolder
 from autograder.grading.rebuilding.task_making import tasks_of
 from autograder.grading.running import sandboxing
 from autograder.judge.verdicts import keeping, reference, trial
@@ -58,7 +58,8 @@ def keep_evidence(tiny: TinyClass, student: str, exercise: str) -> None:
     (task,) = tasks_of(
         directory, Submission(student, "lab_1_2", tiny.path / "submitted" / student / "lab_1_2")
     )
-    EvidenceFolder(directory).keep(task, Execution((), evidence={exercise: packed}))
+    with ClassStore(directory) as store:
+        store.keep(task, Execution((), evidence={exercise: packed}))
 
 
 def pages() -> list[Path]:

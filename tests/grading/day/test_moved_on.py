@@ -57,7 +57,7 @@ def test_a_class_hears_of_a_task_that_was_changed(tiny: TinyClass, course: Path)
 
 def test_a_class_that_wrote_nothing_down_says_so_until_it_is_renewed(tiny: TinyClass, course: Path) -> None:
     tiny.submit("ada", 4, 7)
-    (tiny.path / ".autograder" / "masters.json").unlink()
+    (tiny.path / ".autograder" / "class.db").unlink()
     for words in said(tiny):
         assert "made before classes wrote down what their sources were made of" in words
         assert f"./course renew-class {tiny.path}" in words

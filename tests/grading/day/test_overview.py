@@ -14,8 +14,8 @@ from instructor import by_person
 from test_true_table import nbgraders_total
 
 from autograder.cli import cli
+from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.entering.final_results import Journal
 from autograder.grading.errors import GradingError
 from autograder.grading.overview import statistics as figures
 from autograder.grading.overview.overview_page import write_report
@@ -64,7 +64,7 @@ def test_the_figures_are_the_gradebooks(graded: TinyClass) -> None:
         (50, ("jose",)),
         (90, ("ada",)),
     ]
-    talker, listener = figures.items(table, Journal(graded.path / ".autograder" / "journal"))
+    talker, listener = figures.items(table, ClassStore(ClassDirectory(graded.path)))
     assert (talker.handed_in, talker.mean, talker.full, talker.none) == (4, 4.5, 1, 1)
     assert talker.discrimination == pytest.approx(7.5 / (59 * 90.75) ** 0.5)
     assert (listener.full, listener.none) == (2, 1)
@@ -80,7 +80,7 @@ def test_work_that_is_not_graded_yet_is_blank_and_in_no_figure(graded: TinyClass
     table = read_table(ClassDirectory(graded.path))
     assert sorted(figures.totals(table)) == [3, 6, 10, 20]
     assert not any("zoe" in band.students for band in figures.bands(table))
-    items = figures.items(table, Journal(graded.path / ".autograder" / "journal"))
+    items = figures.items(table, ClassStore(ClassDirectory(graded.path)))
     assert [item.handed_in for item in items] == [4, 4]
     page = BeautifulSoup(write_report(graded.path).read_text(), "html.parser")
     titled = page.find("h2", string="Who is where")
@@ -126,7 +126,8 @@ def test_two_assignments_with_cells_of_one_name_stay_apart(graded: TinyClass) ->
 
     for name in ("one", "two"):
         write_assignment(graded, name)
-    cells = read_released(ClassDirectory(graded.path), Fingerprints(ClassDirectory(graded.path))).cells
+    directory = ClassDirectory(graded.path)
+    cells = read_released(directory, ClassStore(directory), Fingerprints(directory)).cells
     assert [cell.exercise for cell in cells["one"]] == [cell.exercise for cell in cells["two"]]
     points = {"one": 2.0, "two": 1.0}
     found = [
@@ -134,7 +135,7 @@ def test_two_assignments_with_cells_of_one_name_stay_apart(graded: TinyClass) ->
         for assignment, score in points.items()
     ]
     table = ClassTable(tuple(found), read_table(ClassDirectory(graded.path)).roster, {})
-    items = figures.items(table, Journal(graded.path / ".autograder" / "journal"))
+    items = figures.items(table, ClassStore(ClassDirectory(graded.path)))
     assert [(one.exercise, one.mean, one.handed_in) for one in items] == [
         ("one.small", 2, 1),
         ("two.small", 1, 1),

@@ -1,0 +1,344 @@
+"""The store of a class: all that the grader itself knows of it, in one SQLite file beside nbgrader's gradebook.
+
+Each step is one transaction. It is on the disk when its method returns, or not there at all, whenever a run is killed
+or the power fails. The file has a rollback journal and no write-ahead log: that log needs memory which machines of a
+network cannot share, and a folder that can be written to even by those who only read. They read while a batch runs,
+which holds the file for the milliseconds of each step. That there is one batch at a time is the task of the lock
+(:mod:`autograder.grading.classes.class_lock`), a file of its own: the system frees it however a process ends, and a
+lock on this file for as long as a batch takes would keep readers out.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import sqlite3
+from dataclasses import replace
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any, Self, TypeVar
+
+import msgspec
+
+from autograder.boxes.execution import Execution
+from autograder.grading.class_records import Attempt, Entered, KeptEvidence, Origin
+from autograder.grading.errors import DiskFull, StoreTrouble, is_disk_full, said_by_database
+from autograder.grading.reporting.rows import Row
+from autograder.regular_files import name_as_text
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+
+    from autograder.grading.classes.class_directory import ClassDirectory, Submission
+    from autograder.grading.task import Task
+
+NAME = "class.db"
+_FORM = 1
+"""Goes up with each change of the tables; a file of another form is refused."""
+_TABLES = """
+-- What came of each notebook when it was executed last. Its task is the hash of all that the result depends on.
+CREATE TABLE IF NOT EXISTS result (
+    student TEXT, assignment TEXT, notebook TEXT, task TEXT NOT NULL, execution BLOB NOT NULL,
+    PRIMARY KEY (student, assignment, notebook)
+);
+-- What the judge saw of it, for appeals: its packed evidence by exercise, and the cells that were run.
+CREATE TABLE IF NOT EXISTS evidence (
+    student TEXT, assignment TEXT, notebook TEXT, task TEXT NOT NULL, course TEXT NOT NULL,
+    checks BLOB NOT NULL, cells BLOB NOT NULL,
+    PRIMARY KEY (student, assignment, notebook)
+);
+-- What stands in the gradebook, and what it was made of; see the class Entered.
+CREATE TABLE IF NOT EXISTS entered (
+    student TEXT, assignment TEXT, fingerprint TEXT NOT NULL, tasks BLOB NOT NULL, scores BLOB NOT NULL,
+    report BLOB NOT NULL, course TEXT NOT NULL, shown TEXT NOT NULL,
+    PRIMARY KEY (student, assignment)
+);
+-- Each time that a submission was graded and entered. Attempts are added, never changed and never removed.
+CREATE TABLE IF NOT EXISTS attempt (
+    number INTEGER PRIMARY KEY, student TEXT NOT NULL, at TEXT NOT NULL, assignment TEXT NOT NULL,
+    work TEXT NOT NULL, course TEXT NOT NULL, report BLOB NOT NULL
+);
+CREATE INDEX IF NOT EXISTS attempt_of ON attempt (student);
+CREATE TRIGGER IF NOT EXISTS not_removed BEFORE DELETE ON attempt BEGIN SELECT RAISE(ABORT, 'attempts stay'); END;
+CREATE TRIGGER IF NOT EXISTS not_changed BEFORE UPDATE ON attempt BEGIN SELECT RAISE(ABORT, 'attempts stay'); END;
+-- The table of the class after each of the last runs that changed it. The name is its time in UTC.
+CREATE TABLE IF NOT EXISTS run (name TEXT PRIMARY KEY, course TEXT NOT NULL, report BLOB NOT NULL);
+-- The master that each source of the class was made of; see the class Origin.
+CREATE TABLE IF NOT EXISTS origin (
+    assignment TEXT PRIMARY KEY, master TEXT NOT NULL, text TEXT NOT NULL, work TEXT NOT NULL
+);
+-- The cells with points in the sources, for as long as the sources have this fingerprint.
+CREATE TABLE IF NOT EXISTS graded_cells (fingerprint TEXT PRIMARY KEY, cells BLOB NOT NULL);
+"""
+_RUNS = 50
+"""Runs whose tables are kept."""
+_PATIENCE = 30.0
+"""Seconds for which a step waits until another program has done its own."""
+_Decoded = TypeVar("_Decoded")
+
+
+class ClassStore:
+    """What the grader knows of one class. A context manager, which closes the file.
+
+    The first step that writes makes the file. Where there is none every answer is empty, as for an unknown student. An
+    entry that cannot be decoded and can be made again counts as none.
+
+    Every method raises :class:`DiskFull` where there is no room, and :class:`StoreTrouble` where the file is damaged,
+    locked, read-only or of another form; what was there before stays.
+
+    Args:
+        directory: The class.
+    """
+
+    def __init__(self, directory: ClassDirectory) -> None:
+        self._class = directory.path
+        self._path = directory.state / NAME
+        self._connection: sqlite3.Connection | None = None
+        self._has_tables = False
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file. The next method that needs it opens it again."""
+        if self._connection is not None:
+            self._connection.close()
+            self._connection = None
+
+    # -- results of tasks
+
+    def keep(self, task: Task, execution: Execution) -> Execution:
+        """Keep a result and its evidence, in place of what is there of the same notebook; the result without evidence.
+
+        Where the grader itself had trouble nothing is kept and nothing is replaced: the next run tries again.
+        """
+        result = replace(execution, evidence={})
+        if execution.trouble:
+            return result
+        names = (task.student, task.assignment, task.notebook)
+        seen = KeptEvidence.of(task, execution)
+        with self._step() as book:
+            book.execute(
+                "REPLACE INTO result VALUES (?, ?, ?, ?, ?)", (*names, seen.task, msgspec.json.encode(result))
+            )
+            book.execute("DELETE FROM evidence WHERE (student, assignment, notebook) = (?, ?, ?)", names)
+            if seen.checks:
+                book.execute(
+                    "INSERT INTO evidence VALUES (?, ?, ?, ?, ?, ?, ?)",
+                    (*names, seen.task, seen.course, msgspec.msgpack.encode(seen.checks), seen.cells),
+                )
+        return result
+
+    def results(self, student: str, assignment: str) -> dict[str, Execution]:
+        """The last results of a submission by task, in the order of the notebooks; it may have changed since."""
+        rows = self._rows(
+            "SELECT task, execution FROM result WHERE (student, assignment) = (?, ?) ORDER BY notebook",
+            student,
+            assignment,
+        )
+        found = {task: _decoded(execution, Execution) for task, execution in rows}
+        return {task: execution for task, execution in found.items() if execution is not None}
+
+    def forget_results(self, submissions: Iterable[Submission]) -> None:
+        """Drop the results of submissions, which are then executed anew. Their evidence stays until there is other."""
+        with self._step() as book:
+            names = ((one.student, one.assignment) for one in submissions)
+            book.executemany("DELETE FROM result WHERE (student, assignment) = (?, ?)", names)
+
+    def evidence(self, student: str, exercise: str) -> KeptEvidence | None:
+        """What the judge saw of a student in an exercise last; None where nothing of it is kept."""
+        for assignment, notebook, task, course, checks, cells in self._rows(
+            "SELECT assignment, notebook, task, course, checks, cells FROM evidence WHERE student = ?"
+            " ORDER BY assignment, notebook",
+            student,
+        ):
+            found = _decoded(checks, dict[str, bytes], msgspec.msgpack.decode)
+            if found is not None and exercise in found:
+                return KeptEvidence(assignment, notebook, task, course, found, cells)
+        return None
+
+    # -- what stands in the gradebook
+
+    def enter(self, submission: Submission, attempt: Attempt, entered: Entered | None) -> None:
+        """Note an attempt, and what stands in the gradebook now; None where that is to be tried again."""
+        names = (submission.student, submission.assignment)
+        with self._step() as book:
+            book.execute(
+                "INSERT INTO attempt (student, at, assignment, work, course, report) VALUES (?, ?, ?, ?, ?, ?)",
+                (
+                    submission.student,
+                    attempt.at.isoformat(),
+                    attempt.assignment,
+                    attempt.work,
+                    attempt.course,
+                    msgspec.json.encode(attempt.rows),
+                ),
+            )
+            if entered is not None:
+                book.execute(
+                    "REPLACE INTO entered VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
+                    (
+                        *names,
+                        entered.fingerprint,
+                        *map(msgspec.json.encode, (entered.tasks, entered.scores, entered.rows)),
+                        entered.course,
+                        entered.shown,
+                    ),
+                )
+
+    def note_fingerprint(self, submission: Submission, fingerprint: str) -> None:
+        """Note that what was entered is right for other bytes, too."""
+        self._note(submission, "fingerprint", fingerprint)
+
+    def note_shown(self, submission: Submission, shown: str) -> None:
+        """Note what the gradebook said when the pages of a submission were made."""
+        self._note(submission, "shown", shown)
+
+    def forget_entered(self, submissions: Iterable[Submission]) -> None:
+        """From now on nothing is known of what the gradebook has of these submissions."""
+        with self._step() as book:
+            names = ((one.student, one.assignment) for one in submissions)
+            book.executemany("DELETE FROM entered WHERE (student, assignment) = (?, ?)", names)
+
+    def entered(self) -> dict[tuple[str, str], Entered]:
+        """What was entered of all submissions, by student and assignment."""
+        found = {}
+        for student, assignment, fingerprint, *blobs, course, shown in self._rows("SELECT * FROM entered"):
+            tasks = _decoded(blobs[0], dict[str, str])
+            scores = _decoded(blobs[1], dict[str, dict[str, float]])
+            rows = _decoded(blobs[2], tuple[Row, ...])
+            if tasks is not None and scores is not None and rows is not None:
+                found[student, assignment] = Entered(fingerprint, tasks, scores, rows, course, shown)
+        return found
+
+    def attempts(self, student: str) -> list[Attempt]:
+        """All times that a student was graded, the first one first."""
+        found = []
+        for at, assignment, work, course, report in self._rows(
+            "SELECT at, assignment, work, course, report FROM attempt WHERE student = ? ORDER BY number",
+            student,
+        ):
+            rows = _decoded(report, tuple[Row, ...])
+            if rows is not None:
+                found.append(Attempt(datetime.fromisoformat(at), assignment, work, course, rows))
+        return found
+
+    # -- runs
+
+    def keep_run(self, course: str, rows: Sequence[Row]) -> None:
+        """Keep the table of a run if it is another one than the last; the oldest are dropped."""
+        report = msgspec.json.encode(rows)
+        if self._rows("SELECT course, report FROM run ORDER BY name DESC LIMIT 1") == [(course, report)]:
+            return
+        with self._step() as book:
+            now = f"{datetime.now(tz=UTC):%Y-%m-%dT%H-%M-%S.%f}"
+            book.execute("INSERT INTO run VALUES (?, ?, ?)", (now, course, report))
+            book.execute(
+                "DELETE FROM run WHERE name NOT IN (SELECT name FROM run ORDER BY name DESC LIMIT ?)",
+                (_RUNS,),
+            )
+
+    def runs(self) -> list[str]:
+        """The names of the runs, the oldest first."""
+        return [name for (name,) in self._rows("SELECT name FROM run ORDER BY name")]
+
+    def run(self, name: str) -> tuple[Row, ...] | None:
+        """The table of a run; None where there is none of that name."""
+        rows = self._rows("SELECT report FROM run WHERE name = ?", name)
+        return _decoded(rows[0][0], tuple[Row, ...]) if rows else None
+
+    # -- sources
+
+    def note_origins(self, origins: Mapping[str, Origin]) -> None:
+        """Note what the sources of assignments were just made of."""
+        with self._step() as book:
+            book.executemany(
+                "REPLACE INTO origin VALUES (?, ?, ?, ?)",
+                [(name, one.master, one.text, one.work) for name, one in origins.items()],
+            )
+
+    def origins(self) -> dict[str, Origin]:
+        """What the sources were made of, by assignment; empty where nobody noted it."""
+        return {name: Origin(*fields) for name, *fields in self._rows("SELECT * FROM origin")}
+
+    def keep_graded_cells(self, fingerprint: str, cells: bytes) -> None:
+        """Keep what was read from the sources of these bytes, in place of what was read from others."""
+        with self._step() as book:
+            book.execute("DELETE FROM graded_cells")
+            book.execute("INSERT INTO graded_cells VALUES (?, ?)", (fingerprint, cells))
+
+    def graded_cells(self, fingerprint: str) -> bytes:
+        """What was read from the sources of these bytes; empty where that is not known."""
+        rows = self._rows("SELECT cells FROM graded_cells WHERE fingerprint = ?", fingerprint)
+        return rows[0][0] if rows else b""
+
+    # -- the file
+
+    def _note(self, submission: Submission, column: str, value: str) -> None:
+        with self._step() as book:
+            book.execute(
+                f"UPDATE entered SET {column} = ? WHERE (student, assignment) = (?, ?)",
+                (value, submission.student, submission.assignment),
+            )
+
+    def _rows(self, question: str, *names: str) -> list[tuple[Any, ...]]:
+        with self._said_clearly():
+            if self._connection is None and not self._path.exists():
+                return []
+            book = self._opened(may_make=False)
+            if not self._has_tables:
+                return []  # whoever made it was killed before the first step was done
+            return book.execute(question, [name_as_text(name) for name in names]).fetchall()
+
+    @contextlib.contextmanager
+    def _step(self) -> Iterator[sqlite3.Connection]:
+        """One transaction."""
+        with self._said_clearly():
+            book = self._opened(may_make=True)
+            book.execute("BEGIN IMMEDIATE")
+            yield book
+            book.execute("COMMIT")
+
+    def _opened(self, *, may_make: bool) -> sqlite3.Connection:
+        if self._connection is None:
+            # Open for writing also where only questions follow, so that a step that was killed in its middle is put
+            # back first. SQLite opens a file that may not be written to for reading.
+            address = f"{self._path.as_uri()}?mode={'rwc' if may_make else 'rw'}"
+            self._connection = sqlite3.connect(address, _PATIENCE, isolation_level=None, uri=True)
+            self._connection.execute("PRAGMA journal_mode = TRUNCATE")
+            self._connection.execute("PRAGMA synchronous = FULL")
+            self._has_tables = False
+        if not self._has_tables:
+            (form,) = self._connection.execute("PRAGMA user_version").fetchone()
+            if form not in (0, _FORM):
+                raise StoreTrouble(self._path, f"it has the form {form}, and this course knows {_FORM}")
+            if may_make and not form:
+                make = f"BEGIN IMMEDIATE; {_TABLES} PRAGMA user_version = {_FORM}; COMMIT;"
+                self._connection.executescript(make)
+            self._has_tables = may_make or form == _FORM
+        return self._connection
+
+    @contextlib.contextmanager
+    def _said_clearly(self) -> Iterator[None]:
+        """End what was begun where it fails, and say in an instructor's words what the database says."""
+        try:
+            yield
+        except BaseException as error:
+            self.close()  # which rolls back
+            if is_disk_full(error):
+                raise DiskFull(self._class) from error
+            if isinstance(error, sqlite3.Error):
+                raise StoreTrouble(self._path, said_by_database(error)) from error
+            raise
+
+
+def _decoded(
+    data: bytes, form: type[_Decoded], decode: Callable[..., Any] = msgspec.json.decode
+) -> _Decoded | None:
+    """What was kept; None where it is damaged."""
+    try:
+        found: _Decoded = decode(data, type=form)
+    except msgspec.MsgspecError:
+        return None
+    return found

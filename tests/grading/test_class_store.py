@@ -1,0 +1,473 @@
+"""The store of a class: nothing is lost, nothing is there by half, nobody's names touch another's."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import random
+import signal
+import sqlite3
+import subprocess
+import time
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+from click.testing import CliRunner
+from conftest import TALKER, FakeEngine, TinyClass
+
+from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution
+from autograder.boxes.limits import Limits
+from autograder.cli import cli
+from autograder.grading import class_store
+from autograder.grading.class_records import Attempt, Entered, Origin
+from autograder.grading.class_store import ClassStore
+from autograder.grading.classes.class_directory import ClassDirectory, Submission
+from autograder.grading.errors import DiskFull, StoreTrouble
+from autograder.grading.reporting.rows import Row
+from autograder.grading.task import Task
+from autograder.verdict import State, Verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+CHECK = Check("lab.one", "One", points=10, worth=4, limit=2)
+CELLS = (Cell("1", own=True), Cell("check()", check=CHECK, name="lab-one"))
+TASK = Task("ada", "lab", "lab", CELLS, "seed", "v1")
+DONE = Execution(
+    (CellRun(Ended.DONE, ({"output_type": "stream", "name": "stdout", "text": "ü"},)),),
+    {1: Verdict("lab.one", "One", State.FAILED, 5, 10)},
+)
+ROWS = (Row("ada", "lab", "lab.one", 2, 4, "failed"),)
+AT = datetime(2026, 1, 2, tzinfo=UTC)
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[ClassStore]:
+    """The store of an empty class."""
+    (tmp_path / "class" / "source").mkdir(parents=True)
+    (tmp_path / "class" / ".autograder").mkdir()
+    (tmp_path / "class" / "nbgrader_config.py").touch()
+    with ClassStore(ClassDirectory(tmp_path / "class")) as made:
+        yield made
+
+
+def submission(student: str = "ada", assignment: str = "lab") -> Submission:
+    return Submission(student, assignment, Path("submitted", student, assignment))
+
+
+def entered(student: str = "ada", assignment: str = "lab") -> Entered:
+    rows = (Row(student, assignment, "lab.one", 2, 4, "failed"),)
+    return Entered(f"of {student}", {"lab": "key"}, {"lab": {"lab-one": 2.0}}, rows, "v1")
+
+
+def attempt(number: int = 0, assignment: str = "lab") -> Attempt:
+    return Attempt(AT, assignment, f"work {number}", "v1", ROWS)
+
+
+def change(store: ClassStore, statement: str) -> None:
+    """What another program does to the file."""
+    with contextlib.closing(sqlite3.connect(file_of(store))) as book, book:
+        book.execute(statement)
+
+
+def file_of(store: ClassStore) -> Path:
+    return store._path
+
+
+# -- what is kept comes back
+
+
+def test_an_unknown_class_has_an_empty_answer_to_everything_and_no_file(store: ClassStore) -> None:
+    assert (store.results("ada", "lab"), store.entered(), store.attempts("ada"), store.runs()) == (
+        {},
+        {},
+        [],
+        [],
+    )
+    assert (store.evidence("ada", "lab.one"), store.origins(), store.graded_cells("x")) == (None, {}, b"")
+    assert store.run("yesterday") is None
+    assert not file_of(store).exists()
+    file_of(store).touch()  # whoever made it was killed before the first step was done
+    assert store.entered() == {}
+    store.note_origins({"lab": Origin("lab.md", "text", "work")})
+    assert store.origins() == {"lab": Origin("lab.md", "text", "work")}
+
+
+def test_a_result_belongs_to_the_very_task(store: ClassStore) -> None:
+    store.keep(TASK, DONE)
+    assert store.results("ada", "lab") == {TASK.key(): DONE}
+    for changed in (
+        replace(TASK, cells=(*TASK.cells, Cell("2"))),
+        replace(TASK, seed="other"),
+        replace(TASK, course="v2"),
+        replace(TASK, limits=Limits(cell_seconds=1)),
+        replace(TASK, files={"a": b"b"}),
+    ):
+        assert changed.key() not in store.results("ada", "lab")
+    other = replace(TASK, seed="other")
+    store.keep(other, DONE)
+    assert list(store.results("ada", "lab")) == [other.key()], "one of each notebook"
+
+
+def test_evidence_comes_and_goes_with_its_result_and_is_no_part_of_it(store: ClassStore) -> None:
+    assert store.keep(TASK, replace(DONE, evidence={"lab.one": b"seen"})) == DONE
+    store.keep(TASK, replace(DONE, evidence={"lab.one": b"half"}, trouble="the judge is gone"))
+    kept = store.evidence("ada", "lab.one")
+    assert kept is not None
+    assert (kept.assignment, kept.notebook, kept.task, kept.checks) == (
+        "lab",
+        "lab",
+        TASK.key(),
+        {"lab.one": b"seen"},
+    )
+    assert [(cell.text, cell.checks) for cell in kept.run_cells()] == [("1", ""), ("", "lab.one")]
+    assert store.results("ada", "lab") == {TASK.key(): DONE}
+    assert store.evidence("ada", "lab.two") is None
+    store.forget_results([submission()])
+    assert (store.results("ada", "lab"), store.evidence("ada", "lab.one")) == ({}, kept)
+    store.keep(TASK, DONE)
+    assert store.evidence("ada", "lab.one") is None
+
+
+def test_trouble_of_the_grader_is_not_kept(store: ClassStore) -> None:
+    store.keep(TASK, replace(DONE, trouble="no domain was free"))
+    assert store.results("ada", "lab") == {}
+
+
+def test_what_was_entered_is_known_with_its_attempt_until_it_is_taken_back(store: ClassStore) -> None:
+    store.enter(submission(), attempt(1), entered())
+    store.enter(submission(), attempt(2), None)  # to be tried again
+    assert store.entered() == {("ada", "lab"): entered()}
+    store.note_fingerprint(submission(), "other bytes")
+    store.note_shown(submission(), "pages")
+    noted = replace(entered(), fingerprint="other bytes", shown="pages")
+    assert store.entered() == {("ada", "lab"): noted}
+    store.enter(submission(), attempt(3), entered())
+    assert store.entered()["ada", "lab"].shown == "", "its pages say something else"
+    store.forget_entered([submission()])
+    store.note_shown(submission(), "pages")
+    assert (store.entered(), store.attempts("ada")) == ({}, [attempt(1), attempt(2), attempt(3)])
+
+
+def test_attempts_are_added_and_neither_changed_nor_removed(store: ClassStore) -> None:
+    store.enter(submission(), attempt(), None)
+    for statement in ("DELETE FROM attempt", "UPDATE attempt SET work = 'other'"):
+        with pytest.raises(sqlite3.IntegrityError, match="attempts stay"):
+            change(store, statement)
+    assert store.attempts("ada") == [attempt()]
+
+
+def test_the_last_runs_are_kept_and_none_twice(store: ClassStore) -> None:
+    for number in range(class_store._RUNS + 3):
+        for _ in "ab":
+            store.keep_run("v1", [replace(ROWS[0], score=number)])
+    names = store.runs()
+    assert (len(names), names) == (class_store._RUNS, sorted(names))
+    assert store.run(names[-1]) == (replace(ROWS[0], score=class_store._RUNS + 2),)
+    assert store.run(names[0]) == (replace(ROWS[0], score=3),)
+    store.keep_run("v2", [replace(ROWS[0], score=class_store._RUNS + 2)])
+    assert store.runs()[-1] > names[-1], "of another version of the course it is another table"
+
+
+def test_read_cells_are_those_of_the_present_sources(store: ClassStore) -> None:
+    store.keep_graded_cells("one", b"cells")
+    store.keep_graded_cells("two", b"others")
+    assert (store.graded_cells("one"), store.graded_cells("two")) == (b"", b"others")
+
+
+# -- names
+
+ODD: tuple[str, ...] = (
+    "ada",
+    "Ada",
+    "ADA",
+    "ada ",
+    "ada@lab",
+    "lab@ada",
+    "lab@ada@lab",
+    "a/da",
+    "../ada",
+    "ada.json",
+    "%",
+    "_",
+)
+ODD += (
+    "*",
+    "'",
+    "ada' OR '1'='1",
+    'ada" --',
+    "e\u0301",
+    "\u00e9",
+    "\u00e9\u200b",
+    "ﬁ",
+    "fi",
+    "Straße",
+    "STRASSE",
+)
+ODD += ("0", "00", "0.0")
+
+
+def test_no_name_touches_the_rows_of_another(store: ClassStore) -> None:
+    pairs = [(student, assignment) for student in ODD for assignment in ("lab", "Lab", "lab@ada")]
+    tasks = {}
+    for number, (student, assignment) in enumerate(pairs):
+        tasks[student, assignment] = replace(TASK, student=student, assignment=assignment)
+        exercise = f"{assignment}.one"
+        store.keep(tasks[student, assignment], replace(DONE, evidence={exercise: f"{number}".encode()}))
+        store.enter(
+            submission(student, assignment), attempt(number, assignment), entered(student, assignment)
+        )
+    gone = submission("ada", "lab")
+    store.forget_entered([gone])
+    store.forget_results([gone])
+    store.note_shown(submission("Ada", "lab"), "pages")
+    assert store.entered().keys() == set(pairs) - {("ada", "lab")}
+    assert [key for key, one in store.entered().items() if one.shown] == [("Ada", "lab")]
+    for number, (student, assignment) in enumerate(pairs):
+        task = tasks[student, assignment]
+        assert list(store.results(student, assignment)) == ([] if number == 0 else [task.key()])
+        seen = store.evidence(student, f"{assignment}.one")
+        assert seen is not None
+        assert (seen.task, seen.checks) == (task.key(), {f"{assignment}.one": f"{number}".encode()})
+        own = [one.work for one in store.attempts(student) if one.assignment == assignment]
+        assert own == [f"work {number}"]
+    assert store.attempts("\udcff") == store.attempts("") == []
+
+
+# -- damage
+
+
+@pytest.mark.parametrize("column", ["execution", "task"])
+def test_a_damaged_result_counts_as_none_and_the_others_stay(store: ClassStore, column: str) -> None:
+    two = replace(TASK, notebook="two")
+    for task in (TASK, two):
+        store.keep(task, DONE)
+    change(store, f"UPDATE result SET {column} = substr({column}, 1, 10) WHERE notebook = 'lab'")
+    assert store.results("ada", "lab").get(TASK.key()) is None
+    assert store.results("ada", "lab")[two.key()] == DONE
+
+
+@pytest.mark.parametrize("column", ["tasks", "scores", "report"])
+def test_a_damaged_entry_counts_as_none_and_the_others_stay(store: ClassStore, column: str) -> None:
+    for student in ("ada", "ben"):
+        store.enter(submission(student), attempt(), entered(student))
+    change(store, f"UPDATE entered SET {column} = 'x' WHERE student = 'ada'")
+    assert store.entered() == {("ben", "lab"): entered("ben")}
+
+
+@pytest.mark.parametrize(
+    "damage", ["other bytes", "a page of other bytes", "the end is missing", "of another form"]
+)
+def test_a_damaged_file_is_named_and_costs_nobody_points(
+    tiny: TinyClass, fake_engine: FakeEngine, damage: str
+) -> None:
+    tiny.submit("ada", 4)
+    tiny.grade()
+    file = tiny.path / ".autograder" / "class.db"
+    good = file.read_bytes()
+    page = int.from_bytes(good[16:18], "big")
+    if damage == "other bytes":
+        file.write_bytes(b"no more" * 1000)
+    elif damage == "a page of other bytes":
+        file.write_bytes(good[:page] + b"\xff" * (len(good) - page))
+    elif damage == "the end is missing":
+        file.write_bytes(good[: len(good) // 2])
+    else:
+        with contextlib.closing(sqlite3.connect(file)) as book:
+            book.execute("PRAGMA user_version = 99")
+    advice = r"class\.db, which holds what was graded, cannot be read or written .*Put back a copy of it.*rename it"
+    with pytest.raises(StoreTrouble, match=advice):
+        tiny.grade()
+    for words in (
+        ["attempts", str(tiny.path), "ada"],
+        ["compare", str(tiny.path)],
+        ["report", str(tiny.path)],
+    ):
+        said = CliRunner().invoke(cli, words)
+        assert (said.exit_code, "Put back a copy of it" in said.output) == (2, True), said.output
+    assert tiny.scores("ada")[TALKER] == 4
+    file.rename(file.with_suffix(".old"))
+    fake_engine.ran.clear()
+    assert tiny.grade().exit_code == 0
+    assert (fake_engine.ran, tiny.scores("ada")[TALKER]) == (["ada"], 4)
+
+
+# -- killed
+
+
+def in_a_process(work: object) -> int:
+    """Fork; the child's id. It does its work and never comes back."""
+    child = os.fork()
+    if child == 0:
+        try:
+            work()  # type: ignore[operator]
+        finally:
+            os._exit(0)
+    return child
+
+
+def test_a_step_that_was_killed_in_its_middle_was_never_begun(store: ClassStore) -> None:
+    """Also where pages of it are in the file already."""
+    store.enter(submission(), attempt(), entered())
+    store.close()
+
+    def die() -> None:
+        with store._step() as book:
+            book.execute("PRAGMA cache_size = 1")
+            for number in range(200):
+                book.execute(
+                    "INSERT INTO result VALUES (?, 'lab', 'lab', 'key', ?)", (f"{number}", bytes(9000))
+                )
+            book.execute("DELETE FROM entered")
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    os.waitpid(in_a_process(die), 0)
+    assert file_of(store).with_name("class.db-journal").stat().st_size > 0
+    assert file_of(store).stat().st_size > 1_000_000, "it was in its middle"
+    assert store.entered() == {("ada", "lab"): entered()}
+    assert store.results("0", "lab") == {}
+
+
+def test_whenever_it_is_killed_all_that_was_said_to_be_kept_is_there(store: ClassStore) -> None:
+    chance = random.Random(4)
+    store.enter(submission(), attempt(), entered())
+    store.close()
+    done = 1
+    for _ in range(15):
+        read, write = os.pipe()
+
+        def work(write: int = write, done: int = done) -> None:
+            for number in range(done, 10_000):
+                store.enter(submission(), attempt(number), replace(entered(), fingerprint=f"{number}"))
+                os.write(write, b".")
+
+        child = in_a_process(work)
+        os.close(write)
+        said = os.read(read, 1)
+        time.sleep(chance.uniform(0, 0.05))
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+        while more := os.read(read, 100_000):
+            said += more
+        os.close(read)
+        with contextlib.closing(sqlite3.connect(file_of(store))) as book:
+            assert book.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+        kept = len(store.attempts("ada"))
+        assert kept - done in (len(said), len(said) + 1)
+        assert store.entered()["ada", "lab"].fingerprint == f"{kept - 1}", "both of a step, or none"
+        store.close()
+        done = kept
+
+
+def test_a_step_is_on_the_disk_before_it_is_said_to_be_done(store: ClassStore) -> None:
+    store.note_origins({})
+    assert store._connection is not None
+    asked = [
+        store._connection.execute(f"PRAGMA {name}").fetchone()[0] for name in ("synchronous", "journal_mode")
+    ]
+    assert asked == [2, "truncate"]
+
+
+# -- others at the same time
+
+
+def test_who_reads_reads_while_a_batch_runs(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    for student in ("ada", "ben"):
+        tiny.submit(student, 4)
+    fake_engine.evidence["lab_1_2.talker"] = b"seen"
+    tiny.grade()
+    tiny.submit("ben", 7)
+    tiny.grade()
+    tiny.submit("ben", 9)
+    said: list[str] = []
+
+    def ask(_: object) -> None:
+        for words in (("attempts", "ada"), ("compare",), ("report",), ("appeal", "ada", "lab_1_2.talker")):
+            done = CliRunner().invoke(cli, [words[0], str(tiny.path), *words[1:]])
+            said.append(f"{words[0]} {done.exit_code} {done.output}")
+
+    fake_engine.before = ask
+    tiny.grade()
+    assert [one.split()[:2] for one in said] == [
+        ["attempts", "0"],
+        ["compare", "0"],
+        ["report", "0"],
+        ["appeal", "2"],
+    ]
+    assert "is damaged" in said[-1], "the evidence of this test is none, and was found"
+
+
+def test_who_reads_waits_for_no_step_that_has_not_come_to_its_end(store: ClassStore) -> None:
+    store.enter(submission(), attempt(), entered())
+    with contextlib.closing(sqlite3.connect(file_of(store), isolation_level=None)) as other:
+        other.execute("BEGIN IMMEDIATE")
+        other.execute("DELETE FROM entered")
+        assert store.entered() == {("ada", "lab"): entered()}
+        other.execute("ROLLBACK")
+
+
+def test_a_store_that_another_program_holds(store: ClassStore, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(class_store, "_PATIENCE", 0.1)
+    store.enter(submission(), attempt(), entered())
+    store.close()
+    with contextlib.closing(sqlite3.connect(file_of(store), isolation_level=None)) as other:
+        other.execute("BEGIN EXCLUSIVE")
+        for ask in (store.entered, lambda: store.forget_entered([submission()])):
+            with pytest.raises(StoreTrouble, match=r"locked.*Another program has it open"):
+                ask()
+        other.execute("ROLLBACK")
+    assert store.entered() == {("ada", "lab"): entered()}
+
+
+# -- the disk
+
+
+@contextlib.contextmanager
+def mounted(folder: Path, *options: str) -> Iterator[None]:
+    if subprocess.run(["mount", *options, str(folder)], capture_output=True, check=False).returncode:
+        pytest.skip("only root can mount")
+    try:
+        yield
+    finally:
+        subprocess.run(["umount", "--lazy", str(folder)], check=True)
+
+
+def test_a_full_disk_is_said_and_loses_nothing(store: ClassStore) -> None:
+    large = replace(DONE, evidence={"lab.one": os.urandom(20_000)})
+    tasks = [replace(TASK, notebook=f"{number}") for number in range(50)]
+    with mounted(file_of(store).parent, "-t", "tmpfs", "-o", "size=400k", "tmpfs"):
+        filler = file_of(store).with_name("filler")
+        filler.write_bytes(bytes(100_000))
+        store.enter(submission(), attempt(), entered())
+        with pytest.raises(DiskFull, match="Free some room"):
+            [store.keep(task, large) for task in tasks]
+        kept = len(store.results("ada", "lab"))
+        with pytest.raises(DiskFull):
+            store.keep(tasks[kept], large)
+        assert store.results("ada", "lab").keys() == {task.key() for task in tasks[:kept]}
+        assert (store.entered(), store.attempts("ada")) == ({("ada", "lab"): entered()}, [attempt()])
+        filler.unlink()
+        store.keep(tasks[kept], large)
+        assert kept
+        assert len(store.results("ada", "lab")) == kept + 1
+        store.close()
+
+
+def test_a_class_that_may_only_be_read_is_read(
+    tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path
+) -> None:
+    for points in (4, 7):
+        tiny.submit("ada", points)
+        tiny.grade()
+    with mounted(tiny.path, "--bind", str(tiny.path)):
+        subprocess.run(["mount", "-o", "remount,bind,ro", str(tiny.path)], check=True)
+        page = str(tmp_path / "report.html")
+        for words in (("attempts", "ada"), ("compare",), ("report", "--output", page)):
+            done = CliRunner().invoke(cli, [words[0], str(tiny.path), *words[1:]])
+            assert done.exit_code == 0, done.output
+        store = ClassStore(ClassDirectory(tiny.path))
+        with pytest.raises(StoreTrouble, match=r"readonly.*Look at its owner"):
+            store.forget_entered([submission()])
