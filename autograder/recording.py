@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from autograder import course, exercises
 from autograder.judge.serving.process import JudgeDied, JudgeProcess
-from autograder.masters.reference_solution import reference_source
+from autograder.masters.solutions import reference_source
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -6,9 +6,8 @@ import itertools
 import re
 from typing import TYPE_CHECKING
 
-from autograder.masters.copies import COPY
-from autograder.masters.parsing import CellRole, parse_master
-from autograder.masters.regions import find_region
+from autograder.masters.code_cells import find_region
+from autograder.masters.parsing import COPY, CellRole, parse_master
 from autograder.masters.source import named_cells
 
 if TYPE_CHECKING:

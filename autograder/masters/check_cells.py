@@ -7,9 +7,9 @@ import difflib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from autograder import exercises
 from autograder.masters.layout import lab_name
 from autograder.masters.master_errors import MasterError
-from autograder.masters.naming import grade_id_of_exercise
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -55,7 +55,7 @@ def read_check(master: Path, cell: Cell) -> CheckCall:
             f"The exercise '{exercise}' does not belong to this notebook.",
             f"Exercises of this master begin with '{lab_name(master)}.'.",
         )
-    expected = grade_id_of_exercise(exercise)
+    expected = exercises.grade_id(exercise)
     if cell.grade_id is not None and cell.grade_id != expected:
         raise MasterError(
             master,
@@ -93,9 +93,6 @@ def exercise_points(check: CheckCall) -> float:
     Raises:
         MasterError: There is no such exercise, it is broken, or it is worth nothing.
     """
-    # Imported late: building a notebook for a test with its own points needs no exercises.
-    from autograder import exercises
-
     try:
         points = float(exercises.get(check.exercise).points)
     except exercises.UnknownExercise as error:

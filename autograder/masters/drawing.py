@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 import numpy
 
 from autograder.course import SOLUTIONS
-from autograder.masters.figures import SIGNATURE, chunk, digest, signed
 from autograder.masters.layout import find_root
 from autograder.masters.master_errors import MasterError
+from autograder.masters.text_cells import KEYWORD, digest
 from environment.system_packages import CHROMIUM_NAMES, find_program
 
 if TYPE_CHECKING:
@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
 SCALE = 1.5
 """Pixels for each unit of a drawing: sharp on most screens, and no wider than a wide notebook."""
+SIGNATURE = b"\x89PNG\r\n\x1a\n"
+"""The first bytes of a PNG."""
+_HEADER_LENGTH = len(SIGNATURE) + 8 + 13 + 4
 COLOURS = 256
 _PIXELS = """async png => {
     const picture = await createImageBitmap(await (await fetch("data:image/png;base64," + png)).blob());
@@ -98,6 +101,22 @@ def _with_few_colours(page: Page, png: bytes) -> bytes:
             chunk(b"IEND", b""),
         )
     )
+
+
+def signed(png: bytes, svg: bytes) -> bytes:
+    """A PNG that says from which SVG it was drawn, in a text chunk behind its header.
+
+    Args:
+        png: The picture.
+        svg: What it was drawn from.
+    """
+    mark = chunk(b"tEXt", KEYWORD + b"\0" + digest(svg))
+    return png[:_HEADER_LENGTH] + mark + png[_HEADER_LENGTH:]
+
+
+def chunk(kind: bytes, content: bytes) -> bytes:
+    """A part of a PNG file: its length, its kind, what is in it, and its checksum."""
+    return len(content).to_bytes(4) + kind + content + zlib.crc32(kind + content).to_bytes(4)
 
 
 def main() -> int:

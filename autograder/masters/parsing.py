@@ -1,17 +1,28 @@
-"""A master's text as a list of cells with their kinds and line numbers."""
+"""A master's text as a list of cells with their kinds and line numbers.
+
+A program of a package repeats what the student wrote in the cells above. A master says so instead of repeating it, so
+that the two cannot differ::
+
+    ### BEGIN SOLUTION
+    # TODO: copy your class TalkerNode here.
+    ### COPY TalkerNode
+    ### END SOLUTION
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import ast
+import re
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
 from jupytext.myst import MystMetadataParsingError, myst_to_notebook
 from nbformat import ValidationError
 
-from autograder.masters.figures import attach_figures
-from autograder.masters.hints import nest_hints
+from autograder.masters.code_cells import find_region, has_magic
 from autograder.masters.master_errors import CellError, MasterError
+from autograder.masters.text_cells import attach_figures, nest_hints
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -46,6 +57,7 @@ class CellRole(StrEnum):
 
 
 TAGS = {kind.value: kind for kind in CellRole if kind not in (CellRole.TEXT, CellRole.MANUAL)}
+COPY = re.compile(r"^### COPY (?P<names>\w+(?: \w+)*)$", re.MULTILINE)
 OPTIONS = {"tags", "grade_id"}
 MANUAL_FORM = '+++ {"tags": ["manual"], "points": 5, "grade_id": "some_name"}'
 """The line above a question that a person grades."""
@@ -165,3 +177,59 @@ def _body_line(source: str, place: int, lines: list[str]) -> int:
         if lines[number].strip() == first.strip():
             return number + 1
     return place
+
+
+def with_copies(master: Path, cells: list[Cell]) -> list[Cell]:
+    """The cells, with what is copied in the place of the lines that say so.
+
+    Args:
+        master: Where the cells come from.
+        cells: As they were parsed.
+
+    Raises:
+        MasterError: What is to be copied is not defined above.
+    """
+    defined: dict[str, str] = {}
+    result = []
+    for cell in cells:
+        if cell.kind not in (CellRole.TEXT, CellRole.MANUAL) and COPY.search(cell.source):
+            cell = _copied(master, cell, defined)
+        elif cell.kind in (CellRole.SOLUTION, CellRole.GIVEN) and not has_magic(cell.source):
+            defined |= _definitions(cell)
+        result.append(cell)
+    return result
+
+
+def _copied(master: Path, cell: Cell, defined: dict[str, str]) -> Cell:
+    def copy(line: re.Match[str]) -> str:
+        names = line["names"].split()
+        for name in names:
+            if name not in defined:
+                number = cell.body_line + cell.source.count("\n", 0, line.start())
+                remedy = f"Defined so far: {', '.join(defined) or 'nothing'}."
+                raise MasterError(
+                    master, number, f"'{name}' is to be copied and is not defined above.", remedy
+                )
+        return "\n\n\n".join(defined[name] for name in names)
+
+    return replace(cell, source=COPY.sub(copy, cell.source))
+
+
+def _definitions(cell: Cell) -> dict[str, str]:
+    """The functions, classes and constants of a cell, with their solutions, by their names."""
+    source = cell.source
+    try:
+        if cell.kind is CellRole.SOLUTION:
+            source = find_region(source).solved
+        body = ast.parse(source).body
+    except (CellError, SyntaxError):
+        return {}  # said elsewhere, with the line
+    lines = source.split("\n")
+    found = {}
+    for node in body:
+        text = "\n".join(lines[node.lineno - 1 : node.end_lineno])
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            found[node.name] = text
+        elif isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            found[node.targets[0].id] = text
+    return found

@@ -6,25 +6,26 @@ A test proves that nbgrader's own command gives the same bytes.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import nbformat
 from nbconvert.exporters import NotebookExporter
-from nbformat import NotebookNode
 from nbgrader.converters import GenerateAssignment
 from nbgrader.preprocessors import ClearSolutions, NbGraderPreprocessor
 from nbgrader.utils import is_solution
 from traitlets.config import Config
 
+from autograder.masters.code_cells import find_region
 from autograder.masters.master_errors import CellError
-from autograder.masters.regions import find_region
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
 
 
 class LeaveStubs(ClearSolutions):
     """nbgrader's ClearSolutions, changed so that each solution leaves a stub of its own.
 
     Stock nbgrader puts the same text into every cleared region. Here each region opens with the comment that students
-    get in its place (``regions.py``), so the cell runs as it is and says what is to be done. Any other solution is
+    get in its place (``code_cells.py``), so the cell runs as it is and says what is to be done. Any other solution is
     cleared as nbgrader does it.
     """
 
@@ -62,8 +63,3 @@ def release_text(source: NotebookNode) -> str:
         exporter.register_preprocessor(step)
     text, _ = exporter.from_notebook_node(source)
     return text
-
-
-def release_notebook(source: NotebookNode) -> NotebookNode:
-    """The chapter notebook of ``source``: solutions replaced by their stubs, given cells locked."""
-    return nbformat.reads(release_text(source), as_version=4)

@@ -1,19 +1,23 @@
-"""The reference solution of each exercise as students may read it once they have full marks: code, and why it is so.
+"""The reference solution of each exercise, taken out of its master: as a program, and as students may read it.
 
-Why is beside the exercise, in a file such as ``talker.why.md``: one paragraph, and where another way is worth a
-look, the heading ``## Another way``, a paragraph and a block of code. The code of the solution is the master's.
+They may read it once they have full marks: the code, and why it is so. Why is beside the exercise, in a file such as
+``talker.why.md``: one paragraph, and where another way is worth a look, the heading ``## Another way``, a paragraph and
+a block of code.
 """
 
 from __future__ import annotations
 
+import ast
 import json
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from autograder.course import SOLUTION, WHY
-from autograder.masters.magics import shell_script
+from autograder.masters.check_cells import exercise_points
+from autograder.masters.code_cells import find_region, has_magic, shell_script, written_file
 from autograder.masters.master_errors import MasterError
-from autograder.masters.parsing import CellRole
-from autograder.masters.regions import find_region
+from autograder.masters.parsing import Cell, CellRole
+from autograder.masters.source import Points, named_cells
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -21,11 +25,94 @@ if TYPE_CHECKING:
 
     from autograder.masters.source import NamedCell
 
+_KEPT = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+"""What a program keeps of a given cell, beside constants."""
 OTHER_WAY = "## Another way"
 LINES = 2
 """Lines that a reason has at most: whoever has solved a task wants to go on."""
 WIDTH = 140
 """Characters of a line."""
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A reference solution.
+
+    Attributes:
+        source: Python that makes ``subject`` when it is executed: defines it, or writes its files into the
+            current folder.
+        subject: As Python writes it: the name of the class or function that the check cell judges, or the
+            path of what was made.
+    """
+
+    source: str
+    subject: str
+
+
+def reference_source(master: Path, exercise: str, *, points: Points = exercise_points) -> Reference:
+    """The source of everything that a notebook has defined before the check of ``exercise``.
+
+    Solution cells are kept whole. Of given cells only imports, functions, classes and constants are kept: the
+    rest demonstrates. Files are written, and where the subject is a path the shell runs what is given to it:
+    what is judged then is on the disk, and commands such as ``ros2 pkg create`` put it there.
+
+    Raises:
+        MasterError: The master cannot be used, or has no check of ``exercise``.
+    """
+    cells: list[Cell] = []
+    for named in named_cells(master, points=points):
+        if named.check is not None and named.check.exercise == exercise:
+            parts = [part for cell in cells for part in _kept(cell, shell=named.check.is_path)]
+            return Reference("\n\n".join(parts) + "\n", named.check.subject)
+        cells.append(named.cell)
+    raise MasterError(master, None, f"No cell checks '{exercise}'.", f'Write one: check("{exercise}", …).')
+
+
+def _kept(cell: Cell, *, shell: bool) -> Iterator[str]:
+    """The part of one cell that the program needs.
+
+    Args:
+        cell: Any cell above the check.
+        shell: Whether shell cells are run.
+    """
+    if cell.kind not in (CellRole.SOLUTION, CellRole.GIVEN):
+        return
+    if has_magic(cell.source):
+        yield from _on_disk(cell.source, shell=shell)
+    elif cell.kind is CellRole.SOLUTION:
+        yield cell.source
+    else:
+        yield from _definitions(cell)
+
+
+def _on_disk(source: str, *, shell: bool) -> Iterator[str]:
+    file, script = written_file(source), shell_script(source)
+    if file is not None:
+        yield (
+            f"import pathlib\nfile = pathlib.Path({str(file.path)!r})\n"
+            f"file.parent.mkdir(parents=True, exist_ok=True)\nfile.write_text({file.text!r})"
+        )
+    elif script is not None and shell:
+        yield f"import subprocess\nsubprocess.run(['bash', '-c', {script!r}], check=False)"
+
+
+def _definitions(cell: Cell) -> Iterator[str]:
+    lines = cell.source.split("\n")
+    for node in ast.parse(cell.source).body:
+        if isinstance(node, _KEPT) or _is_constant(node):
+            decorators = getattr(node, "decorator_list", [])
+            first = min([node.lineno, *(decorator.lineno for decorator in decorators)])
+            yield "\n".join(lines[first - 1 : node.end_lineno])
+
+
+def _is_constant(node: ast.stmt) -> bool:
+    """True if it names a value and calls nothing: what a definition further down may need."""
+    if not isinstance(node, (ast.Assign, ast.AnnAssign)):
+        return False
+    targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+    if not all(isinstance(target, ast.Name) for target in targets):
+        return False
+    return not any(isinstance(inner, (ast.Call, ast.Await)) for inner in ast.walk(node))
 
 
 def solution_files(master: Path, cells: Sequence[NamedCell]) -> dict[Path, str]:
@@ -46,18 +133,13 @@ def _solution_files(master: Path, cells: Sequence[NamedCell]) -> Iterator[tuple[
     for named in cells:
         # What a student types into a terminal is no part of what is checked.
         if named.cell.kind is CellRole.SOLUTION and shell_script(named.cell.source) is None:
-            code.append(_solved(named.cell.source))
+            code.append(find_region(named.cell.source).solved.strip())
         elif named.check is not None:
             exercise = named.check.exercise
             why = master.with_name(f"{exercise.partition('.')[2]}{WHY}")
             if why.is_file():
                 yield why.with_name(why.name.removesuffix(WHY) + SOLUTION), _text(exercise, code, why)
             code = []
-
-
-def _solved(source: str) -> str:
-    region = find_region(source)
-    return "\n".join((*region.before, *region.answer, *region.after)).strip()
 
 
 def _text(exercise: str, code: list[str], why: Path) -> str:

@@ -1,11 +1,18 @@
-"""A master as nbgrader's source notebook: checked at the door, then expanded.
+"""A master as nbgrader's source notebook: its cells checked, named, and given their metadata.
 
 What an author types is a tag; what nbgrader wants is eight lines of metadata a cell. The expansion is here.
+
+The name of a cell is stable, readable, and never drawn at random. It must survive a corrected typo, because nbgrader
+matches a submission's cells by name and refuses to change the names of an assignment that has submissions. So it comes
+from what the cell is about, not from its text.
 """
 
 from __future__ import annotations
 
+import ast
+import hashlib
 import re
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -13,18 +20,26 @@ from typing import TYPE_CHECKING, Any
 from nbformat import NotebookNode, from_dict
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-from autograder.masters import naming
+from autograder import exercises
 from autograder.masters.check_cells import CheckCall, exercise_points, read_check
-from autograder.masters.copies import with_copies
+from autograder.masters.code_cells import (
+    find_model_answer,
+    find_region,
+    has_magic,
+    mentions_a_region,
+    python_of,
+)
 from autograder.masters.layout import before_and_after, lab_name
-from autograder.masters.magics import has_magic
 from autograder.masters.master_errors import CellError, MasterError
-from autograder.masters.parsing import Cell, CellRole, parse_master
-from autograder.masters.regions import find_model_answer, find_region, mentions_a_region
+from autograder.masters.parsing import Cell, CellRole, parse_master, with_copies
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+_HEADING = re.compile(r"^#{1,6}\s+(.*?)\s*$", re.MULTILINE)
+_FENCED = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
+_LONGEST = 48
+"""Characters of a heading in a name; nbformat allows 64 in an id."""
 GRADE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 SCHEMA_VERSION = 3
 """Of nbgrader's cell metadata."""
@@ -105,27 +120,55 @@ def _links(master: Path) -> Iterator[Cell]:
 
 
 def _link(master: Path) -> str:
-    return f"[{naming.title(master.read_text(encoding='utf-8'))}]({lab_name(master)}.ipynb)"
+    heading = _HEADING.search(master.read_text(encoding="utf-8"))
+    return f"[{heading[1] if heading else ''}]({lab_name(master)}.ipynb)"
 
 
 def _name_all(master: Path, cells: list[Cell], points: Points) -> Iterator[NamedCell]:
-    numbering = naming.Numbering()
+    taken: Counter[str] = Counter()
     section = "start"
+
+    def numbered(wanted: str) -> str:
+        """The name itself, with a number behind it from the second time on: ``given-talker-2``."""
+        taken[wanted] += 1
+        return wanted if taken[wanted] == 1 else f"{wanted}-{taken[wanted]}"
+
     for cell in cells:
         if cell.kind is CellRole.TEXT:
-            section = naming.last_heading(cell.source) or section
-            yield NamedCell(cell, numbering.name(naming.text_id(cell.source)))
+            section = _last_heading(cell.source) or section
+            # Nothing but its text can name it.
+            yield NamedCell(cell, numbered("text-" + hashlib.sha256(cell.source.encode()).hexdigest()[:10]))
             continue
         _region_where_it_belongs(master, cell)
         if cell.kind is CellRole.MANUAL:
             yield NamedCell(cell, str(cell.grade_id), points=cell.points)
         elif cell.kind is CellRole.CHECK:
             check = read_check(master, cell)
-            yield NamedCell(cell, naming.grade_id_of_exercise(check.exercise), check, points(check))
+            yield NamedCell(cell, exercises.grade_id(check.exercise), check, points(check))
         elif cell.kind is CellRole.SOLUTION:
             yield NamedCell(cell, cell.grade_id or _defined_name(master, cell))
         else:
-            yield NamedCell(cell, cell.grade_id or numbering.name(f"{CellRole.GIVEN}-{naming.slug(section)}"))
+            yield NamedCell(cell, cell.grade_id or numbered(f"{CellRole.GIVEN}-{_slug(section)}"))
+
+
+def _last_heading(markdown: str) -> str | None:
+    headings = _HEADING.findall(_FENCED.sub("", markdown))
+    return headings[-1] if headings else None
+
+
+def _slug(text: str) -> str:
+    """A text in lower case, with dashes for all that is no letter and no digit."""
+    return re.sub(r"[^a-z0-9]+", "-", text.lower())[:_LONGEST].strip("-") or "cell"
+
+
+def _defined_names(source: str) -> list[str]:
+    """The functions and classes that a code cell defines at its top level, or the Python file that it writes.
+
+    Raises:
+        SyntaxError: It is no Python, though it has to be.
+    """
+    definitions = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+    return [node.name for node in ast.parse(python_of(source)).body if isinstance(node, definitions)]
 
 
 def _region_where_it_belongs(master: Path, cell: Cell) -> None:
@@ -149,11 +192,11 @@ def _region_where_it_belongs(master: Path, cell: Cell) -> None:
     except CellError as error:
         raise error.at(master, cell.body_line) from error
     try:
-        naming.defined_names(cell.source)
+        _defined_names(cell.source)
     except SyntaxError as error:
         raise _no_python(master, cell, "The solution is no Python", error) from error
     try:
-        naming.defined_names(region.unsolved)
+        _defined_names(region.unsolved)
     except SyntaxError as error:
         raise MasterError(
             master,
@@ -164,7 +207,7 @@ def _region_where_it_belongs(master: Path, cell: Cell) -> None:
 
 
 def _defined_name(master: Path, cell: Cell) -> str:
-    names = naming.defined_names(cell.source)
+    names = _defined_names(cell.source)
     if len(names) != 1:
         raise MasterError(
             master,
@@ -208,7 +251,7 @@ def _subjects_are_solutions(master: Path, named: list[NamedCell]) -> None:
         if item.cell.kind is CellRole.SOLUTION and has_magic(item.cell.source):
             on_disk = True
         elif item.cell.kind is CellRole.SOLUTION:
-            written.update(naming.defined_names(item.cell.source))
+            written.update(_defined_names(item.cell.source))
         elif item.check is None or (item.check.is_path and on_disk):
             continue
         elif item.check.is_path:

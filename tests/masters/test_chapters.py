@@ -16,10 +16,9 @@ from nbgrader.nbgraderformat.v3 import MetadataValidatorV3
 from autograder import exercises
 from autograder.authoring.house_rules import broken_rules
 from autograder.masters.chapters import build
-from autograder.masters.copies import COPY
+from autograder.masters.code_cells import find_region
 from autograder.masters.layout import chapter_path, lab_name, masters
-from autograder.masters.parsing import CellRole, parse_master
-from autograder.masters.regions import find_region
+from autograder.masters.parsing import COPY, CellRole, parse_master
 from autograder.masters.release import release_text
 from autograder.masters.source import named_cells, source_notebook
 from tests.tiers import drawn

@@ -12,11 +12,11 @@ import nbformat
 import pytest
 
 from autograder.grading.returning.sanitize import harmless_markdown
-from autograder.masters.drawing import stale_figures
-from autograder.masters.figures import SIGNATURE, chunk, digest, signed
+from autograder.masters.drawing import SIGNATURE, chunk, signed, stale_figures
 from autograder.masters.layout import chapter_path, masters
 from autograder.masters.master_errors import MasterError
 from autograder.masters.source import Points, source_notebook
+from autograder.masters.text_cells import digest
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,12 +7,12 @@ import sys
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
+import nbformat
 import pytest
 
-from autograder.masters.magics import WrittenFile, python_of, shell_script, written_file
-from autograder.masters.reference_solution import reference_source
-from autograder.masters.regions import find_region
-from autograder.masters.release import release_notebook
+from autograder.masters.code_cells import WrittenFile, find_region, python_of, shell_script, written_file
+from autograder.masters.release import release_text
+from autograder.masters.solutions import reference_source
 from autograder.masters.source import Points, source_notebook
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def test_in_xml_each_mark_is_a_comment_of_its_own() -> None:
 
 
 def test_the_magic_stays_on_the_first_line(master: Path, ten_points: Points) -> None:
-    chapter = release_notebook(source_notebook(master, points=ten_points))
+    chapter = nbformat.reads(release_text(source_notebook(master, points=ten_points)), as_version=4)
     sources = {cell.id: cell.source for cell in chapter.cells}
     assert sources["hello_py"].split("\n") == [
         "%%writefile made/hello.py",

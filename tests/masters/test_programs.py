@@ -6,13 +6,14 @@ import re
 import sys
 from pathlib import Path
 
+import nbformat
 import pytest
 
 from autograder.judge.subjects.command import check_and_keep
+from autograder.masters.code_cells import WrittenFile, written_file
 from autograder.masters.layout import masters
-from autograder.masters.magics import WrittenFile, written_file
 from autograder.masters.parsing import CellRole
-from autograder.masters.release import release_notebook
+from autograder.masters.release import release_text
 from autograder.masters.source import named_cells, source_notebook
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -52,7 +53,7 @@ def test_the_program_earns_full_marks(master: Path, exercise: str, subject: str,
 def test_students_get_all_of_the_program_but_their_own_part(
     master: Path, exercise: str, subject: str
 ) -> None:
-    chapter = release_notebook(source_notebook(master))
+    chapter = nbformat.reads(release_text(source_notebook(master)), as_version=4)
     given = program([cell.source for cell in chapter.cells], subject).text
     compile(given, exercise, "exec")
     assert "# TODO: copy" in given

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.masters.master_errors import MasterError
-from autograder.masters.reference_solution import reference_source
+from autograder.masters.solutions import reference_source
 
 if TYPE_CHECKING:
     from collections.abc import Callable

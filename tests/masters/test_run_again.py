@@ -8,12 +8,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import nbformat
 import pytest
 
+from autograder.masters.code_cells import shell_script, written_file
 from autograder.masters.layout import lab_name, masters
-from autograder.masters.magics import shell_script, written_file
 from autograder.masters.parsing import CellRole
-from autograder.masters.release import release_notebook
+from autograder.masters.release import release_text
 from autograder.masters.source import source_notebook
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -31,7 +32,7 @@ IMPORTS = (
 def steps(master: Path, *, solved: bool) -> str:
     """A program that does to the files what the notebook does: all but builds, programs and nodes."""
     notebook = source_notebook(master)
-    notebook = notebook if solved else release_notebook(notebook)
+    notebook = notebook if solved else nbformat.reads(release_text(notebook), as_version=4)
     parts = [IMPORTS]
     for cell in notebook.cells:
         if cell.cell_type == CellRole.TEXT or cell.cell_type == "markdown":

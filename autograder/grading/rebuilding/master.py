@@ -17,8 +17,8 @@ from autograder.boxes.execution import Check
 from autograder.grading.errors import MasterUnusable
 from autograder.grading.rebuilding import nodes
 from autograder.grading.rebuilding.rebuild import grade_id, is_answer, is_check
+from autograder.masters.code_cells import find_model_answer
 from autograder.masters.master_errors import CellError
-from autograder.masters.regions import find_model_answer
 
 if TYPE_CHECKING:
     from pathlib import Path

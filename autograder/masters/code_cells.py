@@ -1,4 +1,4 @@
-"""The solution region of a cell: the part that the student is given and the part that the student writes.
+"""The text of a code cell: the region that the student writes, and IPython's magics that make a file or a script of it.
 
 A solution cell of a master looks like this::
 
@@ -12,11 +12,20 @@ A solution cell of a master looks like this::
 The comment that opens the region is the stub. It is what remains of the region in the chapter notebook. The
 two markers are nbgrader's own, so that a stock nbgrader still finds and clears the region. In a file of XML each of the
 three lines is a comment by itself: ``<!-- ### BEGIN SOLUTION -->``.
+
+A workspace of ROS is made of files, so what a student writes in one may be a file instead of a definition::
+
+    %%writefile ros2_ws/src/my_robot_pkg/my_robot_pkg/simple_node.py
+    import rclpy
+    ...
 """
 
 from __future__ import annotations
 
+import re
+import shlex
 from dataclasses import dataclass
+from pathlib import PurePosixPath
 
 from autograder.masters.master_errors import CellError
 
@@ -24,6 +33,7 @@ BEGIN = "### BEGIN SOLUTION"
 END = "### END SOLUTION"
 TODO = "# TODO: "
 ONE_THING = "One cell asks for one thing: split it into two cells."
+MAGIC = re.compile(r"%%(?P<name>\w+)[ \t]*(?P<rest>.*)")
 
 
 @dataclass(frozen=True)
@@ -39,6 +49,11 @@ class Region:
     def unsolved(self) -> str:
         """The cell as the student gets it."""
         return "\n".join((*self.before, *self.stub, *self.after))
+
+    @property
+    def solved(self) -> str:
+        """The cell with its solution, as whoever has solved it has it."""
+        return "\n".join((*self.before, *self.answer, *self.after))
 
 
 def mentions_a_region(source: str) -> bool:
@@ -135,3 +150,53 @@ def _only_one_todo(lines: list[str], stub: int) -> None:
     for offset, line in enumerate(lines):
         if "TODO" in line and offset != stub:
             raise CellError(offset, "A second TODO in one cell.", ONE_THING)
+
+
+@dataclass(frozen=True)
+class WrittenFile:
+    """The file that a ``%%writefile`` cell writes.
+
+    Attributes:
+        path: Where, relative to the notebook.
+        text: The file's text, without the line of the magic.
+    """
+
+    path: PurePosixPath
+    text: str
+
+    @property
+    def is_python(self) -> bool:
+        """True if the text has to be Python."""
+        return self.path.suffix == ".py"
+
+
+def has_magic(source: str) -> bool:
+    """True if the cell is given to a magic instead of to Python."""
+    return MAGIC.match(source) is not None
+
+
+def written_file(source: str) -> WrittenFile | None:
+    """The file that a cell writes, or None for any other cell."""
+    magic = MAGIC.match(source)
+    if magic is None or magic["name"] != "writefile":
+        return None
+    words = shlex.split(magic["rest"])
+    if len(words) != 1:
+        return None
+    return WrittenFile(PurePosixPath(words[0]), source.partition("\n")[2])
+
+
+def shell_script(source: str) -> str | None:
+    """The text that a ``%%bash`` cell gives to the shell, or None for any other cell."""
+    magic = MAGIC.match(source)
+    if magic is None or magic["name"] != "bash":
+        return None
+    return source.partition("\n")[2]
+
+
+def python_of(source: str) -> str:
+    """The part of a cell that has to be Python, with as many lines: empty where none of it has to."""
+    if not has_magic(source):
+        return source
+    file = written_file(source)
+    return f"\n{file.text}" if file is not None and file.is_python else ""

@@ -1,4 +1,17 @@
-"""Figures: drawn once as SVG, carried by a notebook as a PNG inside the text cell that shows it.
+"""The two things of a text cell that Markdown does not have: hints that open one at a time, and figures.
+
+An author writes one block after the other::
+
+    :::{hint} Where do I begin?
+    With the publisher.
+    :::
+
+    :::{hint} And then?
+    With the timer.
+    :::
+
+JupyterLab knows no such blocks, but it shows ``<details>``. Each hint is put inside the one before it, so
+that a student cannot see the second before opening the first.
 
 A notebook has to show its figures wherever it is, so they travel in it. As a PNG, because no SVG that is attached to
 a cell is shown by JupyterLab, and no file beside the notebook follows it into a student's folder. The PNG is drawn from
@@ -11,7 +24,6 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
-import zlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
@@ -21,13 +33,82 @@ from autograder.masters.master_errors import CellError
 if TYPE_CHECKING:
     from pathlib import Path
 
+OPENING = re.compile(r":::\{hint\}\s*(?P<question>.*?)\s*")
+CLOSING = ":::"
 REFERENCE = re.compile(r"!\[\]\((?P<path>[^)\s]+\.svg)\)")
 """A master's line that shows a figure: without an alternative text, which is taken from the SVG."""
 KEYWORD = b"Drawn from SVG"
-SIGNATURE = b"\x89PNG\r\n\x1a\n"
-"""The first bytes of a PNG."""
-_HEADER_LENGTH = len(SIGNATURE) + 8 + 13 + 4
 _SVG = "{http://www.w3.org/2000/svg}"
+
+
+@dataclass(frozen=True)
+class Hint:
+    """One hint: the question it answers, and the Markdown that answers it."""
+
+    question: str
+    answer: str
+
+
+def nest_hints(markdown: str) -> str:
+    """``markdown`` with every run of hint blocks as nested ``<details>``.
+
+    Raises:
+        CellError: A hint has no question, holds another hint, or is never closed.
+    """
+    lines = markdown.split("\n")
+    result: list[str] = []
+    run: list[Hint] = []
+    offset = 0
+    while offset < len(lines):
+        opening = OPENING.fullmatch(lines[offset])
+        if opening:
+            end = _closing(lines, offset)
+            run.append(_hint(opening["question"], lines[offset + 1 : end], offset))
+            offset = end + 1
+            continue
+        # Blank lines between two hints do not end their run.
+        if run and lines[offset].strip():
+            result.extend([_nested(run), ""])
+            run = []
+        if not run:
+            result.append(lines[offset])
+        offset += 1
+    if run:
+        result.append(_nested(run))
+    return "\n".join(result)
+
+
+def _closing(lines: list[str], opening: int) -> int:
+    for offset in range(opening + 1, len(lines)):
+        if OPENING.fullmatch(lines[offset]):
+            break
+        if lines[offset].strip() == CLOSING:
+            return offset
+    raise CellError(
+        opening, "A hint that is not closed.", f"End it with a line '{CLOSING}' in the same text cell."
+    )
+
+
+def _hint(question: str, answer: list[str], offset: int) -> Hint:
+    text = "\n".join(answer).strip("\n")
+    if not question or not text.strip():
+        raise CellError(
+            offset, "A hint without its question or its answer.", "Write ':::{hint} What is asked?'."
+        )
+    return Hint(question, text)
+
+
+def _nested(hints: list[Hint]) -> str:
+    text = ""
+    for number in range(len(hints), 0, -1):
+        hint = hints[number - 1]
+        inner = f"{hint.answer}\n\n{text}" if text else f"{hint.answer}\n"
+        text = (
+            f"<details>\n<summary><b>Hint {number} of {len(hints)}.</b> {hint.question}</summary>\n"
+            # The blank lines make JupyterLab read what is inside as Markdown.
+            f"<blockquote>\n\n{inner}\n</blockquote>\n</details>\n"
+        )
+    return text.rstrip("\n")
 
 
 @dataclass(frozen=True)
@@ -78,22 +159,6 @@ def attach_figures(folder: Path, markdown: str) -> tuple[str, dict[str, dict[str
 def digest(svg: bytes) -> bytes:
     """The digest in a PNG of the SVG from which it was drawn."""
     return hashlib.sha256(svg).hexdigest().encode("ascii")
-
-
-def signed(png: bytes, svg: bytes) -> bytes:
-    """A PNG that says from which SVG it was drawn, in a text chunk behind its header.
-
-    Args:
-        png: The picture.
-        svg: What it was drawn from.
-    """
-    mark = chunk(b"tEXt", KEYWORD + b"\0" + digest(svg))
-    return png[:_HEADER_LENGTH] + mark + png[_HEADER_LENGTH:]
-
-
-def chunk(kind: bytes, content: bytes) -> bytes:
-    """A part of a PNG file: its length, its kind, what is in it, and its checksum."""
-    return len(content).to_bytes(4) + kind + content + zlib.crc32(kind + content).to_bytes(4)
 
 
 def _read(svg: Path, named: str, line: int) -> Figure:
