@@ -16,9 +16,9 @@ from collections import deque
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
-from environment import ownership, ros_flavour, system_packages
+from environment import ros_flavour, system_packages
 from environment.lock import EXTRAS
-from environment.place import Place
+from environment.place import Place, may_write, owner
 from environment.ros_flavour import Machine, NoRosError, Ros
 from environment.setup_steps import Setup, SetupError
 from environment.steps import run_steps
@@ -69,11 +69,11 @@ def _check_place(place: Place) -> None:
         raise SetupError(f"a search path cannot hold a folder with a colon in its name: {place.root}")
     if place.prefix.exists() and not (place.notes.exists() or (place.prefix / "pyvenv.cfg").exists()):
         raise SetupError(f"{place.prefix} is there, but is no Python environment. Move it away.")
-    if not ownership.may_write(place.root):
+    if not may_write(place.root):
         state = "was changed since it was set up" if place.notes.exists() else "is not set up yet"
         raise SetupError(
             f"the course {state}, and you may not write to its folder. "
-            f"Have {ownership.owner(place.root)}, whose folder it is, type: {place.root}/course setup"
+            f"Have {owner(place.root)}, whose folder it is, type: {place.root}/course setup"
         )
 
 

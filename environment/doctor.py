@@ -13,14 +13,17 @@ import shutil
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import TYPE_CHECKING, Literal
 
-from environment import jupyter_files, loopback, ownership, ros_flavour, system_packages
-from environment.findings import Finding, as_text, exit_code
-from environment.place import Place
+from environment import jupyter_files, loopback, ros_flavour, system_packages
+from environment.place import Place, may_write, owner
 from environment.ros_report import INTERFACE_FIELDS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 ROOT = Path(__file__).resolve().parent.parent
 PREFIX = ROOT / ".venv"
@@ -34,6 +37,44 @@ _SHM_NEEDED = 64_000_000
 _DISK_NEEDED = 500_000_000
 # Programs that only print their version, in seconds.
 _SHORT = 20.0
+
+# ok: it is there and works.  missing: the course needs it.  optional: not there, and only a part needs it.
+# unchecked: could not be found out, because something else is missing.
+State = Literal["ok", "missing", "optional", "unchecked"]
+
+_SIGN = {"ok": "ok", "missing": "MISSING", "optional": "optional", "unchecked": "not checked"}
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that the course needs or can use.
+
+    Attributes:
+        name: the thing.
+        state: how it stands with it.
+        detail: what was found: a version, a path, what was wrong.
+        remedy: how to get it; empty where nothing needs doing.
+    """
+
+    name: str
+    state: State
+    detail: str
+    remedy: str = ""
+
+
+def exit_code(findings: Iterable[Finding]) -> int:
+    """Return 0 if everything that the course needs is there, else 1."""
+    return 1 if any(finding.state == "missing" for finding in findings) else 0
+
+
+def as_text(findings: Iterable[Finding]) -> str:
+    """Return the findings as lines for a terminal: the state, the thing, the detail, then the remedy."""
+    lines = []
+    for finding in findings:
+        lines.append(f"{_SIGN[finding.state]:<12} {finding.name}: {finding.detail}")
+        if finding.remedy:
+            lines.append(f"{'':<12}   {finding.remedy}")
+    return "\n".join(lines)
 
 
 def _output(command: list[str], limit: float = _SHORT) -> tuple[int, str]:
@@ -211,7 +252,7 @@ def kernel(spec: Path) -> Finding:
 
 def space() -> list[Finding]:
     """Look at the disk and at the shared memory."""
-    whose = f"Have {ownership.owner(ROOT)}, whose folder it is, type what changes it, such as: ./course setup"
+    whose = f"Have {owner(ROOT)}, whose folder it is, type what changes it, such as: ./course setup"
     found = [folder_space("Disk", ROOT, _DISK_NEEDED, "Make room on the disk.", whose)]
     remedy = "In a container: docker run --shm-size=512m …; or set FASTDDS_BUILTIN_TRANSPORTS=UDPv4"
     return [*found, folder_space("Shared memory", Path("/dev/shm"), _SHM_NEEDED, remedy)]
@@ -229,7 +270,7 @@ def folder_space(name: str, folder: Path, needed: int, remedy: str, not_yours: s
     """
     if not folder.is_dir():
         return Finding(name, "missing", f"there is no folder {folder}", remedy)
-    if not ownership.may_write(folder):
+    if not may_write(folder):
         return Finding(name, "missing", f"{folder} is not yours to write to", not_yours or remedy)
     free = shutil.disk_usage(folder).free
     detail = f"{free / 1e9:.1f} GB free in {folder}"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import pwd
 import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -99,3 +101,20 @@ def environment_values(place: Place) -> dict[str, str]:
         "ROS_VERSION": "2",
         "ROS_PYTHON_VERSION": "3",
     }
+
+
+def owner(folder: Path) -> str:
+    """The name of whoever a folder belongs to; its number where it has no name here.
+
+    In a course that several people share, one of them has to set it up.
+    """
+    number = folder.stat().st_uid
+    try:
+        return pwd.getpwuid(number).pw_name
+    except KeyError:
+        return f"user {number}"
+
+
+def may_write(folder: Path) -> bool:
+    """True if this user may write to a folder."""
+    return os.access(folder, os.W_OK)

@@ -17,13 +17,12 @@ from typing import IO, TYPE_CHECKING
 from environment import course_process, ros_flavour
 from environment.interface_packages import build_command, only_python_needs
 from environment.jupyter_files import kernel_install_options, write_jupyter_files
-from environment.lighter_imports import make_lighter
 from environment.lock import EXTRAS, split_blocks
 from environment.pip_settings import as_uv_has_them
 from environment.place import INTERFACES, Place, environment_paths, environment_values
-from environment.repair_fast_dds import repair as repair_fast_dds
 from environment.ros2_command.install import install as install_ros2_command
 from environment.steps import Step, files_below
+from environment.wheel_repairs import make_imports_lighter, repair_fast_dds
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
@@ -64,14 +63,13 @@ class Setup:
         # The notice is for the user: it does not make another environment.
         ros = repr(replace(self.ros, notice=""))
         kind = (str(place.root), str(place.base_python), sys.version, ros)
+        repairs = (place.environment / "wheel_repairs.py",)
         interfaces = (
-            place.environment / "repair_wheels.py",
+            *repairs,
             place.environment / "interface_packages.py",
             place.environment / "only_python.cmake",
             *(file for package in place.interfaces for file in files_below(package)),
         )
-        lighter = (place.environment / "lighter_imports.py",)
-        fast_dds = (place.environment / "repair_fast_dds.py",)
         start = (place.environment / "course_process.py", place.environment / "place.py")
         ros2 = (place.environment / "ros2_command" / "install.py",)
         jupyter = (place.environment / "jupyter_files.py",)
@@ -81,8 +79,8 @@ class Setup:
             Step("environment", f"making .venv with {python}", kind, self._make_environment),
             Step("uv", "fetching uv, which installs the packages", (place.lock("uv"),), self._get_uv),
             Step("packages", self._what_is_installed(), tuple(locks), lambda: self._install_packages(locks)),
-            Step("imports", "making imports lighter", lighter, self._make_imports_lighter),
-            Step("fast_dds", "repairing how a node ends", fast_dds, self._repair_fast_dds),
+            Step("imports", "making imports lighter", repairs, self._make_imports_lighter),
+            Step("fast_dds", "repairing how a node ends", repairs, lambda: repair_fast_dds(place.prefix)),
             Step(
                 "interfaces", f"building {self._interfaces()} with colcon", interfaces, self._build_interfaces
             ),
@@ -215,18 +213,15 @@ class Setup:
         self._run("installing packages", command, PIP_USER="0")
 
     def _make_imports_lighter(self) -> None:
-        changed = make_lighter(self.place.site_packages)
+        changed = make_imports_lighter(self.place.site_packages)
         if changed:
             # For a user who may read this environment and not write to it.
             self._run("compiling what was changed", [self.place.python, "-m", "compileall", "-q", *changed])
 
-    def _repair_fast_dds(self) -> None:
-        repair_fast_dds(self.place.prefix)
-
     def _build_interfaces(self) -> None:
         place = self.place
         if not self.ros.is_sourced:
-            self._run("repairing the wheels", [place.python, "-m", "environment.repair_wheels"])
+            self._run("repairing the wheels", [place.python, "-m", "environment.wheel_repairs"])
         # The cache of an interrupted build can name compilers that are gone.
         shutil.rmtree(place.notes / "build", ignore_errors=True)
         # Merged into the environment itself: its lib folder and its site-packages are searched already.

@@ -35,7 +35,7 @@ class Step:
     name: str
     doing: str
     inputs: tuple[str | Path, ...]
-    run: Callable[[], None]
+    run: Callable[[], object]
 
 
 def files_below(folder: Path) -> tuple[Path, ...]:

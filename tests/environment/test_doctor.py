@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 import pytest
 
 from environment import bootstrap, doctor, jupyter_files, loopback, ros_flavour
-from environment.findings import Finding, as_text, exit_code
+from environment.doctor import Finding, as_text, exit_code
 from environment.place import Place
 from environment.ros_flavour import Ros
 from environment.ros_report import INTERFACE_FIELDS
 from environment.setup_steps import SetupError
 
 if TYPE_CHECKING:
-    from environment.findings import State
+    from environment.doctor import State
 
 HEALTHY = {"version": "7.1.6", "prefix": "/env", "rmw": "rmw_fastrtps_cpp", "fields": INTERFACE_FIELDS}
 
@@ -132,7 +132,7 @@ def test_room_in_a_folder(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_is_somebody_elses_is_no_matter_of_room(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("environment.ownership.may_write", lambda _: False)
+    monkeypatch.setattr("environment.doctor.may_write", lambda _: False)
     found = doctor.space()[0]
     assert found.state == "missing"
     assert "Make room" not in found.remedy
@@ -148,7 +148,7 @@ def test_in_a_shared_course_the_set_up_says_who_has_to_run_what(
     place = Place(tmp_path, Path("/usr/bin/python3"))
     if is_set_up:
         place.notes.mkdir(parents=True)
-    monkeypatch.setattr("environment.ownership.may_write", lambda _: False)
+    monkeypatch.setattr("environment.bootstrap.may_write", lambda _: False)
     with pytest.raises(SetupError, match=words) as error:
         bootstrap.set_up(place, {}, with_tests=False)
     assert f"Have {tmp_path.owner()}" in str(error.value)

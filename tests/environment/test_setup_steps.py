@@ -87,7 +87,7 @@ def test_the_interfaces_are_made_from_every_file_of_their_package() -> None:
         "Fibonacci.action",
         "WalkTo.action",
         "interface_packages.py",
-        "repair_wheels.py",
+        "wheel_repairs.py",
         "only_python.cmake",
     } == names
 

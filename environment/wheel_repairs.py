@@ -1,0 +1,237 @@
+"""The repairs of what the wheels install: CMake files, imports, and Fast DDS.
+
+* **CMake files.** The wheels were built in a container. What CMake exports for the Python part of a message package
+  names that container's folders, ``/opt/python/cp311-cp311/include/python3.11`` and numpy's headers below it, and
+  CMake stops with "non-existent path in its INTERFACE_INCLUDE_DIRECTORIES". They are pointed at this interpreter's, by
+  the Python of the environment: ``.venv/bin/python -m environment.wheel_repairs``.
+* **Imports.** Each Python program with a node imports, through the generated messages, two things that it never uses:
+  ``rosidl_generator_py``, of which a message wants one small function, imports the generator of Python code with its
+  parser and its templates (48 ms of processor time); ``service_msgs/msg/ServiceEventInfo``, which every node has
+  through its type description service, imports numpy (65 ms) for a field that is set only where somebody makes such a
+  message. Each program that reads a notebook, JupyterLab and nbgrader among them, imports jsonschema, and through it
+  ``rfc3987_syntax``, which compiles 32 grammars of internationalised addresses (1 to 3 s of processor time) for a
+  check that no notebook asks for. All are imported when they are asked for.
+* **Fast DDS** can hang for ever in a node that ends while another one appears. Who deletes a participant waits for the
+  callback of discovery that is just running. It waits "for ever", with ``time_point::max()`` as its deadline. As the
+  wheels are built, this deadline is converted into time of day, where it overflows into the past:
+  ``pthread_cond_timedwait`` refuses it each time without releasing the mutex, the callback never gets the mutex, and
+  the program keeps a core busy until it is killed. On Ubuntu's Jazzy nothing is converted. Upstream:
+  https://github.com/eProsima/Fast-DDS/issues/6513. The two functions that ask for such a wait get a deadline in 68
+  years instead. That is one number in each, and nothing else of the library changes.
+
+Only the wheels in ``.venv`` are changed, never a ROS that was sourced. A file that does not look as expected, as one
+of a later release may, is left alone; one that is repaired already is not changed again. Only the standard library is
+used: this runs during the set-up.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+import sysconfig
+from dataclasses import dataclass
+from pathlib import Path
+
+_BUILD_PYTHON = r"/opt/python/cp\d+-cp\d+t?"
+_PYTHON_INCLUDE = re.compile(_BUILD_PYTHON + r"/include/python3\.\d+t?")
+_NUMPY_INCLUDE = re.compile(_BUILD_PYTHON + r"/lib/python3\.\d+t?/site-packages/numpy/_?core/include")
+_LEFT_OVER = re.compile(r"/opt/python/[^\s\";]+")
+_MARK = "# Changed by the set-up of the course (environment/wheel_repairs.py): "
+FOR_EVER = (2**63 - 1).to_bytes(8, "little")
+"""``std::chrono::seconds::max()``."""
+YEARS_68 = (2**31 - 1).to_bytes(8, "little")
+"""So many seconds from now, in nanoseconds of either clock, stay below 2**63 until the year 2194."""
+_JUMP = rb"\xe9.{4}"
+_BOTH = re.compile(
+    # set_listener(listener) and set_listener(listener, mask) of a DomainParticipant: each puts the default timeout
+    # into a register (movabs into rdx and rcx) and jumps to the function that takes one.
+    rb"(\x48\xba)%(number)b(%(jump)b\x90\x48\xb9)%(number)b(%(jump)b)"
+    % {b"number": re.escape(FOR_EVER), b"jump": _JUMP},
+    re.DOTALL,
+)
+
+
+class RepairError(Exception):
+    """A folder of the build container is named that has no known counterpart, or headers are missing."""
+
+
+@dataclass(frozen=True)
+class HeaderFolders:
+    """The folders of this interpreter's headers."""
+
+    python: Path
+    numpy: Path
+
+    @classmethod
+    def here(cls) -> HeaderFolders:
+        """Return those of the interpreter that runs this.
+
+        Raises:
+            RepairError: one of them is not installed.
+        """
+        import numpy
+
+        folders = cls(Path(sysconfig.get_path("include")), Path(numpy.get_include()))
+        for header in (folders.python / "Python.h", folders.numpy / "numpy" / "arrayobject.h"):
+            if not header.exists():
+                raise RepairError(f"The header {header} is missing: install the header files of Python.")
+        return folders
+
+
+def repaired_cmake(text: str, headers: HeaderFolders) -> str:
+    """Return the text of a CMake file with the container's header folders replaced by this interpreter's.
+
+    Raises:
+        RepairError: another folder of the container is named.
+    """
+    # By a function, for a backslash in a path must not be read as a group.
+    text = _NUMPY_INCLUDE.sub(lambda _: headers.numpy.as_posix(), text)
+    text = _PYTHON_INCLUDE.sub(lambda _: headers.python.as_posix(), text)
+    left_over = _LEFT_OVER.search(text)
+    if left_over:
+        raise RepairError(f"a folder of the build machine that has no counterpart here: {left_over.group()}")
+    return text
+
+
+def repair_cmake(prefix: Path, headers: HeaderFolders) -> list[Path]:
+    """Repair every CMake file that the wheels installed below `prefix`, and return those that were changed.
+
+    Each file is replaced in one step: after an interruption, running again goes on from there.
+
+    Raises:
+        RepairError: a file names a folder that this program does not know; the message says which file.
+    """
+    changed = []
+    for path in sorted(prefix.glob("share/*/cmake/**/*.cmake")):
+        # The bytes outside the two paths are left alone, whatever their encoding.
+        text = path.read_bytes().decode("utf-8", "surrogateescape")
+        try:
+            new = repaired_cmake(text, headers)
+        except RepairError as error:
+            raise RepairError(f"{path}: {error}") from None
+        if new != text:
+            _replace_content(path, new.encode("utf-8", "surrogateescape"))
+            changed.append(path)
+    return changed
+
+
+@dataclass(frozen=True)
+class LaterImport:
+    """A module that is to import something later.
+
+    Attributes:
+        file: the module, below site-packages.
+        now: how it imports that now.
+        later: what takes its place.
+    """
+
+    file: str
+    now: re.Pattern[str]
+    later: str
+
+
+LATER_IMPORTS = (
+    LaterImport(
+        "rosidl_generator_py/__init__.py",
+        re.compile(r"^try:\n    from \.generate_py_impl import generate_py\n.*\Z", re.MULTILINE | re.DOTALL),
+        _MARK
+        + """the generator is imported where it is used.
+def __getattr__(name):
+    if name == 'generate_py':
+        from .generate_py_impl import generate_py
+        return generate_py
+    raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
+""",
+    ),
+    LaterImport(
+        "service_msgs/msg/_service_event_info.py",
+        re.compile(r"^import numpy\b[^\n]*$", re.MULTILINE),
+        _MARK
+        + """numpy is imported where it is used.
+class _Numpy:
+    def __getattr__(self, name):
+        import numpy
+        return getattr(numpy, name)
+
+
+numpy = _Numpy()""",
+    ),
+    LaterImport(
+        "rfc3987_syntax/__init__.py",
+        re.compile(r"^from \.syntax_helpers import \*\s*\Z"),
+        _MARK
+        + """the grammars are compiled where one is used.
+def is_valid_syntax(term, value):
+    from .syntax_helpers import is_valid_syntax
+    return is_valid_syntax(term, value)
+
+
+def __getattr__(name):
+    if name.startswith('_'):
+        raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
+    from . import syntax_helpers
+    return getattr(syntax_helpers, name)
+""",
+    ),
+)
+
+
+def make_imports_lighter(site_packages: Path) -> list[Path]:
+    """Change the modules that are there and not changed yet, each in one step, and return them."""
+    changed = []
+    for module in LATER_IMPORTS:
+        path = site_packages / module.file
+        if not path.is_file():
+            continue
+        text = path.read_text(encoding="utf-8")
+        new = module.now.sub(lambda _, module=module: module.later, text, count=1)  # type: ignore[misc]
+        if _MARK not in text and new != text:
+            _replace_content(path, new.encode())
+            changed.append(path)
+    return changed
+
+
+def repaired_fast_dds(library: bytes) -> bytes:
+    """Return the library with both waits limited; unchanged where they are not there exactly once."""
+    if len(_BOTH.findall(library)) != 1:
+        return library
+    return _BOTH.sub(lambda both: YEARS_68.join(both.groups()), library)
+
+
+def repair_fast_dds(prefix: Path) -> list[Path]:
+    """Repair the libraries of the wheels that are not repaired yet, each in one step, and return them.
+
+    Args:
+        prefix: the environment, such as ``.venv``.
+    """
+    changed = []
+    for path in sorted((prefix / "lib").glob("libfastrtps.so*")):
+        before = path.read_bytes()
+        after = repaired_fast_dds(before)
+        if after != before:
+            _replace_content(path, after)
+            changed.append(path)
+    return changed
+
+
+def _replace_content(path: Path, content: bytes) -> None:
+    """Give a file another content in one step, so that an interruption leaves the old one or the new one. Its mode stays."""
+    beside = path.with_name(f"{path.name}.new")
+    beside.write_bytes(content)
+    beside.chmod(path.stat().st_mode)
+    beside.replace(path)
+
+
+def main() -> int:
+    """Repair the wheels of the environment whose Python runs this."""
+    try:
+        changed = repair_cmake(Path(sys.prefix), HeaderFolders.here())
+    except RepairError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    print(f"{len(changed)} CMake files repaired")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
