@@ -215,7 +215,7 @@ def repair_fast_dds(prefix: Path) -> list[Path]:
 
 
 def _replace_content(path: Path, content: bytes) -> None:
-    """Give a file another content in one step, so that an interruption leaves the old one or the new one. Its mode stays."""
+    """Give a file another content; an interruption leaves it with the old one or the new one, and its mode stays."""
     beside = path.with_name(f"{path.name}.new")
     beside.write_bytes(content)
     beside.chmod(path.stat().st_mode)

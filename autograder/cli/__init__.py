@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import click
 
-from autograder.appeals import appeal_commands as appeals
-from autograder.cli import authors, instructors, students
-from autograder.progress import progress_commands as progress
+from autograder.cli import appeals, authors, instructors, students
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -19,12 +17,5 @@ def cli() -> None:
     """Check ROS 2 exercises on the wire, build the notebooks, grade a class."""
 
 
-for command in (
-    *students.COMMANDS,
-    progress.progress,
-    progress.reset,
-    *authors.COMMANDS,
-    *instructors.COMMANDS,
-    appeals.replay,
-):
+for command in (*students.COMMANDS, *authors.COMMANDS, *instructors.COMMANDS, *appeals.COMMANDS):
     cli.add_command(command)

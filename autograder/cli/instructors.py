@@ -12,6 +12,7 @@ from autograder.cards.readable import printable
 from autograder.cli.ending import INTERRUPTED, fail, grading_errors
 from autograder.kit.in_words import counted
 
+_class_folder = click.argument("folder", type=click.Path(path_type=Path))
 _only_assignments = click.option(
     "--assignment", "assignments", multiple=True, help="Only this assignment; may be given several times."
 )
@@ -48,7 +49,7 @@ def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solut
 
 
 @click.command("new-class")
-@click.argument("folder", type=click.Path(path_type=Path))
+@_class_folder
 @_only_assignments
 def new_class(folder: Path, assignments: tuple[str, ...]) -> None:
     """Make an nbgrader course directory in FOLDER, ready for submissions."""
@@ -61,7 +62,7 @@ def new_class(folder: Path, assignments: tuple[str, ...]) -> None:
 
 
 @click.command("renew-class")
-@click.argument("folder", type=click.Path(path_type=Path))
+@_class_folder
 @_only_assignments
 def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
     """Bring the sources of the class FOLDER to what the course says now; the old ones are kept."""
@@ -74,7 +75,7 @@ def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
 
 
 @click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
+@_class_folder
 @click.argument("files", nargs=-1, type=click.Path(path_type=Path))
 @click.option(
     "--assignment", default="", help="What all of it is for; told from names and contents where not given."
@@ -146,7 +147,7 @@ def collect(
 
 
 @click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
+@_class_folder
 @_only_assignments
 @click.option("--student", "students", multiple=True, help="Only this student; may be given several times.")
 @_only_sections
@@ -219,7 +220,7 @@ def grade(
 
 
 @click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
+@_class_folder
 @click.option(
     "--to",
     type=click.Choice(["canvas", "moodle", "gradescope", "csv", "xlsx"]),
@@ -282,7 +283,7 @@ def export(
 
 
 @click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
+@_class_folder
 @_only_sections
 @click.option("--without-names", is_flag=True, help="Call students by numbers, without links to their pages.")
 @click.option(
@@ -297,7 +298,7 @@ def report(folder: Path, sections: tuple[str, ...], without_names: bool, output:
 
 
 @click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
+@_class_folder
 @click.argument("assignment", required=False, default="")
 @click.option(
     "--output", type=click.Path(path_type=Path), help="The page; FOLDER/similar.html where not given."
@@ -325,7 +326,7 @@ def similar(folder: Path, assignment: str, output: Path | None) -> None:
 
 
 @click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
+@_class_folder
 @click.argument("before", required=False, default="")
 @click.argument("after", required=False, default="")
 def compare(folder: Path, before: str, after: str) -> None:
@@ -342,44 +343,6 @@ def compare(folder: Path, before: str, after: str) -> None:
     click.echo(f"{old} → {new}: {counted(len(found), 'difference')}")
     for difference in found:
         click.echo(printable(difference.line()))
-
-
-@click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
-@click.argument("student")
-def attempts(folder: Path, student: str) -> None:
-    """Say what came of each time that STUDENT was graded in the class FOLDER."""
-    from autograder.grading.class_store import ClassStore
-    from autograder.grading.classes.class_directory import ClassDirectory
-
-    with grading_errors(), ClassStore(ClassDirectory(folder)) as store:
-        found = store.attempts(student)
-    if not found:
-        fail(f"Nobody of the id {student!r} was graded here since attempts are noted.")
-    for attempt in found:
-        click.echo(printable(attempt.line()))
-
-
-@click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
-@click.argument("student")
-@click.argument("exercise")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help="The file; FOLDER/appeals/STUDENT-EXERCISE.json where not given.",
-)
-def appeal(folder: Path, student: str, exercise: str, output: Path | None) -> None:
-    """Write down all about the check of EXERCISE by STUDENT in the class FOLDER.
-
-    What the student wrote, what was expected, what the judge saw, what it decided, and with which course. The file is
-    JSON to read, and `./course replay` judges it again.
-    """
-    from autograder.grading.appealing.appeal import write_appeal
-
-    with grading_errors():
-        click.echo(write_appeal(folder, student, exercise, output))
 
 
 @click.command()
@@ -425,8 +388,6 @@ COMMANDS = (
     report,
     similar,
     compare,
-    attempts,
-    appeal,
     worker,
     demo,
 )

@@ -1,7 +1,8 @@
-"""The commands of students: check a program, open the course, see what is missing."""
+"""The commands of students: check a program, open the course, see what is reached and what is missing."""
 
 from __future__ import annotations
 
+import os
 import sys
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from autograder.appeals import appeal_commands as appeals
+from autograder.cli import appeals
 from autograder.cli.ending import CANNOT, NO, fail
 
 if TYPE_CHECKING:
@@ -17,6 +18,13 @@ if TYPE_CHECKING:
 
     from autograder.boxes.one_command import OneCommandBox
     from autograder.verdict import Verdict
+
+
+_notebooks = click.option(
+    "--folder",
+    type=click.Path(path_type=Path),
+    help="The folder of your notebooks, where it is not chapters.",
+)
 
 
 @click.command()
@@ -146,6 +154,54 @@ def lab(folder: Path | None, arguments: tuple[str, ...]) -> None:
 
 
 @click.command()
+@click.option("--json", "as_json", is_flag=True, help="Print it as one JSON object.")
+@_notebooks
+def progress(as_json: bool, folder: Path | None) -> None:
+    """Say which points you have reached, and where to go on. It is no grade."""
+    from autograder import course, exercises, journal
+    from autograder.progress.progress_text import standing_json, standing_text
+    from autograder.progress.standing import standing
+
+    try:
+        root = course.root()
+        notebooks, kept = _notebooks_and_journal(root, folder)
+        found = standing(root, notebooks, journal.entries(kept))
+    except (course.NoCourse, course.BrokenChapter, exercises.BrokenExercise) as error:
+        fail(str(error))
+    click.echo(standing_json(found) if as_json else standing_text(found))
+
+
+@click.command()
+@click.argument("notebook")
+@_notebooks
+def reset(notebook: str, folder: Path | None) -> None:
+    """Begin NOTEBOOK anew, such as lab_1_2: the released one is put back, and yours is kept as a copy beside it."""
+    from autograder import course
+    from autograder.progress import resetting
+
+    try:
+        root = course.root()
+        notebooks, kept = _notebooks_and_journal(root, folder)
+        done = resetting.reset(root, notebooks, notebook, kept)
+    except (course.NoCourse, course.BrokenChapter, resetting.CannotReset) as error:
+        fail(str(error))
+    click.echo(f"{done.notebook} is as it was released.")
+    if done.copy is not None:
+        click.echo(f"Yours is kept: {done.copy}")
+
+
+def _notebooks_and_journal(root: Path, folder: Path | None) -> tuple[Path, Path | None]:
+    """The folder of the notebooks, and its journal."""
+    from autograder import course, journal
+    from autograder.lab import NOTEBOOKS_VARIABLE
+
+    if folder is not None:
+        return folder.resolve(), journal.place(folder.resolve())
+    session = os.environ.get(NOTEBOOKS_VARIABLE)
+    return Path(session) if session else root / course.CHAPTERS, journal.own_place()
+
+
+@click.command()
 @click.option("--json", "as_json", is_flag=True, help="Print the findings as JSON.")
 def doctor(as_json: bool) -> None:
     """Say what is there, what is missing and how to get it."""
@@ -160,5 +216,7 @@ def doctor(as_json: bool) -> None:
 COMMANDS = (
     check,
     lab,
+    progress,
+    reset,
     doctor,
 )

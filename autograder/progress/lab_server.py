@@ -1,6 +1,11 @@
-"""The course page, served by the Jupyter server that ``./course lab`` starts (``lab_config/`` switches it on).
+"""The server of ``./course lab``: the course page, and notebooks that are not "unsaved" as soon as they are open.
 
-It needs nothing of JupyterLab: the page is there also where the side panel is not.
+``lab_config/`` switches the page on. It needs nothing of JupyterLab: it is there also where the side panel is not.
+
+A released notebook names no version of Python, since it is made once and opened with any. JupyterLab writes the
+version of the kernel into each notebook that has none, or another one, and from then on there is something to save:
+the mark of an unsaved notebook, and a question when it is closed, before the student has written a letter. So the
+server puts the version in while it reads the file. The file itself stays as it is until the student saves.
 """
 
 from __future__ import annotations
@@ -8,12 +13,14 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jupyter_server.auth.decorator import authorized
 from jupyter_server.base.handlers import JupyterHandler
+from jupyter_server.services.contents.largefilemanager import AsyncLargeFileManager
 from jupyter_server.utils import url_path_join
 from tornado import web
 
@@ -25,6 +32,10 @@ from autograder.progress.standing import Standing, standing
 
 if TYPE_CHECKING:
     from jupyter_server.serverapp import ServerApp
+
+
+VERSION = sys.version.split()[0]
+"""The version of the kernel's language (``IPythonKernel.language_info``): it runs on the server's own Python."""
 
 
 class _CourseHandler(JupyterHandler):
@@ -132,6 +143,20 @@ class Certificate(_CourseHandler):
                 self.finish(certificate.certificate_svg(chapter.title, chapter.possible, chapter.finished))
                 return
         raise web.HTTPError(404, reason="there is no such certificate yet")
+
+
+class OpenedNotebooks(AsyncLargeFileManager):
+    """The usual files, and the kernel's version in the notebooks among them."""
+
+    async def get(self, path: str, *args: Any, **options: Any) -> dict[str, Any]:
+        """The server's answer about a file or folder, with the file's content where that is asked for."""
+        model: dict[str, Any] = await super().get(path, *args, **options)  # type: ignore[no-untyped-call]
+        content = model.get("content")
+        if model["type"] == "notebook" and content is not None:
+            language = content["metadata"].get("language_info", {})
+            if language.get("name") == "python":
+                language["version"] = VERSION
+        return model
 
 
 def _jupyter_server_extension_points() -> list[dict[str, str]]:

@@ -10,9 +10,9 @@ from typing import Any
 
 from ipykernel.ipkernel import IPythonKernel
 
-from autograder.opened_notebooks import OpenedNotebooks
+from autograder.progress.lab_server import OpenedNotebooks
 
-RELEASED = Path(__file__).resolve().parents[1] / "chapters/01_ros2_fundamentals/lab_1_2.ipynb"
+RELEASED = Path(__file__).resolve().parents[2] / "chapters/01_ros2_fundamentals/lab_1_2.ipynb"
 
 
 def opened(folder: Path, name: str, **options: Any) -> dict[str, Any]:

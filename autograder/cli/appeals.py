@@ -1,4 +1,4 @@
-"""``./course replay``, and the option of ``./course check`` that writes the messages of a check."""
+"""The commands about one student's checks: list them, write one down, judge it again; and its messages in a file."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from autograder.cards.readable import printable
+from autograder.cli.ending import fail, grading_errors
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,8 +27,46 @@ _MAX_LINES = 100
 
 
 def _fail(message: str) -> NoReturn:
-    click.echo(f"autograder: {_shown(message)}", err=True)
-    sys.exit(2)
+    """End with a message in which there may be something that somebody else wrote."""
+    fail(_shown(message))
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.argument("student")
+def attempts(folder: Path, student: str) -> None:
+    """Say what came of each time that STUDENT was graded in the class FOLDER."""
+    from autograder.grading.class_store import ClassStore
+    from autograder.grading.classes.class_directory import ClassDirectory
+
+    with grading_errors(), ClassStore(ClassDirectory(folder)) as store:
+        found = store.attempts(student)
+    if not found:
+        fail(f"Nobody of the id {student!r} was graded here since attempts are noted.")
+    for attempt in found:
+        click.echo(printable(attempt.line()))
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.argument("student")
+@click.argument("exercise")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="The file; FOLDER/appeals/STUDENT-EXERCISE.json where not given.",
+)
+def appeal(folder: Path, student: str, exercise: str, output: Path | None) -> None:
+    """Write down all about the check of EXERCISE by STUDENT in the class FOLDER.
+
+    What the student wrote, what was expected, what the judge saw, what it decided, and with which course. The file is
+    JSON to read, and `./course replay` judges it again.
+    """
+    from autograder.grading.appealing.appeal import write_appeal
+
+    with grading_errors():
+        click.echo(write_appeal(folder, student, exercise, output))
 
 
 def _shown(line: str) -> str:
@@ -129,3 +168,10 @@ def _lines(appeal: Appeal, again: Replay) -> Iterator[str]:
 def _told(verdict: Verdict) -> str:
     diagnosis = f", {verdict.diagnosis.key}" if verdict.diagnosis else ""
     return f"{verdict.state}, {verdict.score:g} of {verdict.max_score:g} points{diagnosis}"
+
+
+COMMANDS = (
+    attempts,
+    appeal,
+    replay,
+)
