@@ -210,12 +210,12 @@ EXERCISE = adder.exercise(
     text={
         "Wait for the service for `patience_sec` seconds.": "late limit",
         "if no node offers it in time: raise `TimeoutError` then": "limit",
-        "Another exception, or a line that says so and `None`, is accepted as well.": "limit",
+        "You may also raise another exception, or log that there is no service and return `None`.": "limit",
         "Ask for the sum of `a` and `b`.": "calls chain",
         "Ask for the sum of that answer and `c`.": "calls chain",
         "Use the sum that the *service* gave you": "chain",
         "Log or print the sum; return it.": "sum",
-        "(In the notebook one is enough.)": "sum",
-        "it says so and ends within 12 seconds, or it says again and again that it waits": "limit",
+        "(In the notebook, one of the two is enough.)": "sum",
+        "it must say so and end within 12 seconds, or say at least every three seconds that it still waits.": "limit",
     },
 )

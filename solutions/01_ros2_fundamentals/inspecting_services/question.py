@@ -424,9 +424,8 @@ EXERCISE = question.exercise(
     text={
         "returns the name as soon as it sees a service of the type": "late other",
         "After `patience_sec` seconds without one it raises `TimeoutError`.": "none",
-        "Another exception, or a line that says so and `None`, is accepted as well.": "none",
-        "A program of your own has no `patience_sec`: "
-        "without such a service it says so and ends within 12 seconds, or it says again and again "
-        "that it looks": "none",
+        "You may also raise another exception, or log that there is no such service and return `None`.": "none",
+        "Without such a service it must say so and end within 12 seconds, "
+        "or say at least every three seconds that it still looks.": "none",
     },
 )

@@ -48,6 +48,6 @@ EXERCISE = hello.exercise(
         "Write the method `__init__` of the class.": "node",
         "call `__init__` of the class `Node` with the name of the node": "node",
         "**log** `Hello, ROS 2! From SimpleNode.`": "line",
-        "Write yours: the executable `simple_node`, which calls `main` of your module.": "starts",
+        "Write the entry point of the executable `simple_node`, which calls `main` of your module.": "starts",
     },
 )

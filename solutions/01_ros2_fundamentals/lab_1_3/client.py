@@ -184,11 +184,11 @@ EXERCISE = client.exercise(
     sample_arguments=(1, 2),
     text={
         "raise `TimeoutError` if it is not there in time.": "late limit",
-        "Another exception, or a line that says so and `None`, is accepted as well.": "limit",
+        "You may also raise another exception, or log that there is no service and return `None`.": "limit",
         "Send the request, and spin the node until the answer has arrived": "call",
         "Log or print the sum that the server sent": "sum",
         "Return it, too": "sum",
         "notebook one of the two is enough for the judge.": "sum",
-        "it says so and ends within 12 seconds, or it says again and again that it waits": "limit",
+        "it must say so and end within 12 seconds, or say at least every three seconds that it still waits.": "limit",
     },
 )

@@ -28,10 +28,10 @@ EXERCISE = client.exercise(
     text={
         "Wait for the server: `client.actions.wait_for_server(timeout_sec=...)` returns `False`": "late limit",
         "In this case raise `TimeoutError`.": "limit",
-        "Another exception, or a line that says so and `None`, is accepted as well.": "limit",
+        "You may also raise another exception, or log that there is no server and return `None`.": "limit",
         "Make the goal, `Fibonacci.Goal(order=...)`, and send it": "goal feedback",
         "Wait for the future that you get, and return its result": "goal",
-        "it says so and ends within 12 seconds, or it says again and again that it waits": "limit",
+        "it must say so and end within 12 seconds, or say at least every three seconds that it still waits.": "limit",
         "In every case it must log or print how the goal ended": "refused aborted",
         "If the goal was not accepted, log that it was `REJECTED`, and return an empty list.": "refused",
         "(Other words, or an exception that says so, are accepted as well.)": "refused",

@@ -263,7 +263,7 @@ EXERCISE = server.exercise(
         "leave the loop if a cancel is requested": "cancel",
         "append the next number": "sequence",
         "publish the list as feedback": "feedback",
-        "sleep for `PERIOD` seconds, which stands for hard work.": "cancel",
+        "sleep for `PERIOD` seconds, in place of hard work.": "cancel",
         "After the loop say how the goal ended: call `canceled()` or `succeed()`.": "sequence cancel",
         "Each of two goals has to end with its own sequence, side by side or one after the other.": "two",
         "Let your node offer the action `fibonacci`.": "action",
