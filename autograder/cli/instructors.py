@@ -121,7 +121,7 @@ def collect(
     Exit code 0: everything has its place; 2: the lines say what has not, and why.
     """
     from autograder.grading.collecting import collect as collecting
-    from autograder.grading.collecting.lists import read_time
+    from autograder.grading.collecting.forms import read_time
     from autograder.grading.collecting.showing import show
 
     if not (files or times or settled):

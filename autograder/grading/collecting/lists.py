@@ -4,31 +4,24 @@ from __future__ import annotations
 
 import csv
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import UTC
 from typing import TYPE_CHECKING, Any
 
 import re2
 import yaml
 
+from autograder.grading.collecting.forms import read_time
 from autograder.grading.reporting.spreadsheet import csv_rows
 from autograder.grading.table.roster import Identity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
+    from datetime import datetime
 
 GRADESCOPE = "submission_metadata.yml"
 """The list that Gradescope puts into its export."""
 _NUMBER = re2.compile(r"(\d+)(?:\.\w+)?$")
 _NO_TIME = ("", "-")
-_TIMES = (
-    "%d %B %Y %I:%M %p",
-    "%d %B %Y %H:%M",
-    "%B %d %Y %I:%M %p",
-    "%B %d %Y %H:%M",
-    "%Y-%m-%d %H:%M:%S %z",
-)
-"""Beside ISO 8601; of the first four, an English Moodle writes one, with the day of the week in front."""
-_DAYS = frozenset(("monday", "tuesday", "wednesday", "thursday", "friday", "saturday", "sunday"))
 
 
 @dataclass(frozen=True)
@@ -189,20 +182,3 @@ def _word(value: object) -> str:
 def is_unread(entry: Entry) -> bool:
     """True if a list says when, and nobody could read it."""
     return entry.when is None and entry.time not in _NO_TIME
-
-
-def read_time(text: str) -> datetime | None:
-    """A time as lists have it; None where nobody can read it."""
-    text = text.strip().removesuffix(" UTC") + (" +0000" if text.strip().endswith(" UTC") else "")
-    text = text.replace(" Z", "Z")  # as YAML writes it
-    try:
-        return datetime.fromisoformat(text)
-    except ValueError:
-        pass
-    words = [word for word in text.replace(",", " ").split() if word.lower() not in _DAYS]
-    for form in _TIMES:
-        try:
-            return datetime.strptime(" ".join(words), form)
-        except ValueError:
-            continue
-    return None
