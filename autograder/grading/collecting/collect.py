@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
+import hashlib
 import zlib
 from collections import defaultdict
 from dataclasses import replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
-from autograder.grading.classes.class_directory import ClassDirectory, reason_against_name
+from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.archives import File, NotTaken, Room, files_of, is_zip, within
 from autograder.grading.collecting.assignment_of import AssignmentOf, NoTarget, is_notebook, stem_of
 from autograder.grading.collecting.forms import FORMS, plain, read_path
 from autograder.grading.collecting.lists import GRADESCOPE, Entry, is_unread, read_list
 from autograder.grading.collecting.outcomes import CollectReport, Outcome, State, WaitingList
-from autograder.grading.collecting.records import CollectedRecords
-from autograder.grading.collecting.student_of import StudentOf
+from autograder.grading.collecting.records import Collected, CollectedRecords
+from autograder.grading.collecting.student_of import Owners, StudentOf
 from autograder.grading.collecting.submitted_files import Candidate, Placing
 from autograder.grading.errors import GradingError, course_command
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
-from autograder.grading.table.roster import Roster, Student, enter_roster, read_roster
+from autograder.grading.table.roster import Roster, enter_roster, read_roster
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,11 +29,9 @@ if TYPE_CHECKING:
 
     from autograder.grading.collecting.forms import Found
 
-    _Who = tuple[Found, tuple[tuple[Student, ...], ...]]
-    """The way in which a name was read, and of each member of the group who may be meant."""
-
 _PAGES = ("index.html", GRADESCOPE)
 """Files that an LMS itself adds to a download."""
+_NOBODY = Owners(None)
 _CAME = (State.PLACED, State.UNCHANGED, State.EARLIER)
 _OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".tgz", ".tar", ".bz2", ".xz", ".zst")
 
@@ -234,17 +233,18 @@ class _Collecting:
                 else None
             )
             ways = [found] if found else plain(file.parts)[:depth] if file.parts else []
-            who = next((who for way in ways if (who := self._student_of.find(way)) is not None), None)
+            known = (owners for way in ways if (owners := self._student_of.find(way)) is not None)
+            owners = next(known, Owners(found))
             try:
                 data = file.read()
             except NotTaken:
                 data = b""
             if not is_zip(file.name, data) or not data:
-                self._take_file(file, data, who, found, source)
+                self._take_file(file, data, owners, source)
                 continue
-            whose = tuple(one.id for students in who[1] for one in students) if who else file.parts[:depth]
-            for inner, held in within(file, data, rooms[whose]):
-                self._take_file(inner, held, who, found, source)
+            ids = tuple(one.id for students in owners.members for one in students)
+            for inner, held in within(file, data, rooms[ids or file.parts[:depth]]):
+                self._take_file(inner, held, owners, source)
 
     def _likely_form(self, files: Sequence[File], depth: int) -> str:
         """The form that most of the names have; empty where as many are in folders that are called as students are.
@@ -265,107 +265,94 @@ class _Collecting:
         likely = max(FORMS, key=lambda form: len(votes[form]))
         return likely if len(votes[likely]) > len(in_folders) else ""
 
-    def _take_file(
-        self, file: File, data: bytes, who: _Who | None, found: Found | None, source: Path
-    ) -> None:
+    def _take_file(self, file: File, data: bytes, owners: Owners, source: Path) -> None:
         """Take a file whose bytes are known, or say why not."""
         try:
             data = data or file.read()
         except NotTaken as error:
             may_be_work = is_notebook(file.name, b"") or is_zip(file.name, b"")
             self._outcomes.append(
-                self._outcome(file, State.NOT_PLACED, str(error), who)
+                self._outcome(file, State.NOT_PLACED, str(error), owners)
                 if may_be_work
-                else self._soft(file, str(error), who)
+                else self._soft(file, str(error), owners)
             )
             return
         if not is_notebook(file.name, data):
-            self._outcomes.append(self._no_notebook(file, who))
+            self._outcomes.append(self._no_notebook(file, owners))
             return
-        reason = self._reason_against(who, found)
-        if who is None or reason:
-            self._refuse(file, reason, who)
+        found, reason = owners.found, self._student_of.reason_against(owners)
+        if found is None or reason:
+            self._refuse(file, reason, owners)
             return
-        way, members = who
         # Of what is in a student's own zip the name says which notebook it is, though not whose.
-        name = file.name if file.inner else way.file
-        packed = zlib.compress(data, 1)
-        for (student,) in members:
+        name = file.name if file.inner else found.file
+        content, packed = hashlib.sha256(data).hexdigest(), zlib.compress(data, 1)
+        identity = found.identity
+        for (student,) in owners.members:
             try:
                 (assignment, notebook), is_named = self._assignment_from.target(name, data)
             except NoTarget as error:
-                self._outcomes.append(self._soft(file, str(error), (way, ((student,),))))
+                self._outcomes.append(self._soft(file, str(error), Owners(found, ((student,),))))
                 continue
-            when = self._when(way, student.id, assignment)
-            if way.time and way.when is None:
-                self._unread.append(way.time)
-            label = file.label if len(members) == 1 else f"{file.label} ({student.id})"
-            there = "/".join(file.parts)
+            if found.time and found.when is None:
+                self._unread.append(found.time)
+            collected = Collected(
+                notebook,
+                content,
+                source=file.label if len(owners.members) == 1 else f"{file.label} ({student.id})",
+                collected=datetime.now(tz=UTC),
+                when=self._when(found, student.id, assignment),
+                order=found.order,
+                late=found.late,
+                lms=identity.lms,
+                number=identity.number,
+                name=identity.name or identity.login,
+                file="/".join(file.parts),
+            )
+            number = stem_of(name)[1]
             self._candidates.append(
-                Candidate(
-                    label,
-                    source,
-                    there,
-                    way,
-                    student.id,
-                    assignment,
-                    notebook,
-                    packed,
-                    when,
-                    stem_of(name)[1],
-                    is_named,
-                )
+                Candidate(student.id, assignment, collected, found, source, packed, number, is_named)
             )
 
     def _when(self, way: Found, student: str, assignment: str) -> datetime | None:
         when = way.when or self._student_of.time(way.identity, student, assignment)
         return self._in_utc(when) or self._handed_in
 
-    def _reason_against(self, who: _Who | None, found: Found | None) -> str:
-        """The reason why a file is nobody's work; empty where it is somebody's."""
-        if who is None:
-            return self._student_of.reason_against(found.identity if found else None)
-        way, members = who
-        for students in members:
-            if len(students) > 1:
-                return self._student_of.reason_against_several(way.identity, students)
-            reason = reason_against_name(students[0].id)
-            if reason:
-                return f"{students[0].id} cannot be a student's id: {reason}. List it in students.csv"
-        return ""
-
-    def _no_notebook(self, file: File, who: _Who | None) -> Outcome:
+    def _no_notebook(self, file: File, owners: Owners) -> Outcome:
         """The outcome of a file that holds no notebook: a picture, a page of the LMS, or the work in another form."""
-        if file.name in _PAGES and not file.inner and who is None:
+        if file.name in _PAGES and not file.inner and not owners.members:
             return Outcome(file.label, State.BESIDE, "it is a page of the LMS")
-        student = _only(who)
+        student = owners.only
         name = student.id if student else "STUDENT"
         if file.name.lower().endswith(_OTHER_ARCHIVES):
             reason = (
                 f"it is an archive that is not opened here: unpack it into a folder named {name}, and type "
                 f"{course_command('collect', self._directory.path, name)}"
             )
-            return self._outcome(file, State.NOT_PLACED, reason, who)
-        place = self._directory.path / "submitted" / name / (self._assignment_of(file, who) or "ASSIGNMENT")
-        return self._soft(file, "it is no notebook", who, f"ask for the notebook, or put it into {place}")
+            return self._outcome(file, State.NOT_PLACED, reason, owners)
+        place = (
+            self._directory.path / "submitted" / name / (self._assignment_of(file, owners) or "ASSIGNMENT")
+        )
+        return self._soft(file, "it is no notebook", owners, f"ask for the notebook, or put it into {place}")
 
-    def _refuse(self, file: File, reason: str, who: _Who | None = None) -> None:
-        self._outcomes.append(self._outcome(file, State.NOT_PLACED, reason, who))
+    def _refuse(self, file: File, reason: str, owners: Owners = _NOBODY) -> None:
+        self._outcomes.append(self._outcome(file, State.NOT_PLACED, reason, owners))
 
-    def _soft(self, file: File, reason: str, who: _Who | None, what_to_do: str = "") -> Outcome:
+    def _soft(self, file: File, reason: str, owners: Owners, what_to_do: str = "") -> Outcome:
         """An outcome that somebody has to look at, unless its student's notebook has come, too."""
-        outcome = replace(self._outcome(file, State.BESIDE, reason, who), what_to_do=what_to_do)
+        outcome = replace(self._outcome(file, State.BESIDE, reason, owners), what_to_do=what_to_do)
         return outcome if outcome.student else _alone(outcome)
 
-    def _outcome(self, file: File, state: State, reason: str, who: _Who | None) -> Outcome:
-        student = _only(who)
+    def _outcome(self, file: File, state: State, reason: str, owners: Owners) -> Outcome:
+        student = owners.only
         return Outcome(
-            file.label, state, reason, student.id if student else "", self._assignment_of(file, who)
+            file.label, state, reason, student.id if student else "", self._assignment_of(file, owners)
         )
 
-    def _assignment_of(self, file: File, who: _Who | None) -> str:
+    def _assignment_of(self, file: File, owners: Owners) -> str:
         """The assignment that the name speaks of which the student gave to a file."""
-        return self._assignment_from.named(who[0].file if who and not file.inner else file.name)
+        own_name = owners.found.file if owners.found and owners.members and not file.inner else file.name
+        return self._assignment_from.named(own_name)
 
     def _in_utc(self, when: datetime | None) -> datetime | None:
         if when is None:
@@ -387,8 +374,3 @@ def _alone(one: Outcome) -> Outcome:
 def _depth(files: Sequence[File]) -> int:
     """How many parts of a path may say whose it is: below what all have in common all is the students' own."""
     return 2 if len({file.parts[0] for file in files if file.parts}) == 1 else 1
-
-
-def _only(who: _Who | None) -> Student | None:
-    """The one student whose file it is; None where it is nobody's, a group's or may be several's."""
-    return who[1][0][0] if who and len(who[1]) == 1 and len(who[1][0]) == 1 else None

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from autograder.grading.classes.class_directory import reason_against_name
 from autograder.grading.table.roster import Identity, Roster, Student
 
 if TYPE_CHECKING:
@@ -16,6 +17,25 @@ if TYPE_CHECKING:
     from autograder.grading.collecting.lists import Entry
 
 _NO_ID = "its name does not say whose it is: say --from, or put it into a folder with the student's id and collect that"
+
+
+@dataclass(frozen=True)
+class Owners:
+    """The students who may have handed in a file, as its name says.
+
+    Attributes:
+        found: The facts in the name; None where it has no known form.
+        members: For each member of the group, the students who may be meant; empty where nobody is known.
+    """
+
+    found: Found | None
+    members: tuple[tuple[Student, ...], ...] = ()
+
+    @property
+    def only(self) -> Student | None:
+        """The one student; None where it is nobody's, a group's or may be several's."""
+        students = [student for members in self.members for student in members]
+        return students[0] if len(students) == 1 else None
 
 
 class StudentOf:
@@ -32,16 +52,12 @@ class StudentOf:
         self._told = list(told)
         self._by_number = {(one.lms, one.number): one for one in (*entries, *self._told) if one.number}
 
-    def find(self, way: Found) -> tuple[Found, tuple[tuple[Student, ...], ...]] | None:
-        """The students who may be meant, by the first way of reading the name that names one.
-
-        Returns:
-            That way, and for each member of the group whose file it is the students who may be meant.
-        """
+    def find(self, way: Found) -> Owners | None:
+        """The students who may be meant, by the first way of reading the name that names one."""
         readings = way.readings if self._roster.students and way.readings else (way.identity,)
         for identity in readings:
             if members := self._of(identity):
-                return replace(way, identity=identity), members
+                return Owners(replace(way, identity=identity), members)
         return None
 
     def _of(self, identity: Identity) -> tuple[tuple[Student, ...], ...]:
@@ -61,10 +77,21 @@ class StudentOf:
         """The student of whom the first of several names is sure."""
         return next((hit[0] for name in names if len(hit := self._roster.find(name)) == 1), None)
 
-    def reason_against(self, identity: Identity | None) -> str:
-        """The reason why nobody was found, and what to do."""
-        if identity is None:
+    def reason_against(self, owners: Owners) -> str:
+        """The reason why a file is nobody's work, and what to do; empty where it is somebody's."""
+        if owners.found is None:
             return _NO_ID
+        identity = owners.found.identity
+        if not owners.members:
+            return self._unknown(identity)
+        for students in owners.members:
+            if len(students) > 1:
+                return _of_several(identity, students)
+            if reason := reason_against_name(students[0].id):
+                return f"{students[0].id} cannot be a student's id: {reason}. List it in students.csv"
+        return ""
+
+    def _unknown(self, identity: Identity) -> str:
         number = identity.number or identity.login
         known = self._by_number.get((identity.lms, number))
         called = " and ".join(str(names[-1]) for names in known.members if names) if known else str(identity)
@@ -72,16 +99,6 @@ class StudentOf:
             f"nobody in the class is called {called or number}: add a line to students.csv, or the id that "
             f"{identity.lms.capitalize()} uses ({number}) to the column {identity.lms}"
         )
-
-    def reason_against_several(self, identity: Identity, students: Iterable[Student]) -> str:
-        """The reason why it may be several, and what to do."""
-        names = ", ".join(student.id for student in students)
-        if identity.lms == "moodle":
-            return (
-                f"{identity} may be {names}: collect it together with the grading worksheet (Grades-….csv), which says "
-                f"by their addresses who number {identity.number} is"
-            )
-        return f"{identity} may be {names}: put the LMS's id of each into students.csv"
 
     def time(self, identity: Identity, student: str, assignment: str) -> datetime | None:
         """The time at which a list says that somebody handed in, in its own time zone; None where none says so."""
@@ -113,3 +130,13 @@ class StudentOf:
             for names in entry.members
             if entry.when is not None and (student := self._first(names))
         }
+
+
+def _of_several(identity: Identity, students: Iterable[Student]) -> str:
+    names = ", ".join(student.id for student in students)
+    if identity.lms == "moodle":
+        return (
+            f"{identity} may be {names}: collect it together with the grading worksheet (Grades-….csv), which says "
+            f"by their addresses who number {identity.number} is"
+        )
+    return f"{identity} may be {names}: put the LMS's id of each into students.csv"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import hashlib
 import zlib
 from collections import defaultdict
@@ -37,29 +36,24 @@ class Candidate:
     """A file of which it is known whose it is and which notebook.
 
     Attributes:
-        label: How messages call it.
-        download: What it came in: files of one download that have the same time were handed in together.
-        there: Its path in the download.
-        found: What its name says.
-        student: Whose it is.
-        assignment: Which it is for.
-        notebook: Which notebook of that.
+        student: The student's id.
+        assignment: The assignment's name.
+        collected: The record of it, if it counts.
+        found: The facts in its name.
+        download: The file or folder that it came in: files of one download that have the same time were handed in
+            together.
         packed: Its bytes, compressed: all files of a download are held at once, and a few bytes of a student's archive
             may unpack to gigabytes.
-        when: When it was handed in, in UTC; None where nothing says so.
-        number: What a browser or a system has added to its name.
+        number: The number that a browser or a system has added to its name.
         is_named: Whether it is called as the notebook is.
     """
 
-    label: str
-    download: Path
-    there: str
-    found: Found
     student: str
     assignment: str
-    notebook: str
+    collected: Collected
+    found: Found
+    download: Path
     packed: bytes
-    when: datetime | None
     number: int
     is_named: bool
 
@@ -68,15 +62,20 @@ class Candidate:
         """Its bytes."""
         return zlib.decompress(self.packed)
 
-    @functools.cached_property
+    @property
     def content(self) -> str:
         """The hash of its bytes."""
-        return hashlib.sha256(self.data).hexdigest()
+        return self.collected.content
+
+    @property
+    def label(self) -> str:
+        """Its name in messages."""
+        return self.collected.source
 
     def outcome(self, state: State, reason: str = "", *, replaced: bool = False) -> Outcome:
         """Its outcome."""
-        late = self.found.late
-        return Outcome(self.label, state, reason, self.student, self.assignment, self.when, late, replaced)
+        when, late = self.collected.when, self.collected.late
+        return Outcome(self.label, state, reason, self.student, self.assignment, when, late, replaced)
 
 
 class Placing:
@@ -98,7 +97,7 @@ class Placing:
         """
         groups: dict[tuple[str, str, str], list[Candidate]] = defaultdict(list)
         for candidate in candidates:
-            groups[candidate.assignment, candidate.student, candidate.notebook].append(candidate)
+            groups[candidate.assignment, candidate.student, candidate.collected.notebook].append(candidate)
         for key in sorted(groups):
             newest, others = _newest(groups[key])
             for other, outcome in others:
@@ -138,24 +137,25 @@ class Placing:
                 yield student, assignment, when
 
     def _put(self, newest: Candidate) -> Outcome:
+        notebook = newest.collected.notebook
         folder = self._directory.path / "submitted" / newest.student / newest.assignment
-        path = folder / f"{newest.notebook}{SUFFIX}"
+        path = folder / f"{notebook}{SUFFIX}"
         try:
             there = _lying(path)
         except UnreadableSubmission as error:
             return newest.outcome(State.NOT_PLACED, str(error))
         history = self._records.get(newest.assignment, newest.student) or History({})
-        known = history.now.get(newest.notebook)
+        known = history.now.get(notebook)
         content = "" if there is None else hashlib.sha256(there).hexdigest()
         if (
             there is not None
             and known is not None
             and content == newest.content
-            and not _has_news(newest, known)
+            and not _has_news(newest.collected, known)
         ):
             return newest.outcome(State.UNCHANGED)
         if there is not None and content != newest.content:
-            if content not in history.collected(newest.notebook):
+            if content not in history.collected(notebook):
                 return newest.outcome(
                     State.NOT_PLACED,
                     f"{path} is another notebook, which nobody collected: move it away first",
@@ -169,7 +169,7 @@ class Placing:
             self._records.keep(newest.assignment, newest.student, content, there)
         replaced = known is not None and known.content != newest.content
         before = (*history.before, known) if known is not None and replaced else history.before
-        now = {**history.now, newest.notebook: _collected(newest)}
+        now = {**history.now, notebook: newest.collected}
         # What is written down goes first: who is killed in between finds a notebook there that was collected.
         self._write(newest.student, newest.assignment, replace(history, now=now, before=before))
         if content != newest.content:
@@ -206,20 +206,20 @@ def _newest(group: list[Candidate]) -> tuple[Candidate | None, _Others]:
         return None, [(one, one.outcome(State.NOT_PLACED, reason)) for one in group]
     together: dict[tuple[Path, datetime | None, tuple[Identity, ...]], list[Candidate]] = defaultdict(list)
     for one in group:
-        together[one.download, one.when, one.found.readings[:1]].append(one)
+        together[one.download, one.collected.when, one.found.readings[:1]].append(one)
     firsts: list[Candidate] = []
     outcomes: _Others = []
     for files in together.values():
-        first, others = _best(files, lambda one: (one.is_named, one.found.order, one.number))
+        first, others = _best(files, lambda one: (one.is_named, one.collected.order, one.number))
         outcomes += others
         firsts += [first] if first else []
-    timed = all(one.when is not None for one in firsts)
+    timed = all(one.collected.when is not None for one in firsts)
     alike = len({one.found.readings[:1] for one in firsts}) == 1
     newest, others = _best(
         firsts,
         lambda one: (
-            one.when.timestamp() if timed and one.when else 0.0,
-            one.found.order,
+            one.collected.when.timestamp() if timed and one.collected.when else 0.0,
+            one.collected.order,
             one.number if alike else 0,
         ),
     )
@@ -230,8 +230,8 @@ def _people(group: Iterable[Candidate]) -> str:
     """The numbers of the people whose files have come in one download as one student's; empty where it is one."""
     numbers: dict[Path, set[str]] = defaultdict(set)
     for one in group:
-        if one.found.identity.lms in _ONE_NUMBER:
-            numbers[one.download].add(one.found.identity.number)
+        if one.collected.lms in _ONE_NUMBER:
+            numbers[one.download].add(one.collected.number)
     return next((", ".join(sorted(several)) for several in numbers.values() if len(several) > 1), "")
 
 
@@ -252,7 +252,7 @@ def _best(
     for one in files:
         if one is not best:
             same = one.content == best.content
-            place = f"submitted/{best.student}/{best.assignment}/{best.notebook}{SUFFIX}"
+            place = f"submitted/{best.student}/{best.assignment}/{best.collected.notebook}{SUFFIX}"
             counts = (
                 "is newer and counts; this one is kept"
                 if best.is_named <= one.is_named
@@ -263,20 +263,21 @@ def _best(
     return best, others
 
 
-def _has_news(newest: Candidate, known: Collected) -> bool:
+def _has_news(newest: Collected, known: Collected) -> bool:
     """True if the same notebook comes with a later time, or with the first one."""
     return newest.when is not None and (known.when is None or newest.when > known.when)
 
 
 def _older(newest: Candidate, known: Collected, history: History) -> Outcome | None:
     """The outcome of a file that does not replace the one that is there; None where it does."""
-    if newest.when is not None and known.when is not None and newest.when != known.when:
-        if newest.when < known.when:
+    new = newest.collected
+    if new.when is not None and known.when is not None and new.when != known.when:
+        if new.when < known.when:
             at = f"{known.when:%Y-%m-%d %H:%M} UTC"
             return newest.outcome(State.EARLIER, f"the one that is there was handed in later ({at})")
         return None
-    if newest.found.order and known.order and newest.found.order != known.order:
-        if newest.found.order < known.order:
+    if new.order and known.order and new.order != known.order:
+        if new.order < known.order:
             return newest.outcome(State.EARLIER, "the one that is there was handed in later")
         return None
     if any(one.content == newest.content for one in history.before):
@@ -289,26 +290,6 @@ def _older(newest: Candidate, known: Collected, history: History) -> Outcome | N
             "--handed-in TIME or --times FILE",
         )
     return None
-
-
-def _collected(one: Candidate) -> Collected:
-    identity = one.found.identity
-    name = identity.name or identity.login
-    now = datetime.now(tz=UTC)
-    order, late = one.found.order, one.found.late
-    return Collected(
-        one.notebook,
-        one.content,
-        one.label,
-        now,
-        one.when,
-        order,
-        late,
-        identity.lms,
-        identity.number,
-        name,
-        one.there,
-    )
 
 
 def _lying(path: Path) -> bytes | None:
