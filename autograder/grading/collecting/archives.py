@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 MOST_FILES = 20_000
-"""In one folder of a download: who fills a folder, such as a student's own repository, harms nobody else."""
+"""In one folder of a download: a student whose folder is full, such as a repository, harms nobody else."""
 _LARGEST_LIST = 8_000_000
 """Bytes of an archive's list of files, which Python reads whole before anybody can count them: 400 a file."""
 _LARGEST_LIST_OF_ONE = 300_000
@@ -37,8 +37,8 @@ _DEEPEST = 3
 """Archives in an archive that a student has handed in, one in the other."""
 _DEEPEST_FOLDER = 100
 """Folders in each other; Python looks into no more than some hundreds."""
-_NOBODYS = ("__MACOSX", ".git", ".ipynb_checkpoints", "__pycache__", ".DS_Store")
-"""Files that systems and editors leave beside somebody's own."""
+_LEFT_BY_PROGRAMS = ("__MACOSX", ".git", ".ipynb_checkpoints", "__pycache__", ".DS_Store")
+"""Files that systems and editors leave beside a student's work."""
 _LEADS_OUT = "its name leads out of the archive"
 _LONGEST_NAME = 1_000
 """Characters of a path; a zip may have 65,535, whose printing alone would be a flood."""
@@ -83,8 +83,8 @@ class Room:
     """The room that all archives of one student in a download still have together.
 
     Attributes:
-        files: How many files.
-        unpacked: How many bytes, as far as the archives say so themselves.
+        files: The number of files.
+        unpacked: The number of bytes, as the archives themselves say it.
     """
 
     files: int = 5_000
@@ -95,7 +95,7 @@ def files_of(source: Path, *, opened: bool = True) -> Iterator[File]:
     """The files of an archive, of a folder, or the file itself; one that cannot be read says so when it is read.
 
     Args:
-        source: What the instructor named. Links are followed there and nowhere below.
+        source: A file or folder that the instructor named. It may be a link; nothing below it may.
         opened: Whether an archive is opened here; otherwise it is a file, as in a download.
     """
     counts: Counter[tuple[str, ...]] = Counter()
@@ -143,10 +143,10 @@ def _of_folder(source: Path) -> Iterator[File]:
     above = source.parent
     for folder, folders, names in os.walk(source):
         here = tuple(map(name_as_text, Path(folder).relative_to(above).parts))
-        folders[:] = sorted(name for name in folders if name not in _NOBODYS)
+        folders[:] = sorted(name for name in folders if name not in _LEFT_BY_PROGRAMS)
         for name in sorted(names):
             path = Path(folder) / name
-            if name in _NOBODYS or name.startswith("._"):
+            if name in _LEFT_BY_PROGRAMS or name.startswith("._"):
                 continue
             yield File(above, (*here, name_as_text(name)), functools.partial(_read_file, path))
         for name in folders:
@@ -182,7 +182,7 @@ def _of_zip(outer: File, data: BinaryIO, largest_list: int, room: Room | None = 
     for entry in entries:
         name = _name_of(entry)
         parts = tuple(part for part in name.replace("\\", "/").split("/") if part not in ("", "."))
-        if any(part in _NOBODYS or part.startswith("._") for part in parts):
+        if any(part in _LEFT_BY_PROGRAMS or part.startswith("._") for part in parts):
             continue
         reason = _reason_against(entry, name, parts)
         # The archive stays open as long as any of its files may be read.

@@ -1,4 +1,4 @@
-"""Putting what was downloaded into ``submitted``: whose it is, for which assignment, and which of several counts."""
+"""Puts a download into ``submitted``: finds the student and the assignment of each file, and the file that counts."""
 
 from __future__ import annotations
 
@@ -51,11 +51,11 @@ def collect(
     Args:
         path: The class directory.
         sources: Zips, folders, notebooks, and lists that say who a number is.
-        assignment: What all of it is for; told from names and contents by default.
+        assignment: The assignment that all of it is for; told from names and contents by default.
         zone: The time zone of times in names and lists; this machine's by default.
-        form: Which LMS it is from, one of :data:`FORMS`; told from the names by default.
-        times: Lists whose times count for all work of those whom they name, also for what was collected before.
-        handed_in: When that was handed in of which nothing else says it; in ``zone`` where it has none.
+        form: The LMS that it is from, one of :data:`FORMS`; told from the names by default.
+        times: Lists of times; they count for all work of the students in them, also for work that was collected before.
+        handed_in: The time of all work for which nothing else says one; in ``zone`` where it has no zone.
 
     Raises:
         GradingError: There is no such class, assignment or file, or a list cannot be used.
@@ -76,7 +76,7 @@ def collect(
 
 
 def settle(path: Path, labels: Sequence[str]) -> list[str]:
-    """Forget files that have no place and need none; the names of which nothing is known.
+    """Forget files that have no place and need none, and give back the names that are not known.
 
     Raises:
         GradingError: There is no such class.
@@ -372,5 +372,8 @@ def _alone(one: Outcome) -> Outcome:
 
 
 def _depth(files: Sequence[File]) -> int:
-    """How many parts of a path may say whose it is: below what all have in common all is the students' own."""
+    """The number of folders, from the top, whose names may say a student: two where all files are in one folder.
+
+    Below them, students have chosen the names.
+    """
     return 2 if len({file.parts[0] for file in files if file.parts}) == 1 else 1

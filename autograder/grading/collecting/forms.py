@@ -34,13 +34,13 @@ class Found:
     """The facts in the path of a file.
 
     Attributes:
-        identity: Whose it is.
+        identity: The student, as the system names them.
         file: The name that the student gave it.
-        when: When it was handed in, in the LMS's own time; None where the name does not say, or nobody can read it.
+        when: The time of handing in, in the LMS's own time; None where the name says none, or none that can be read.
         order: Grows with later files of one student, where the LMS numbers files.
         late: Whether the LMS marks it as late.
-        readings: Who may be meant where the name can be read in several ways, the longest first; the first who is in
-            the class is. Empty where there is one way.
+        readings: Where the name can be read in several ways, the student of each, the longest name first; the first who
+            is in the class is meant. Empty where there is one way.
         time: The time as the name has it, also where nobody could read it.
     """
 
@@ -178,10 +178,10 @@ def _in_one_part(
     """A reader of names in which one folder, or the file, has all facts.
 
     Args:
-        pattern: How it is called; its groups ``file``, ``when``, ``order`` and ``late`` are those of :class:`Found`.
-        who: Tells from the groups who is meant.
-        where: Which parts of a path may be called so.
-        says_file: Whether what is called so without the group ``file`` is a folder, and otherwise a file.
+        pattern: The name's pattern; its groups ``file``, ``when``, ``order`` and ``late`` are those of :class:`Found`.
+        who: Tells from the groups the student, and the students of all ways to read the name.
+        where: The parts of a path that may have such a name.
+        says_file: Whether a name with the group ``file`` is a file's, and one without it a folder's.
     """
     expression = re2.compile(pattern)
 

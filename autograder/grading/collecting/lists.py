@@ -29,12 +29,12 @@ class Entry:
     """A list's entry on one submission, or on one person.
 
     Attributes:
-        lms: Which system the list is from; empty for an instructor's own.
+        lms: The system that the list is from; empty for an instructor's own.
         number: The number or login that names of files have; empty where they have none.
-        members: Whose it is: of each member of the group the names, the surest first.
-        when: When it was handed in, in the LMS's own time where it has no zone; None where the list does not say.
+        members: The names of each member of the group that handed in, the surest first.
+        when: The time of handing in, in the LMS's own time where it has no zone; None where the list does not say it.
         time: The same as the list has it.
-        assignment: Which it is about; empty where the list does not say.
+        assignment: The assignment's name; empty where the list does not say it.
     """
 
     lms: str
@@ -50,7 +50,7 @@ class _Form:
     """A list by the names of its columns, in small letters.
 
     Attributes:
-        lms: Which system writes it.
+        lms: The system that writes it.
         has: Columns by which it is known.
         number: The column of :attr:`Entry.number`.
         logins: Columns with user names and addresses.
@@ -109,11 +109,11 @@ _FORMS = (
 
 
 def read_list(name: str, data: bytes) -> list[Entry] | None:
-    """Read a list; None where it is none that is known.
+    """Read a list; None where its form is not known.
 
     Args:
         name: The file's name.
-        data: What it holds.
+        data: The bytes of the file.
     """
     try:
         text = data.decode("utf-8-sig")

@@ -42,12 +42,12 @@ class Outcome:
     """The outcome of one file.
 
     Attributes:
-        label: How messages call the file.
-        state: Where it went.
-        reason: Why it is not at its place, and what to type; empty where it is.
-        student: Whose it is; empty where nobody knows.
-        assignment: Which it is for; the same.
-        when: When it was handed in, in UTC; None where nothing says so.
+        label: The file's name in messages.
+        state: The place where it went.
+        reason: The reason why it is not at its place, and what to type; empty where it is there.
+        student: The student's id; empty where it is not known.
+        assignment: The assignment's name; empty where it is not known.
+        when: The time of handing in, in UTC; None where nothing says it.
         late: Whether the LMS marks it as late.
         replaced: Whether another one lay at its place, which is kept.
         what_to_do: The advice if its student's notebook has not come; empty where the reason says it.
@@ -70,12 +70,12 @@ class CollectReport:
 
     Attributes:
         path: The class.
-        outcomes: What became of each file.
+        outcomes: The outcome of each file.
         unread_times: Times in names and lists that nobody could read.
-        untimed: Whose work has no time, by assignment, of what was collected now.
-        missing: Students of whom nothing is there, by assignment.
+        untimed: Students for whose work, collected now, nothing says the time of handing in; by assignment.
+        missing: Students who have handed in nothing, by assignment.
         by_their_names: Whether there is no list of students, so that folders have the LMS's names.
-        notes: What else is to be known: times that were noted, names in a list that are nobody's, empty downloads.
+        notes: Times that were noted, names in a list that are no student's, empty downloads.
     """
 
     path: Path
@@ -101,12 +101,12 @@ class Waiting:
     """A file without a place, written down until its student's work is at its place.
 
     Attributes:
-        label: How messages call the file.
-        reason: Why it has no place, and what to type.
-        student: Whose it is; empty where nobody knows.
-        assignment: Which it is for; the same.
+        label: The file's name in messages.
+        reason: The reason why it has no place, and what to type.
+        student: The student's id; empty where it is not known.
+        assignment: The assignment's name; empty where it is not known.
         there: A digest of what lay at its place then: when something else does, it is settled.
-        since: When it was collected, in UTC.
+        since: The time of collecting, in UTC.
     """
 
     label: str
@@ -129,7 +129,7 @@ class WaitingList:
         self._path = directory.state / FOLDER / "not_placed.json"
 
     def read(self) -> list[Waiting]:
-        """Those of which nothing has come to its place since."""
+        """The files at whose place nothing else has come since."""
         try:
             known = msgspec.json.decode(self._path.read_bytes(), type=list[Waiting])
         except (OSError, msgspec.MsgspecError):
@@ -148,7 +148,7 @@ class WaitingList:
         self._write([*kept, *map(self._waiting, new)])
 
     def settle(self, labels: Iterable[str]) -> list[str]:
-        """Forget files that need no place; those of the names that nobody waits for.
+        """Forget files that need no place, and give back the names that are not in the list.
 
         Raises:
             OSError: It could not be written.

@@ -23,9 +23,9 @@ class Collected:
     Attributes:
         notebook: Its name in the class.
         content: The hash of its bytes.
-        source: Where it came from, for messages.
-        collected: When that was, in UTC.
-        when: When it was handed in, in UTC; None where nothing says so.
+        source: The name of the file it came from, for messages.
+        collected: The time of collecting, in UTC.
+        when: The time of handing in, in UTC; None where nothing says it.
         order: Grows with later files where there are no times.
         late: Whether the LMS marks it as late.
         lms: The system that it came from, empty for plain folders.
@@ -55,7 +55,7 @@ class History:
 
     Attributes:
         now: The content of ``submitted``, by notebook.
-        before: What was there before it, the oldest first; its bytes are kept.
+        before: The notebooks that it has replaced, the oldest first; their bytes are kept.
     """
 
     now: dict[str, Collected]

@@ -1,4 +1,4 @@
-"""The end of collecting, for the person who started it: every file has a line."""
+"""The outcome of collecting in a terminal: every file has a line."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def show(report: CollectReport, console: Console | None = None) -> None:
     """Print what was placed where, and what was not and why.
 
     Args:
-        report: What came of collecting.
+        report: The outcome of collecting.
         console: Standard output by default.
     """
     console = console or Console()
@@ -37,9 +37,9 @@ def _lines(report: CollectReport) -> Iterator[str]:
         yield f"placed       {one.student}/{one.assignment}: {one.label}{when}{late}{again}"
     for state in (State.EARLIER, State.BESIDE, State.NOT_PLACED):
         for one in report.having(state):
-            whose = f"{one.student}: " if one.student else ""
+            owner = f"{one.student}: " if one.student else ""
             also = "; the notebook has come, too" if state == State.BESIDE and one.student else ""
-            yield f"{state:<12} {one.label}: {whose}{one.reason}{also}"
+            yield f"{state:<12} {one.label}: {owner}{one.reason}{also}"
     for assignment, students in report.missing.items():
         yield f"nothing of   {assignment}: {', '.join(students)}"
     untimed = {student for students in report.untimed.values() for student in students}

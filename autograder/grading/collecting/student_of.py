@@ -43,8 +43,8 @@ class StudentOf:
 
     Args:
         roster: The students of the class.
-        entries: What lists say that came with a download; each is about what has its numbers.
-        told: What lists say that the instructor names for their times, whatever system the work is from.
+        entries: Entries of lists that came with a download; each is about the files that have its number.
+        told: Entries of lists that the instructor gives for their times; they count for work from any system.
     """
 
     def __init__(self, roster: Roster, entries: Iterable[Entry] = (), told: Iterable[Entry] = ()) -> None:

@@ -33,7 +33,7 @@ _ONE_NUMBER = ("canvas", "moodle")
 
 @dataclass(frozen=True)
 class Candidate:
-    """A file of which it is known whose it is and which notebook.
+    """A file whose student and notebook are known.
 
     Attributes:
         student: The student's id.
@@ -79,7 +79,7 @@ class Candidate:
 
 
 class Placing:
-    """Puts notebooks into a class and says what became of each.
+    """Puts notebooks into a class and gives the outcome of each.
 
     Args:
         directory: The class, locked by this process.
@@ -90,7 +90,7 @@ class Placing:
         self._records = CollectedRecords(directory.state)
 
     def place(self, candidates: Iterable[Candidate]) -> Iterator[Outcome]:
-        """Put the newest of each student and notebook into ``submitted``; what became of each.
+        """Put the newest of each student and notebook into ``submitted``, and give the outcome of each.
 
         Raises:
             OSError: One could not be written.
@@ -107,19 +107,19 @@ class Placing:
             if newest is not None:
                 yield self._put(newest)
 
-    def note_times(self, whose: Iterable[tuple[str, str, datetime]]) -> Iterator[tuple[str, str, datetime]]:
-        """Write down when work was handed in that is in ``submitted`` already.
+    def note_times(self, times: Iterable[tuple[str, str, datetime]]) -> Iterator[tuple[str, str, datetime]]:
+        """Write down the times of work that is in ``submitted`` already.
 
         Args:
-            whose: Student, assignment and time in UTC.
+            times: Student, assignment and time in UTC.
 
         Returns:
-            Those of whom it is news.
+            Those that were not known yet.
 
         Raises:
             OSError: It could not be written.
         """
-        for student, assignment, when in whose:
+        for student, assignment, when in times:
             folder = self._directory.path / "submitted" / student / assignment
             history = self._records.get(assignment, student) or History({})
             now = dict(history.now)

@@ -20,10 +20,10 @@ class Tidied:
     """The result of tidying.
 
     Attributes:
-        notices: What was put right or is worth knowing.
-        refused: What somebody has to put right.
-        waiting: What would be put right: where it is, and where it belongs.
-        moves: Whether anything is put right, or only found.
+        notices: Sentences on what was put right, or is worth knowing.
+        refused: Files that a person has to put right.
+        waiting: Files that would be moved: the place of each, and the place where it belongs.
+        moves: Whether anything is moved, or only found.
     """
 
     notices: list[str] = field(default_factory=list)

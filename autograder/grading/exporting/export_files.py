@@ -25,7 +25,7 @@ class Exported:
 
     Attributes:
         files: Each file, and what it is for.
-        notices: What is worth knowing before it is uploaded.
+        notices: Sentences that are worth reading before the upload.
     """
 
     files: tuple[tuple[Path, str], ...]
@@ -50,9 +50,9 @@ def export(
         to: ``canvas``, ``moodle``, ``gradescope``, ``csv`` or ``xlsx``.
         assignments: Only these; all that somebody has handed in by default.
         into: A list that the LMS has exported, to be filled in.
-        folder: Where to write; ``export`` in the class by default.
-        absent_zero: Write zero for who has handed in nothing, where otherwise nothing is written.
-        columns: What an assignment's column is called in ``into``, where that is not the assignment's name.
+        folder: The folder to write into; ``export`` in the class by default.
+        absent_zero: Write zero for students who have handed in nothing; otherwise nothing is written.
+        columns: The name of an assignment's column in ``into``, where that is not the assignment's name.
         sections: Only the students of these; all where empty.
 
     Raises:

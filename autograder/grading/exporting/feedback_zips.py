@@ -32,8 +32,8 @@ def feedback_zip(
     Args:
         directory: The class.
         table: The same.
-        records: What was collected.
-        assignment: Whose feedback.
+        records: The record of what was collected.
+        assignment: The assignment's name.
         lms: One of :data:`FORMS`.
 
     Returns:

@@ -126,12 +126,12 @@ def filled_in(
     Args:
         data: Moodle's grading worksheet, or a gradebook that Canvas or Gradescope has exported.
         table: The class.
-        assignments: Whose points; of a worksheet, one.
-        columns: What an assignment's column is called there, where that is not the assignment's name.
+        assignments: The assignments to fill in; for a worksheet, one.
+        columns: The name of an assignment's column there, where that is not the assignment's name.
 
     Returns:
-        The list, the lines in it of which nobody is known here, and those that may be somebody's whom another line is
-        as likely, or more likely, to mean: in an LMS, people name themselves.
+        The list, the lines in it that name no student of the class, and the lines that may name a student whom another
+        line names as well or better: in an LMS, people name themselves.
 
     Raises:
         GradingError: It is neither, or it has no column for an assignment.

@@ -48,12 +48,12 @@ def write_report(
 
     Args:
         path: The class directory.
-        names: Show who it is, with links to the pages of feedback.
-        to: Where to write; ``report.html`` in the class by default.
+        names: Show names, with links to the pages of feedback.
+        to: The file to write; ``report.html`` in the class by default.
         sections: Only the students of these; all where empty.
 
     Returns:
-        Where it is.
+        The absolute path of the file.
 
     Raises:
         GradingError: Nothing was handed in, or the class cannot be read.

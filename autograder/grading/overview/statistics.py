@@ -30,7 +30,7 @@ class Band:
     Attributes:
         low: Its lower end, in percent.
         high: Its upper end; the last band has the full points, too.
-        students: Who is in it.
+        students: The students in it.
     """
 
     low: int
@@ -40,12 +40,12 @@ class Band:
 
 @dataclass(frozen=True)
 class CriterionFigures:
-    """The figures of one criterion: how often it was seen.
+    """The figures of one criterion.
 
     Attributes:
-        title: What was asked for.
-        passed: In how many submissions it was seen.
-        of: In how many it was looked for.
+        title: The criterion's title.
+        passed: The number of submissions that meet it.
+        of: The number of submissions in which it was looked for.
     """
 
     title: str
@@ -60,14 +60,14 @@ class ItemFigures:
     Attributes:
         exercise: Its id; where several assignments have cells of that name, with the assignment's in front.
         max_score: Points that can be had.
-        handed_in: How many have handed it in.
+        handed_in: The number of students who have handed it in.
         mean: Their mean points.
-        full: How many of them have all points.
-        none: How many of them have none.
+        full: The number of them who have all points.
+        none: The number of them who have no points.
         difficulty: The mean as a share of the points that can be had: a high one is an easy exercise.
-        discrimination: How its points go along with those of all other exercises, from -1 to 1 (Pearson's correlation);
-            None where that cannot be said.
-        criteria: What was asked for, in the order of the exercise.
+        discrimination: The correlation (Pearson's) of its points with those of all other exercises, from -1 to 1; None
+            where there is none.
+        criteria: Its criteria, in the order of the exercise.
     """
 
     exercise: str
@@ -86,11 +86,11 @@ class MistakeFigures:
     """A mistake that was recognised.
 
     Attributes:
-        assignment: In which assignment.
-        exercise: In which exercise.
-        key: The mistake's name.
-        reason: What the first of them was told.
-        students: Who made it.
+        assignment: The assignment's name.
+        exercise: The exercise's id.
+        key: The mistake's key.
+        reason: The words that the first of them was told.
+        students: The students who made it.
     """
 
     assignment: str
@@ -105,9 +105,9 @@ class Progress:
     """The judge's points of somebody's first and last attempt at an assignment.
 
     Attributes:
-        student: Who.
-        assignment: Which.
-        attempts: How often different work was graded.
+        student: The student's id.
+        assignment: The assignment's name.
+        attempts: The number of times that different work was graded.
         first: Points of the first one.
         last: Points of the last one.
         max_score: Points that the judge can give.
@@ -125,7 +125,7 @@ def progress(student: str, attempts: Iterable[Attempt]) -> list[Progress]:
     """The course of a student's attempts.
 
     Args:
-        student: Whose.
+        student: The student's id.
         attempts: All that were graded, the first one first. What was graded with another version of the course than
             the last one is left out: its points say nothing about the student.
 
@@ -178,7 +178,7 @@ def items(table: ClassTable, store: ClassStore) -> list[ItemFigures]:
 
     Args:
         table: The class.
-        store: Where the judge's verdicts are kept.
+        store: The store of the class, with the judge's verdicts.
     """
     criteria = _criteria(table, store)
     found = []

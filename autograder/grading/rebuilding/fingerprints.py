@@ -1,4 +1,4 @@
-"""True if anything has changed since a submission was written down, told from bytes alone.
+"""Fingerprints of submissions, by which a run knows those that have not changed, from their bytes alone.
 
 Rebuilding a notebook says it more exactly, but a class of a hundred students has a thousand notebooks, and most runs
 find nothing new. What differs here is looked at again, cell by cell.

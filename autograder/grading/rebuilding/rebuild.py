@@ -34,7 +34,7 @@ class Rebuilt:
 
     Attributes:
         notebook: nbformat 4.5; its first cell shows the remarks, where there are any.
-        remarks: What was put right, each a sentence for the student.
+        remarks: Sentences for the student on what was put right.
     """
 
     notebook: NotebookNode
@@ -48,7 +48,7 @@ def rebuild(master: NotebookNode, submitted: Sequence[SubmittedCell], left_out: 
         master: As it was released: stubs in place of solutions, every cell that matters named by its
             grade_id.
         submitted: The submission's cells.
-        left_out: How many cells could not be read.
+        left_out: The number of cells that could not be read.
     """
     sorting = _Sorting(master, submitted)
     remarks = sorting.remarks()

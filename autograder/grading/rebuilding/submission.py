@@ -66,7 +66,7 @@ def read_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
     """The bytes of a submitted file.
 
     Args:
-        path: Where it should lie.
+        path: The file's path.
         most: Bytes that it may have.
 
     Raises:
@@ -167,7 +167,7 @@ def parse(data: bytes) -> tuple[list[SubmittedCell], int]:
     """The cells of a submitted notebook.
 
     Returns:
-        The cells, and how many were left out because they had not the form of a cell.
+        The cells, and the number of those that were left out because they had not the form of a cell.
 
     Raises:
         UnreadableSubmission: It is no notebook.

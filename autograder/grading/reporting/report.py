@@ -30,14 +30,14 @@ class GradeReport:
         path: The class.
         rows: By student, in the order of the course.
         refused: Files in ``submitted`` that cannot be graded under that name.
-        problems: What else went wrong, each a sentence; none of it earned anybody points.
-        notices: What is worth knowing and is nobody's mistake, each a sentence.
-        would_change: Who would get other points, where nothing was entered; None where it was.
+        problems: Other problems, each a sentence; none of them earned anybody points.
+        notices: Sentences that are worth reading, on nobody's mistake.
+        would_change: The points that would change, where nothing was entered; None where the points were entered.
         executed: Notebooks that were run.
         reused: Notebooks whose result was known.
         written: Submissions entered into the gradebook in this run.
         seconds: Wall time.
-        timings: Where it went.
+        timings: The parts of that time.
     """
 
     path: Path

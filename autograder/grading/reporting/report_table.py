@@ -1,4 +1,4 @@
-"""The end of a grading run, for the person who started it."""
+"""The result of a run in a terminal."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def show(report: GradeReport, console: Console | None = None) -> None:
     """Print the table, what could not be graded, and where everything is.
 
     Args:
-        report: What came of the batch.
+        report: The result of the run.
         console: Standard output by default.
     """
     console = console or Console()
@@ -82,8 +82,8 @@ def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterato
     """Students down, exercises across: in several tables below each other where one is too wide, the total in the last.
 
     Args:
-        rows: What is to be shown.
-        console: Where it has to fit.
+        rows: The rows to show.
+        console: The console that they have to fit.
         diagnoses: Also what is wrong where points are missing; takes about 130 columns for four exercises.
     """
     grid = _Grid.of(rows, diagnoses=diagnoses)

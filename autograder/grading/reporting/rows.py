@@ -20,17 +20,17 @@ if TYPE_CHECKING:
 
 NOT_SUBMITTED = "not_submitted"
 NOT_GRADED = "not_graded"
-"""Handed in, but left out of every run so far."""
+"""Handed in, but left out of each run so far."""
 WAITS = "waits"
-"""A cell that only a person gives points for, and nobody has yet."""
+"""A cell that a person gives points for, and that has none yet."""
 BY_HAND = "by_hand"
-"""The same, and somebody has."""
+"""A cell that a person has given points for."""
 EXCUSED = "excused"
 """The student need not do the assignment, as students.csv says: it counts neither for nor against anybody."""
 LATE = "late"
-"""Stands in place of the exercise in the row that has what being late costs."""
+"""Stands in place of the exercise in the row with the points that are taken off for being late."""
 DROPPED = "dropped"
-"""The same in the row that takes one of a student's lowest assignments out of the total, and out of it alone."""
+"""Stands there in the row that takes one of a student's lowest assignments out of the total, and of nothing else."""
 NO_EXERCISE = (LATE, DROPPED)
 COLUMNS = (
     "student",

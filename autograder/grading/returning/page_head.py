@@ -37,8 +37,8 @@ def with_summary(body: str, notebook: NotebookNode, names: Mapping[str, Any]) ->
 
     Args:
         body: The page; nothing that a student wrote is before the list.
-        notebook: What it was made of, with points filled in.
-        names: What the template knows of the whole.
+        notebook: The notebook that it was made of, with points filled in.
+        names: The names that the template has for the student and the points.
     """
     before, begin, rest = body.partition(_BEGIN)
     _, end, after = rest.partition(_END)
@@ -61,7 +61,7 @@ def mark_waiting(notebook: NotebookNode, cells: Mapping[str, CellEntry]) -> None
 
     Args:
         notebook: A graded one; it is changed.
-        cells: What the gradebook has of it, by grade_id.
+        cells: The gradebook's entries of it, by grade_id.
     """
     for cell in notebook.cells:
         if (name := grade_id(cell)) in cells and cells[name].waits:

@@ -22,9 +22,9 @@ class UpToDate:
 
     Args:
         directory: The class.
-        store: Where it is noted what the pages say.
+        store: The store of the class, where it is noted what the pages say.
         writer: Gives the one who writes into the gradebook; called only where there is something to write.
-        timings: Where it is counted how long that takes.
+        timings: Counts the time that this takes.
         problem: Told where a page could not be made.
         feedback: Whether pages are made at all.
     """

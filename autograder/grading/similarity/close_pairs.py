@@ -30,11 +30,11 @@ class Similar:
     Attributes:
         path: The class.
         pairs: The close pairs, the closest first.
-        more: How many further pairs are not shown.
-        names: How the students are called, by id.
-        compared: How many students' notebooks were compared.
-        notes: What is worth knowing, a line each.
-        troubles: A line for all that could not be compared, or only in part.
+        more: The number of further pairs, which are not shown.
+        names: The students' names, by id.
+        compared: The number of notebooks that were compared.
+        notes: Lines that are worth reading.
+        troubles: A line for each file that could not be compared, or only in part.
     """
 
     path: Path

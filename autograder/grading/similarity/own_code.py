@@ -72,8 +72,8 @@ def compared(answers: Sequence[Answer], given: Given, students: int) -> list[Com
 
     Args:
         answers: All answers to that notebook.
-        given: What belongs to the task.
-        students: How many have handed it in.
+        given: The texts that belong to the task.
+        students: The number of students who have handed it in.
     """
     longer = [list(islice(words(answer.text[:_LONGEST_TEXT]), LONGEST + 1)) for answer in answers]
     codes = [code[:LONGEST] for code in longer]

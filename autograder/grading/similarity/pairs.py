@@ -54,7 +54,7 @@ class Pair:
     Attributes:
         one: One of them.
         other: The other.
-        passages: What they have in common, in the order of the first.
+        passages: The passages that they share, in the order of the first.
     """
 
     one: Compared
@@ -147,5 +147,5 @@ def _names(pair: Pair) -> tuple[str, ...]:
 
 
 def nothing_found(compared: int) -> str:
-    """What is said where no pair is close."""
+    """The sentence for a class without a close pair."""
     return f"No pair is closer than the task explains ({compared} notebooks compared)."

@@ -32,9 +32,9 @@ class _Piece:
     """A piece of a line.
 
     Attributes:
-        text: What is there, safe to read; a template escapes it for HTML.
+        text: Its text, safe to read; a template escapes it for HTML.
         passage: The number of the common passage that it belongs to; 0 for none.
-        begins: Whether this is where its number has to stand.
+        begins: Whether the passage's number stands in front of it.
     """
 
     text: str
@@ -44,12 +44,12 @@ class _Piece:
 
 @dataclass(frozen=True)
 class _Line:
-    """A line of an answer, or what stands for lines that are left out.
+    """A line of an answer, or a mark in place of lines that are left out.
 
     Attributes:
         number: Counted from 1; 0 where lines are left out.
-        pieces: What is in it.
-        left_out: How many lines are left out here.
+        pieces: Its pieces.
+        left_out: The number of lines that are left out here.
     """
 
     number: int
@@ -58,7 +58,7 @@ class _Line:
 
 
 @dataclass(frozen=True)
-class _Side:
+class _ShownAnswer:
     """An answer of a pair, as the page shows it."""
 
     student: str
@@ -68,20 +68,20 @@ class _Side:
 
 
 @dataclass(frozen=True)
-class _Shown:
+class _ShownPair:
     """A pair, as the page shows it."""
 
     place: str
     percent: str
     shared: int
-    sides: tuple[_Side, _Side]
+    answers: tuple[_ShownAnswer, _ShownAnswer]
 
 
 def write_page(found: Similar, to: Path | None = None) -> Path:
     """Write the page about the close pairs of a class.
 
     Args:
-        found: What was found.
+        found: The result of the search.
         to: The file; ``similar.html`` in the class by default.
 
     Returns:
@@ -106,24 +106,24 @@ def page(found: Similar) -> str:
         compared=found.compared,
         shortest=SHORTEST,
         least=f"{100 * LEAST_SHARE:g}\N{NO-BREAK SPACE}%",
-        pairs=[_shown(pair, found.names) for pair in found.pairs],
+        pairs=[_shown_pair(pair, found.names) for pair in found.pairs],
         more=found.more,
         lines=[one_line(line, 1000) for line in (*found.notes, *found.troubles)],
     )
 
 
-def _shown(pair: Pair, names: Mapping[str, str]) -> _Shown:
+def _shown_pair(pair: Pair, names: Mapping[str, str]) -> _ShownPair:
     left = [(passage.first, passage.own) for passage in pair.passages]
     right = [(passage.second, passage.own) for passage in pair.passages]
-    sides = _side(pair.one, left, names), _side(pair.other, right, names)
-    return _Shown(pair.place, pair.percent, pair.shared, sides)
+    answers = _shown_answer(pair.one, left, names), _shown_answer(pair.other, right, names)
+    return _ShownPair(pair.place, pair.percent, pair.shared, answers)
 
 
-def _side(
+def _shown_answer(
     answer: Compared, passages: Iterable[tuple[int, Sequence[bool]]], names: Mapping[str, str]
-) -> _Side:
+) -> _ShownAnswer:
     own = answer.answer
-    return _Side(_called(own.student, names), own.cell, answer.length, _lines(answer, passages))
+    return _ShownAnswer(_called(own.student, names), own.cell, answer.length, _lines(answer, passages))
 
 
 def _called(student: str, names: Mapping[str, str]) -> str:
@@ -135,8 +135,8 @@ def _lines(answer: Compared, passages: Iterable[tuple[int, Sequence[bool]]]) -> 
     """The lines with marked passages and those around them.
 
     Args:
-        answer: One side of a pair.
-        passages: The first word of each on that side, and which of its words count.
+        answer: An answer of a pair.
+        passages: For each passage, the place of its first word in this answer, and whether each word counts.
     """
     text = answer.answer.text
     passage_of = [0] * len(text)  # by character

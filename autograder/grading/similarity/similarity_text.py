@@ -22,7 +22,7 @@ def show(found: Similar, page: Path, console: Console | None = None) -> None:
     """Print the pairs, what could not be compared, and where the page is.
 
     Args:
-        found: What was found.
+        found: The result of the search.
         page: The page with the pairs side by side.
         console: Standard output by default.
     """

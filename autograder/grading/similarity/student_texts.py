@@ -30,7 +30,7 @@ class Answer:
         assignment: The assignment's name.
         notebook: The notebook's name.
         cell: The cell's name.
-        text: What is there.
+        text: The text of the cell.
     """
 
     student: str
@@ -46,7 +46,7 @@ class HandedIn:
 
     Attributes:
         answers: In the order of students and cells.
-        students: Whose notebook could be read.
+        students: The students of the notebooks that could be read.
         troubles: A line for each submission of which something could not be read.
     """
 

@@ -37,8 +37,8 @@ class Word:
     Attributes:
         kind: ``name``, ``string``, ``number`` or ``sign``.
         text: As it was written.
-        start: Where it begins in the text.
-        end: Where it ends.
+        start: The place of its first character in the text.
+        end: The place behind its last one.
         opens: Whether it is the first of a line.
     """
 
