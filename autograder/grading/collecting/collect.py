@@ -283,7 +283,11 @@ class _Collecting:
         found, reason = owners.found, self._student_of.reason_against(owners)
         if found is None or reason:
             self._refuse(file, reason, owners)
-            return
+        else:
+            self._take_notebook(file, data, owners, found, source)
+
+    def _take_notebook(self, file: File, data: bytes, owners: Owners, found: Found, source: Path) -> None:
+        """Note a notebook for each of its students, or say why it is for no assignment."""
         # Of what is in a student's own zip the name says which notebook it is, though not whose.
         name = file.name if file.inner else found.file
         content, packed = hashlib.sha256(data).hexdigest(), zlib.compress(data, 1)

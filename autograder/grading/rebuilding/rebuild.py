@@ -184,6 +184,12 @@ def is_check(cell: NotebookNode) -> bool:
     return marked and not is_answer(cell) and cell.cell_type == CellType.CODE
 
 
+def is_the_masters(cell: NotebookNode) -> bool:
+    """True if a cell of a rebuilt notebook is the master's, word for word."""
+    marks = cell.get("metadata", {}).get("nbgrader", {})
+    return bool(marks.get("locked")) and not marks.get("solution")
+
+
 def _without_hidden(source: str) -> str:
     """A master's cell as students get it: nbgrader leaves out its hidden tests and its mark scheme."""
     kept, hidden = [], False

@@ -18,11 +18,11 @@ from autograder.grading.rebuilding.rebuild import (
     Rebuilt,
     grade_id,
     is_of_another,
+    is_the_masters,
     rebuild,
     rebuild_unreadable,
 )
 from autograder.grading.rebuilding.submission import UnreadableSubmission, parse, read_bytes
-from autograder.grading.returning.sanitize import is_the_masters
 from autograder.grading.running import sandboxing
 from autograder.grading.task import Task
 

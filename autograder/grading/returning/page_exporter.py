@@ -23,9 +23,9 @@ from nbformat import NotebookNode
 from traitlets.config import Config
 
 from autograder.grading.rebuilding import nodes
-from autograder.grading.rebuilding.rebuild import is_check
+from autograder.grading.rebuilding.rebuild import is_check, is_the_masters
 from autograder.grading.returning.page_head import with_summary, without_dead_links
-from autograder.grading.returning.sanitize import clean, is_the_masters, make_harmless
+from autograder.grading.returning.sanitize import clean, make_harmless
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

@@ -14,8 +14,7 @@ import re2
 from autograder import exercises
 from autograder.cards.readable import printable
 from autograder.grading.rebuilding.master import exercise_of
-from autograder.grading.rebuilding.rebuild import grade_id, is_check
-from autograder.grading.returning.sanitize import is_the_masters
+from autograder.grading.rebuilding.rebuild import grade_id, is_check, is_the_masters
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

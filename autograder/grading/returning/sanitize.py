@@ -21,6 +21,7 @@ from pygments.token import STANDARD_TYPES
 from autograder.boxes.execution import CellType
 from autograder.boxes.outputs import IMAGES
 from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding.rebuild import is_the_masters
 from autograder.grading.rebuilding.submission import HARMLESS_LENGTH
 
 if TYPE_CHECKING:
@@ -115,12 +116,6 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
         if cell.cell_type == CellType.CODE and not _is_check(cell):
             cell.outputs = [harmless_output(output) for output in cell.outputs]
     return notebook
-
-
-def is_the_masters(cell: Any) -> bool:
-    """True if a cell of a rebuilt notebook is the master's, word for word."""
-    marks = cell.get("metadata", {}).get("nbgrader", {})
-    return bool(marks.get("locked")) and not marks.get("solution")
 
 
 # Most text cells of a class are the ones that were handed out: looked at once, not once a student.

@@ -14,7 +14,7 @@ from autograder.grading.similarity.student_texts import given_texts, read_answer
 from autograder.grading.table.roster import read_roster
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
     from autograder.grading.classes.class_directory import ClassDirectory, Refused
@@ -65,19 +65,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
     check_known([assignment] if assignment else [], known, "assignment")
     submissions, refused = directory.submissions()
     submissions = [one for one in submissions if assignment in ("", one.assignment)]
-    beside = tidy(directory, moves=False)
-    troubles = [
-        *(
-            f"refused      {one.path}: {one.reason}"
-            for one in (*refused, *beside.refused)
-            if _concerns(directory, one, assignment)
-        ),
-        *(
-            f"not compared {path}: it belongs at {place}, where `./course grade` puts it"
-            for path, place in beside.waiting
-            if assignment in ("", place.parent.name)
-        ),
-    ]
+    troubles = list(_not_looked_at(directory, refused, assignment))
     if not submissions and not troubles:
         raise GradingError(
             f"Nothing was handed in yet{f' for {assignment}' if assignment else ''}, so there is nothing to compare."
@@ -118,7 +106,14 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
     )
 
 
-def _concerns(directory: ClassDirectory, refused: Refused, assignment: str) -> bool:
-    """True if it may have to do with an assignment: of what has no place, that is not known."""
-    parts = refused.path.relative_to(directory.path / "submitted").parts
-    return not assignment or len(parts) < 2 or parts[1] == assignment
+def _not_looked_at(directory: ClassDirectory, refused: Iterable[Refused], assignment: str) -> Iterator[str]:
+    """A line for each file that may be an answer and is not at its place."""
+    beside = tidy(directory, moves=False)
+    for one in (*refused, *beside.refused):
+        # Where a file is too high for an assignment, it may be for any.
+        _, *below = one.path.relative_to(directory.path / "submitted").parts
+        if not assignment or not below or below[0] == assignment:
+            yield f"refused      {one.path}: {one.reason}"
+    for path, place in beside.waiting:
+        if assignment in ("", place.parent.name):
+            yield f"not compared {path}: it belongs at {place}, where `./course grade` puts it"
