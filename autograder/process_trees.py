@@ -1,6 +1,7 @@
 """The processes below a process: listed, ended together, and bound to the life of their parent.
 
-All of it is Linux's own (proc(5), prctl(2), pidfd_open(2)).
+All of it is Linux's own (proc(5), prctl(2), pidfd_open(2)). What has to end with a whole process, and with all that it
+has started itself, is started as ``python -I -S process_trees.py PARENT COMMAND …`` (:func:`keep`).
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     """A process by its number and its start (:func:`started_at`): a later process of that number has another start."""
 
 _PR_SET_PDEATHSIG = 1  # linux/prctl.h
+_PR_SET_DUMPABLE = 4
 _PR_SET_CHILD_SUBREAPER = 36
 # Loaded once and here: between a fork and what is executed there nothing can be loaded safely.
 _libc = ctypes.CDLL(None, use_errno=True)
@@ -125,12 +127,88 @@ def end_descendants(within: float = 3.0, *, spare: Sequence[int] = ()) -> int:
         if not children:
             break
         alive = [*children, *(below for child in children for below in descendants(child))]
-        seen.update(pid for pid in alive if _fields(pid)[:1] not in ([], ["Z"]))
+        seen.update(pid for pid in alive if _lives(pid))
         kill(known(alive))
         # A killed process becomes our own child when its parent dies; there is no event for "one of these ended".
         if not _reap(children):
             time.sleep(0.005)
     return len(seen)
+
+
+def end_below(pid: int) -> None:
+    """Kill every process below one that adopts orphans, also what is started meanwhile, and wait until none lives.
+
+    What may not be killed, as another user's, is left.
+
+    Args:
+        pid: Any process; it is left alone itself.
+    """
+    left: set[Known] = set()
+    while living := known(one for one in descendants(pid) if _lives(one)) - left:
+        for process in living:  # so that none can start another while they are gone through
+            _signal(process, signal.SIGSTOP)
+        left |= {process for process in living if not _signal(process, signal.SIGKILL, wait=True)}
+
+
+def keep(parent: int, command: list[str]) -> int:
+    """Run a command, and end it with all that it has started as soon as the parent ends or this gets SIGTERM.
+
+    What the command leaves behind when it ends by itself is ended, too. Ctrl-C reaches the command and not this.
+
+    Args:
+        parent: The process that has started this one.
+        command: The program and its arguments.
+
+    Returns:
+        The command's exit code, negative for a signal.
+    """
+    adopt_orphans()
+    parent_ends = os.pidfd_open(parent)
+    if os.getppid() != parent:  # it has ended, and its number may be another's
+        return 1
+    signalled, on_signal = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
+    signal.set_wakeup_fd(on_signal, warn_on_full_buffer=False)
+    for number in (signal.SIGCHLD, signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: None)  # a handler, and not SIG_IGN, which the command would keep
+    child = _start(command)
+    code: int | None = None
+    try:
+        while code is None:
+            ready, _, _ = select.select([parent_ends, signalled], [], [])
+            if parent_ends in ready or signal.SIGTERM in os.read(signalled, 1 << 12):
+                return -signal.SIGKILL
+            code = _reaped(child)
+        return code
+    finally:
+        end_below(os.getpid())
+
+
+def _start(command: list[str]) -> int:
+    """Start the command with nothing open but its standard streams; its process."""
+    keeper = os.getpid()
+    child = os.fork()
+    if child == 0:
+        try:
+            die_with_parent(keeper)
+            for number in (signal.SIGPIPE, signal.SIGXFSZ):  # which Python ignores, and programs expect
+                signal.signal(number, signal.SIG_DFL)
+            os.closerange(3, os.sysconf("SC_OPEN_MAX"))
+            os.execvp(command[0], command)
+        except OSError as error:
+            os.write(2, f"{command[0]}: {error.strerror}\n".encode())
+        finally:
+            os._exit(127)
+    return child
+
+
+def _reaped(wanted: int) -> int | None:
+    """Reap all children that have ended; the exit code of one of them, None where it lives."""
+    code: int | None = None
+    with contextlib.suppress(ChildProcessError):
+        while (ended := os.waitpid(-1, os.WNOHANG))[0]:
+            if ended[0] == wanted:
+                code = os.waitstatus_to_exitcode(ended[1])
+    return code
 
 
 def end_processes_in(folder: Path) -> None:
@@ -160,22 +238,32 @@ def end_session(leader: int, began: str) -> None:
         _signal(process, signal.SIGKILL, wait=True)
 
 
-def _signal(process: Known, number: int, *, wait: bool = False) -> None:
+def _signal(process: Known, number: int, *, wait: bool = False) -> bool:
     """Send a signal to a process that is still there; wait for its end where that is wanted.
 
     One handle is open at a time: a family may have more members than we may have open files.
+
+    Returns:
+        False if the process may not get a signal from us.
     """
     pid, began = process
-    with contextlib.suppress(ProcessLookupError, PermissionError):
+    with contextlib.suppress(ProcessLookupError):
         handle = os.pidfd_open(pid)
         try:
-            if not began or started_at(pid) != began:
-                return
-            signal.pidfd_send_signal(handle, number)
-            if wait:
-                select.select([handle], [], [])  # readable once it has ended (pidfd_open(2))
+            if began and started_at(pid) == began:
+                signal.pidfd_send_signal(handle, number)
+                if wait:
+                    select.select([handle], [], [])  # readable once it has ended (pidfd_open(2))
+        except PermissionError:
+            return False
         finally:
             os.close(handle)
+    return True
+
+
+def _lives(pid: int) -> bool:
+    """True if a process is there, and does not only wait for its parent to ask how it ended."""
+    return _fields(pid)[:1] not in ([], ["Z"], ["X"])
 
 
 def _children(pid: int) -> list[int]:
@@ -231,3 +319,16 @@ def _prctl(option: int, value: int) -> bool:
     if sys.platform != "linux":
         return False
     return bool(_libc.prctl(option, *map(ctypes.c_ulong, (value, 0, 0, 0))) == 0)
+
+
+def _end_as(code: int) -> None:
+    """End with an exit code, or by the signal that a negative one stands for, without a core file of one's own."""
+    if code < 0:
+        _prctl(_PR_SET_DUMPABLE, 0)
+        signal.signal(-code, signal.SIG_DFL)
+        os.kill(os.getpid(), -code)
+    sys.exit(code)
+
+
+if __name__ == "__main__":
+    _end_as(keep(int(sys.argv[1]), sys.argv[2:]))

@@ -43,7 +43,7 @@ LONGEST = (
     "tests/grading/running/test_workers.py",
     "tests/browser",
     "tests/boxes",
-    "tests/workspaces/grading/test_graded_notebooks.py",
+    "tests/workspaces/test_graded_notebooks.py",
     "tests/environment/ros2_command/test_graph.py",
     "tests/grading/classes/test_class_lock.py",
     "tests/workspaces",

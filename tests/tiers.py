@@ -77,15 +77,15 @@ NIGHTLY = (
     "tests/browser/test_untrusted_pages.py::test_the_texts_do_what_they_are_meant_to_where_nobody_cleans_them",
     "tests/browser/test_watch.py",
     # The longest of the masters that are graded in boxes; another one is, each day.
-    "tests/workspaces/grading/test_graded_notebooks.py::test_the_master_gets_full_marks[lab_1_2]",
+    "tests/workspaces/test_graded_notebooks.py::test_the_master_gets_full_marks[lab_1_2]",
     # Builds of workspaces, of which the first and the failing one stay.
-    "tests/workspaces/building/test_colcon.py::test_a_changed_byte_is_another_build",
-    "tests/workspaces/building/test_colcon.py::test_what_an_earlier_build_left_behind_has_no_part_in_it",
-    "tests/workspaces/building/test_colcon.py::test_a_merged_install_is_left_alone",
-    "tests/workspaces/building/test_colcon.py::test_a_package_is_built_with_what_it_depends_on",
-    "tests/workspaces/building/test_colcon.py::test_packages_of_others_stay",
-    "tests/workspaces/building/test_colcon.py::test_what_is_half_done_beside_the_package_hurts_only_who_needs_it",
-    "tests/workspaces/building/test_colcon.py::test_what_a_package_depends_on_may_fail",
+    "tests/workspaces/test_colcon.py::test_a_changed_byte_is_another_build",
+    "tests/workspaces/test_colcon.py::test_what_an_earlier_build_left_behind_has_no_part_in_it",
+    "tests/workspaces/test_colcon.py::test_a_merged_install_is_left_alone",
+    "tests/workspaces/test_colcon.py::test_a_package_is_built_with_what_it_depends_on",
+    "tests/workspaces/test_colcon.py::test_packages_of_others_stay",
+    "tests/workspaces/test_colcon.py::test_what_is_half_done_beside_the_package_hurts_only_who_needs_it",
+    "tests/workspaces/test_colcon.py::test_what_a_package_depends_on_may_fail",
 )
 """Beginnings of the ids of tests that only ``--all`` runs."""
 
@@ -123,8 +123,8 @@ DRAWS = (
     Draw("tests/grading/day/test_killed_at_random.py::test_a_command_is_ended_and_goes_on[3-", 1),
     Draw("tests/test_recording.py::test_recording_again_gives_the_same_file[", 1),
     Draw("tests/grading/classes/test_sample_class.py::test_every_sample_earns_what_it_must[", 3),
-    Draw("tests/workspaces/grading/test_graded_notebooks.py::test_the_master_gets_full_marks[", 1),
-    Draw("tests/workspaces/grading/test_graded_notebooks.py::test_answers_are_judged_as_in_a_terminal[", 1),
+    Draw("tests/workspaces/test_graded_notebooks.py::test_the_master_gets_full_marks[", 1),
+    Draw("tests/workspaces/test_graded_notebooks.py::test_answers_are_judged_as_in_a_terminal[", 1),
     Draw("tests/masters/test_programs.py::test_the_program_earns_full_marks[", 2),
     Draw("tests/environment/ros2_command/test_graph.py::", 8),
     Draw("tests/environment/ros2_command/test_launch_nodes.py::test_nodes_with_remapping", 1),

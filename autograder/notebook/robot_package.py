@@ -13,7 +13,7 @@ from pathlib import Path
 
 from autograder import course
 from autograder.notebook.package_files import PACKAGE, add_entry_points
-from autograder.workspaces.sources.finding import PACKAGE_VARIABLE
+from autograder.workspaces.packages import PACKAGE_VARIABLE
 
 PROGRAMS = ("talker", "listener")
 

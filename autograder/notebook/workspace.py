@@ -17,13 +17,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.workspaces.building.colcon import look
-from autograder.workspaces.building.own import build
-from autograder.workspaces.building.placing import CannotPlace, place
-from autograder.workspaces.running.prefixes import package_prefixes, python_folders, with_prefixes
+from autograder.workspaces.colcon import look
+from autograder.workspaces.install_folder import (
+    CannotPlace,
+    package_prefixes,
+    place,
+    python_folders,
+    with_prefixes,
+)
+from autograder.workspaces.own_builds import build
 
 if TYPE_CHECKING:
-    from autograder.workspaces.building.colcon import Build
+    from autograder.workspaces.colcon import Build
 
 MAX_LOG = 4_000
 """Characters of a failed build's log that are shown."""

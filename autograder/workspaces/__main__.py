@@ -1,10 +1,86 @@
-"""``python -m autograder.workspaces``: what a check runs in place of a path."""
+"""``python -m autograder.workspaces``: what a check runs in place of a path.
+
+It builds what is in the workspace, reports, then becomes the student's program.
+
+A terminal's check starts this as a process, a notebook does at the judge's word, and the judge reads what it prints.
+What it reports about the build goes before everything that a program of the student's says. All of it runs with the
+rights of the student, on the student's own computer; a class is graded by `autograder.workspaces.service`
+instead.
+"""
 
 from __future__ import annotations
 
+import os
+import signal
+import subprocess
 import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-from autograder.workspaces.running.running import main
+from autograder import exercises
+from autograder.kit.runners import Launches, RunsPrograms
+from autograder.process_trees import die_with_parent
+from autograder.workspaces.own_builds import OwnBuilds
+from autograder.workspaces.packages import workspace_of
+from autograder.workspaces.plans import plan_for, ros2
+from autograder.workspaces.preparing import Preparation
+from autograder.workspaces.processes import tell, watched
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.workspaces.preparing import Prepared
+
+
+def main(arguments: Sequence[str]) -> int:
+    """``python -m autograder.workspaces EXERCISE PATH``, or ``EXERCISE -- COMMAND`` for a launch command.
+
+    Where an exercise is about several programs, the path is followed by the name of one.
+    """
+    exercise = exercises.get(arguments[0])
+    die_with_parent(number=signal.SIGTERM)
+    if isinstance(exercise.runner, Launches):
+        return _launch(arguments[1:])
+    if exercise.runner is None or (len(arguments) > 2) != isinstance(exercise.runner, RunsPrograms):
+        print(f"{exercise.id} takes no path: give it the class or function, or a command", file=sys.stderr)
+        return 2
+    here = Preparation(OwnBuilds(), tell)
+    prepared = here.workspace(plan_for(exercise.runner, arguments[2:]), Path(arguments[1]))
+    if prepared is not None:
+        os.execvpe(prepared.command[0], list(prepared.command), prepared.environment)
+    return 1
+
+
+def _launch(rest: Sequence[str]) -> int:
+    here = Preparation(OwnBuilds(), tell)
+    if rest[0] == "--":
+        prepared = here.launch(rest[1:], None, None)
+    elif not (file := Path(rest[0])).is_file():
+        print(f"there is no launch file {file}", file=sys.stderr)
+        return 1
+    else:
+        workspace = workspace_of(file, (file.resolve().parent, Path.cwd()))
+        prepared = here.launch([ros2(), "launch", rest[0]], file, workspace)
+    return _run(prepared) if prepared else 1
+
+
+def _run(launch: Prepared) -> int:
+    """Run a launch to its end, and report how it starts its processes; its exit code.
+
+    A topic that is renamed in the code and one that is remapped by the launch file look the same on the wire. What
+    tells them apart is the command line of the process: that is how every launch hands a remapping to a node.
+    """
+    # Ctrl-C reaches the whole process group: the launch ends its nodes and then itself, and this waits for it.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    process = subprocess.Popen(launch.command, env=launch.environment, preexec_fn=_listen_to_interrupts)
+    signal.signal(signal.SIGTERM, lambda *_: process.terminate())
+    with watched(process.pid, tell):
+        return process.wait()
+
+
+def _listen_to_interrupts() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
 
 if __name__ == "__main__":
     sys.exit(main(sys.argv[1:]))

@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
-    from autograder.workspaces.building.cache import Entry
-    from autograder.workspaces.sources.packages import Package
-    from autograder.workspaces.sources.tree import Tree
+    from autograder.workspaces.cache import Entry
+    from autograder.workspaces.packages import Package
+    from autograder.workspaces.sources import Tree
 
 BUILD_SECONDS = 170.0
 """Wall time in which a build must have ended; an interface package takes five on two idle cores. Less than an exercise
@@ -31,7 +31,8 @@ class BuildOrder:
     """A build that is wanted.
 
     Attributes:
-        name: See :meth:`Builder.place`.
+        name: See :meth:`Jobs.place`.
+        workspace: What is in this folder is not found by the build.
         tree: What the build gets to see, in ``src`` of its place.
         packages: The packages in it; their folders are relative to the place.
         cancelled: Asked now and then; the build is ended when it says so.
@@ -42,6 +43,7 @@ class BuildOrder:
     """
 
     name: str
+    workspace: Path
     tree: Tree
     packages: Sequence[Package]
     cancelled: Callable[[], bool]
@@ -58,8 +60,8 @@ class Built:
     Attributes:
         returncode: Of colcon; None where it was ended, at a limit or because nobody waits for it any more.
         output: What it said.
-        archive: Its install folder as a tar file, made once nothing of the build was alive any more; None where
-            it failed, or was made in the entry itself.
+        archive: Its install folder as a tar file, made once nothing of the build was alive any more, and empty where
+            it could not be packed; None where the build failed, or was made in the entry itself.
         late: The seconds after which it was ended because it took too long, which may be the machine's fault; else 0.
     """
 
@@ -67,30 +69,6 @@ class Built:
     output: bytes
     archive: bytes | None = field(default=None, repr=False)
     late: float = 0.0
-
-
-class Builder(Protocol):
-    """Runs builds."""
-
-    def place(self, name: str, entry: Path) -> Path:
-        """The path at which jobs see a folder of the cache of builds.
-
-        Args:
-            name: What stands for the kind of workspace, such as ``"ros2_ws"``: each has a place of its own.
-            entry: The folder.
-        """
-        ...
-
-    def build(self, order: BuildOrder, command: Sequence[str], entry: Entry) -> Built:
-        """Run colcon.
-
-        Args:
-            order: What is wanted.
-            command: Names everything as it is seen from the job.
-            entry: Its folder holds ``src``, which the build may read. All that it writes is gone afterwards, but for
-                ``install`` of the place.
-        """
-        ...
 
 
 @dataclass(frozen=True)
@@ -139,12 +117,32 @@ class Program(Protocol):
         ...
 
 
-class Jobs(Builder, Protocol):
-    """Builds and runs for one submission."""
+class Jobs(Protocol):
+    """Builds and runs, here (:mod:`autograder.workspaces.plain_jobs`) or in boxes (``boxed_jobs``)."""
 
     @property
     def environment(self) -> Mapping[str, str]:
         """The whole environment of a job, before anything is added to it."""
+        ...
+
+    def place(self, name: str, entry: Path) -> Path:
+        """The path at which jobs see a folder of the cache of builds.
+
+        Args:
+            name: What stands for the kind of workspace, such as ``"ros2_ws"``: each has a place of its own.
+            entry: The folder.
+        """
+        ...
+
+    def build(self, order: BuildOrder, command: Sequence[str], entry: Entry) -> Built:
+        """Run colcon.
+
+        Args:
+            order: What is wanted.
+            command: Names everything as it is seen from the job.
+            entry: Its folder holds ``src``, which the build may read. All that it writes is gone afterwards, but for
+                ``install`` of the place.
+        """
         ...
 
     def tree(self, sources: Path) -> Path:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 PACKAGE = Path(autograder.__file__).parent
 JUDGE = ("judge/bench", "judge/subjects", "judge/settings.py", "judge/fastdds_profile.xml", "kit/evidence.py")
 """What is behind the words of a scenario, for each exercise."""
-WORKSPACES = ("workspaces/sources", "workspaces/building", "workspaces/running")
+WORKSPACES = ("workspaces",)
 """What runs the subject of an exercise that has a runner."""
 
 

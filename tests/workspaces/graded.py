@@ -19,8 +19,8 @@ from autograder.judge.settings import subject_environment
 from autograder.messages.checks import Check, Collect, Judged
 from autograder.messages.lines import Lines
 from autograder.notebook.checking.path_run import send_sources
-from autograder.workspaces.grading.plain_jobs import PlainJobs
-from autograder.workspaces.grading.service import ServiceSockets, WorkspaceService
+from autograder.workspaces.plain_jobs import PlainJobs
+from autograder.workspaces.service import ServiceSockets, WorkspaceService
 from tests.tiers import BUILT
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def graders_judge(folder: Path) -> Iterator[JudgeProcess]:
     builds.mkdir(mode=0o700, exist_ok=True)
     with tempfile.TemporaryDirectory() as name:
         sockets = ServiceSockets(Path(name) / "j", Path(name) / "n")
-        jobs = PlainJobs(subject_environment(0))
+        jobs = PlainJobs(subject_environment(0), handed_in=True)
         with (
             WorkspaceService(sockets, jobs, builds, {}, folder),
             JudgeProcess(Path(name) / "s", seed="graded") as judge,

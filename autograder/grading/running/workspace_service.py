@@ -14,12 +14,12 @@ from autograder.boxes.environment import kernel_environment
 from autograder.boxes.place import SHARED_FOLDER, BoxedPlace
 from autograder.judge.settings import boxed_ros_environment, ros_environment
 from autograder.kit.runners import Launches
-from autograder.workspaces.building import cache, own
-from autograder.workspaces.grading.boxed_jobs import BoxedJobs
-from autograder.workspaces.grading.plain_jobs import PlainJobs
-from autograder.workspaces.grading.service import ServiceSockets, WorkspaceService
-from autograder.workspaces.running.plans import reference_package
-from autograder.workspaces.sources.finding import PACKAGE_VARIABLE
+from autograder.workspaces import cache, own_builds
+from autograder.workspaces.boxed_jobs import BoxedJobs
+from autograder.workspaces.packages import PACKAGE_VARIABLE
+from autograder.workspaces.plain_jobs import PlainJobs
+from autograder.workspaces.plans import reference_package
+from autograder.workspaces.service import ServiceSockets, WorkspaceService
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -64,7 +64,7 @@ class Arrangement:
             return {}
         robot = {PACKAGE_VARIABLE: str(SHARED_FOLDER / _ROBOT)} if self.robot else {}
         path = f"{SHARED_FOLDER / _PROGRAMS}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
-        return {"PATH": path, own.GRADERS: str(SHARED_FOLDER / _BUILDS), **robot}
+        return {"PATH": path, own_builds.GRADERS: str(SHARED_FOLDER / _BUILDS), **robot}
 
 
 def arrange(task: Task, folder: Path) -> Arrangement:
@@ -106,7 +106,7 @@ def served(
         _furnish(place.shared, robot=arrangement.robot)
         sockets = ServiceSockets(arrangement.judges_socket, place.shared / _BUILDS)
     else:
-        jobs = PlainJobs(kernel_environment(folder / "home", {}))
+        jobs = PlainJobs(kernel_environment(folder / "home", {}), handed_in=True)
         ros = ros_environment()
         sockets = ServiceSockets(arrangement.judges_socket, None)
     # Programs that hang can be asked where, and what they say comes at once.
@@ -121,7 +121,7 @@ def _furnish(shared: Path, *, robot: bool) -> None:
     programs.mkdir()
     colcon = programs / "colcon"
     colcon.write_text(
-        f'#!/bin/sh\nexec "{sys.executable}" -P -m autograder.workspaces.building.colcon_stand_in "$@"\n'
+        f'#!/bin/sh\nexec "{sys.executable}" -P -m autograder.workspaces.colcon_stand_in "$@"\n'
     )
     colcon.chmod(0o755)
     if robot:

@@ -1,7 +1,7 @@
 """A workspace or launch file of a notebook as a subject: the grader's side builds and runs it, and reports.
 
 The notebook sends its sources and has no further part in it. What it said about them becomes files on the grader's
-side (:mod:`autograder.workspaces.grading.service`); from there come the reports, and what the programs say.
+side (:mod:`autograder.workspaces.service`); from there come the reports, and what the programs say.
 """
 
 from __future__ import annotations
@@ -17,8 +17,7 @@ from autograder.messages import workspaces
 from autograder.messages.checks import Collect, FromNotebook, Sources
 from autograder.messages.lines import Hangup, Lines, NotUnderstood
 from autograder.messages.workspaces import Source
-from autograder.workspaces.sources.collecting import MAX_BYTES, MAX_FILES, check_path, checked
-from autograder.workspaces.sources.tree import BadSources
+from autograder.workspaces.sources import MAX_BYTES, MAX_FILES, BadSources, check_path, checked
 
 if TYPE_CHECKING:
     from collections.abc import Callable

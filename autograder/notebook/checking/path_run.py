@@ -11,10 +11,9 @@ from typing import IO, TYPE_CHECKING, Any
 from autograder.messages.checks import Exited, Output, Sources
 from autograder.messages.workspaces import Source
 from autograder.short_lines import short_lines
-from autograder.workspaces.running.own_session import OwnSession
-from autograder.workspaces.sources.collecting import collect_launch, collect_workspace
-from autograder.workspaces.sources.finding import workspace_of
-from autograder.workspaces.sources.tree import BadSources
+from autograder.workspaces.own_session import OwnSession
+from autograder.workspaces.packages import workspace_of
+from autograder.workspaces.sources import BadSources, collect_launch, collect_workspace
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

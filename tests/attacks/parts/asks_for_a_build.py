@@ -3,7 +3,7 @@ import os
 
 from autograder.messages.lines import Lines
 from autograder.messages.workspaces import Build, BuildAnswer
-from autograder.workspaces.sources.collecting import collect_workspace
+from autograder.workspaces.sources import collect_workspace
 
 
 def ask(sources):

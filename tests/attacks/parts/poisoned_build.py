@@ -4,7 +4,7 @@ import os
 
 from autograder.messages.lines import Lines
 from autograder.messages.workspaces import Build, BuildAnswer, Source
-from autograder.workspaces.sources.collecting import collect_workspace
+from autograder.workspaces.sources import collect_workspace
 
 IN_PLACE_OF_SETUPTOOLS = """
 import os, sys

@@ -1,0 +1,210 @@
+"""Jobs in boxes: builds without a network, programs on a network where nobody is but them and a judge."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import shlex
+import shutil
+import tempfile
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from autograder.boxes.environment import box_environment
+from autograder.boxes.execution import Ended
+from autograder.boxes.guards import BoxGuard
+from autograder.boxes.limits import Limits
+from autograder.boxes.mounts import HOME, WORK
+from autograder.boxes.sandbox import Bind, Enclosure
+from autograder.workspaces.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, Built
+from autograder.workspaces.plans import ros2
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+
+    from autograder.boxes.boxed_processes import Running, WarmCommand
+    from autograder.workspaces.cache import Entry
+    from autograder.workspaces.jobs import BuildOrder, ProgramJob
+
+BUILD_LIMITS = Limits(
+    cpu_seconds=300.0,
+    memory_bytes=1_500_000_000,
+    beside_bytes=500_000_000,
+    beside=True,
+    processes=200,
+    scratch_bytes=300_000_000,
+    scratch_files=20_000,
+)
+"""An interface package takes 10 s of processor time, 400 MB, and writes 5 million bytes in 600 files."""
+PROGRAM_LIMITS = Limits(cpu_seconds=200.0, memory_bytes=1_500_000_000, processes=400)
+"""The resources that a program may take, where the limits of the whole submission are not held by the system
+itself."""
+LOOK_EVERY = 0.5
+"""Seconds between two questions whether a build is still wanted."""
+
+
+class BoxedJobs:
+    """Implements :class:`autograder.workspaces.jobs.Jobs`.
+
+    Args:
+        supervisors: Where the fork server of supervisors listens.
+        network: Where programs run; what is asked of it here comes from another thread.
+        folder: Ours alone, for what is made on the way.
+        programs: Where the fork server of programs listens; without one, each program starts by itself.
+    """
+
+    def __init__(self, supervisors: str, network: Enclosure, folder: Path, programs: str = "") -> None:
+        self._supervisors = supervisors
+        self._network = network
+        self._folder = folder
+        self._programs = programs
+
+    @property
+    def environment(self) -> Mapping[str, str]:
+        """The variables of every box."""
+        return box_environment()
+
+    def place(self, name: str, entry: Path) -> Path:
+        """In the home folder of the box, wherever the entry is."""
+        del entry
+        return HOME / name
+
+    def tree(self, sources: Path) -> Path:
+        """The path of the notebook in the student's box."""
+        del sources
+        return WORK
+
+    def build(self, order: BuildOrder, command: Sequence[str], entry: Entry) -> Built:
+        """Build in an enclosure of its own; pack what is there with nothing of the student's alive any more.
+
+        One that needs more memory than most do is built again, when no other of these is.
+        """
+        built, needs_room = self._build(order, command, entry.folder, BUILD_LIMITS)
+        if needs_room:
+            with self._turn():
+                built, _ = self._build(order, command, entry.folder, replace(BUILD_LIMITS, beside=False))
+        return built
+
+    @contextlib.contextmanager
+    def _turn(self) -> Iterator[None]:
+        """A lock that all workers of a batch have in common: the folder of the fork servers."""
+        folder = os.open(Path(self._supervisors).parent, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+        try:
+            fcntl.flock(folder, fcntl.LOCK_EX)
+            yield
+        finally:
+            os.close(folder)
+
+    def _build(
+        self, order: BuildOrder, command: Sequence[str], entry: Path, limits: Limits
+    ) -> tuple[Built, bool]:
+        """The build, and whether it came to the end of its share of memory."""
+        place = self.place(order.name, entry)
+        folder = Path(tempfile.mkdtemp(prefix="build-", dir=self._folder))
+        binds = [Bind(entry / "src", place / "src"), *_covers(order.hidden, folder)]
+        environment = box_environment(order.variables)
+        guard = BoxGuard(limits)
+        try:
+            with Enclosure(
+                self._supervisors, folder, guard=guard,
+                scratch_bytes=limits.scratch_bytes, scratch_inodes=limits.scratch_files,
+            ) as enclosure:  # fmt: skip
+                with enclosure.start(
+                    command, binds=binds, environment=environment, cwd=HOME,
+                    output_bytes=MAX_LOG_BYTES,
+                ) as running:  # fmt: skip
+                    guard.watch(running.pid)
+                    returncode, late = _wait(running, lambda: order.cancelled() or bool(guard.exceeded()))
+                    output = running.said
+                if returncode != 0:
+                    needs_room = limits.beside and guard.reason() is Ended.OUT_OF_MEMORY
+                    return Built(returncode, output, late=BUILD_SECONDS if late else 0.0), needs_room
+                packing = f"exec tar -cf - -C {shlex.quote(str(place / 'install'))} . 2>/dev/null"
+                packed = enclosure.run(
+                    ["/bin/sh", "-c", packing], limit=60.0, cwd=Path("/"), output_bytes=MAX_ARCHIVE_BYTES
+                )
+                whole = packed.returncode == 0 and not packed.cut
+                return Built(returncode, output, packed.output if whole else b""), False
+        finally:
+            guard.close()
+            shutil.rmtree(folder, ignore_errors=True)
+
+    def start(self, job: ProgramJob) -> BoxedProgram:
+        """Start it in a box of that network; a `ros2 run` from the fork server of programs."""
+        binds = [Bind(job.sources, WORK)]
+        binds += [Bind(entry / "install", HOME / name / "install") for name, entry in job.entries.items()]
+        command, *words = job.command
+        if self._programs and command == ros2() and words[:1] == ["run"] and not job.hidden:
+            return BoxedProgram(
+                self._network.ros2(self._programs, words, binds=binds, environment=job.environment)
+            )
+        running = self._network.start(
+            job.command,
+            binds=[*binds, *_covers(job.hidden, self._folder)],
+            environment=job.environment,
+            cwd=WORK,
+            scratch=False,
+        )
+        return BoxedProgram(running)
+
+
+class BoxedProgram:
+    """Implements :class:`autograder.workspaces.jobs.Program`."""
+
+    def __init__(self, running: Running | WarmCommand) -> None:
+        self._running = running
+        self._ended = False
+        self._code: int | None = None
+        self._guard = BoxGuard(PROGRAM_LIMITS)
+        self._guard.watch(running.pid)
+        self.pid = running.pid
+
+    def read(self, within: float) -> bytes | None:
+        """Its output, stdout and stderr in one."""
+        if self._guard.exceeded():
+            self._ended = True
+        if self._ended:
+            return b""
+        data = self._running.next_output(within)
+        if data == b"":
+            self._ended = True
+            self._code = self._running.exit_code()
+        return data
+
+    def exit_code(self) -> int | None:
+        """Of the first program of the box."""
+        return self._code
+
+    def interrupt(self) -> None:
+        """Ctrl-C, while it runs: its number may be another program's afterwards."""
+        if not self._ended:
+            self._running.interrupt()
+
+    def end(self) -> None:
+        """Kill the box."""
+        self._guard.close()
+        self._running.end()
+
+
+def _wait(running: Running, over: Callable[[], bool]) -> tuple[int | None, bool]:
+    """The exit code, None where it was ended; and whether that was because of the time."""
+    deadline = time.monotonic() + BUILD_SECONDS
+    while running.read(LOOK_EVERY):
+        if over():
+            return None, False
+        if time.monotonic() > deadline:
+            return None, True
+    return running.exit_code(), False
+
+
+def _covers(hidden: Sequence[Path], folder: Path) -> list[Bind]:
+    """An empty folder or file over each of these."""
+    if not hidden:
+        return []
+    empty_folder, empty_file = folder / "empty", folder / "empty-file"
+    empty_folder.mkdir(exist_ok=True)
+    empty_file.touch()
+    return [Bind(empty_folder if path.is_dir() else empty_file, path) for path in hidden]

@@ -1,0 +1,199 @@
+"""A cache of builds: one folder a build, named by the key of its sources, that only its owner may use.
+
+An entry is built in place (an install folder names its own path) under a lock, and counts only once its marker is
+written: whatever was interrupted is removed and done again. Where the one who builds is killed, as a kernel is when
+JupyterLab restarts it, the build is ended too, and has the lock until nothing of it is left that could write.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import shutil
+import stat
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, TYPE_CHECKING
+
+import platformdirs
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+VARIABLE = "AUTOGRADER_WORKSPACE_CACHE"
+"""Names another folder for the cache; a grader gives each box its own."""
+LIMIT = 500_000_000
+"""Bytes that all entries may have together; one interface package has 1.3 million."""
+IN_USE = 900.0
+"""Seconds after its last use in which an entry is not removed: its programs may still run, as long as a check lasts."""
+ASK_EVERY = 0.1
+"""Seconds between two looks whether an entry is free, for those who may give up."""
+_MARKER = "complete"
+_NAME = "ros2-course-autograder"
+
+
+class GivenUp(RuntimeError):
+    """The entry is not needed any more: whoever asked for it has given up."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A folder of the cache, locked by whoever holds it.
+
+    Attributes:
+        folder: Where it is.
+        complete: Whether a build is there already.
+        lock: The descriptor of its lock, which whatever else writes into the folder holds, too.
+    """
+
+    folder: Path
+    complete: bool
+    lock: int
+
+    def finish(self) -> None:
+        """Let the build count from now on."""
+        (self.folder / _MARKER).write_text(self.folder.name, encoding="utf-8")
+
+
+def root() -> Path:
+    """The folder of the cache, owned by this user and closed to all others.
+
+    A folder that somebody else owns or may write to is not used: its builds would be run. A fresh one in the
+    temporary folder takes its place, so that the work goes on without a cache.
+    """
+    named = os.environ.get(VARIABLE)
+    return _own(Path(named) if named else platformdirs.user_cache_path(_NAME) / "workspaces")
+
+
+def graders_root() -> Path:
+    """The folder of the builds that grades rest on: made in boxes, and seen by a box only as far as it needs it."""
+    return _own(platformdirs.user_cache_path(_NAME) / "graded-builds")
+
+
+def _own(folder: Path) -> Path:
+    try:
+        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        if is_ones_own(folder):
+            return folder
+    except OSError:
+        pass
+    return Path(tempfile.mkdtemp(prefix="workspace-builds-"))
+
+
+def is_ones_own(folder: Path) -> bool:
+    """True if only this user may write to a folder."""
+    found = folder.lstat()
+    own = stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid()
+    return own and not found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+
+
+def is_complete(key: str, base: Path) -> bool:
+    """True if there is a finished entry, without waiting for anybody who makes it."""
+    return _is_of(key, base / key / _MARKER)
+
+
+def _is_of(key: str, marker: Path) -> bool:
+    """True if the marker was written for a build of this key, and not for one whose folder has another name since."""
+    try:
+        return marker.read_text(encoding="utf-8") == key
+    except (OSError, UnicodeDecodeError):
+        return False
+
+
+@contextlib.contextmanager
+def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -> Iterator[Entry]:
+    """Hold the entry of a key: nobody else builds it at the same time.
+
+    An entry that was not finished is empty when it is handed over, and is removed when it is not finished
+    then.
+
+    Args:
+        key: Says what is in it.
+        base: The cache.
+        cancelled: Asked now and then, while somebody else has the entry, whether it is still wanted.
+
+    Raises:
+        GivenUp: It is not.
+    """
+    with (base / f"{key}.lock").open("a") as lock:
+        _await_turn(lock, cancelled)
+        folder = base / key
+        marker = folder / _MARKER
+        complete = _is_of(key, marker) and is_ones_own(folder)
+        if complete:
+            os.utime(marker)
+        else:
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.mkdir(mode=0o700)
+        try:
+            yield Entry(folder, complete, lock.fileno())
+        finally:
+            if not marker.is_file():
+                shutil.rmtree(folder, ignore_errors=True)
+    if not complete:
+        make_room(base)
+
+
+def _await_turn(lock: IO[str], cancelled: Callable[[], bool]) -> None:
+    while True:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            # A lock has no event that one could wait for together with anything else.
+            if cancelled():
+                raise GivenUp("nobody waits for the entry any more") from None
+            time.sleep(ASK_EVERY)
+        else:
+            return
+
+
+def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[str]:
+    """Remove the entries that were not used for longest, until all together have at most ``limit`` bytes.
+
+    Args:
+        base: The cache.
+        limit: Bytes.
+        in_use: Seconds after its last use in which an entry stays.
+
+    Returns:
+        The keys that were removed.
+    """
+    entries = sorted((used, folder) for folder in base.iterdir() if (used := _last_use(folder)) is not None)
+    sizes = {folder: _size(folder) for _, folder in entries}
+    total = sum(sizes.values())
+    removed = []
+    for used, folder in entries:
+        if total <= limit or time.time() - used < in_use:
+            break
+        if _remove(base, folder):
+            total -= sizes[folder]
+            removed.append(folder.name)
+    return removed
+
+
+def _remove(base: Path, folder: Path) -> bool:
+    # Opened so that nothing in it is lost: a builder that has the lock has written into it who it is.
+    with (base / f"{folder.name}.lock").open("a") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            return False  # somebody uses it
+        # Without its marker it does not count, should the rest stay behind.
+        (folder / _MARKER).unlink(missing_ok=True)
+        shutil.rmtree(folder, ignore_errors=True)
+    return True
+
+
+def _last_use(folder: Path) -> float | None:
+    try:
+        return (folder / _MARKER).stat().st_mtime
+    except OSError:
+        return None
+
+
+def _size(folder: Path) -> int:
+    files = (Path(root_, name) for root_, _, names in os.walk(folder) for name in names)
+    return sum(file.lstat().st_size for file in files if not file.is_symlink())

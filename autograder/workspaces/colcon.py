@@ -1,0 +1,162 @@
+"""A workspace as it is found and built, how colcon is told to build it, and what its output says of a failure."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.workspaces.failures import telling_line
+from autograder.workspaces.install_folder import entry_points, package_prefixes, programs
+from autograder.workspaces.packages import needed, survey
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from autograder.workspaces.packages import Package
+
+MAX_LOG = 40_000
+"""Characters of a failed build's log that are kept: its end."""
+_FAILED = re2.compile(r"(?m)^Failed\s+<<< (?P<name>\S+)")
+
+
+@dataclass(frozen=True)
+class Build:
+    """A workspace: what is there to be built, and what building it has brought.
+
+    Attributes:
+        workspace: Its folder.
+        ok: Whether every package was built.
+        install: Where the packages are installed; empty where it failed.
+        packages: The packages of the workspace, as their files describe them.
+        unusable: What is wrong with those that cannot be used.
+        seconds: Wall time that it took.
+        reused: Whether the same sources had been built before.
+        trouble: ``"no_workspace"``, ``"no_package"``, ``"bad_package"`` or ``"build"``; empty where it is
+            well.
+        package: The package that failed, else empty.
+        line: The one line that matters of a failure.
+        log: The log of a failure.
+    """
+
+    workspace: Path
+    ok: bool
+    install: Path | None = None
+    packages: tuple[Package, ...] = ()
+    unusable: tuple[str, ...] = ()
+    seconds: float = 0.0
+    reused: bool = False
+    trouble: str = ""
+    package: str = ""
+    line: str = ""
+    log: str = field(default="", repr=False)
+
+    @property
+    def prefixes(self) -> list[Path]:
+        """One folder for each installed package."""
+        return package_prefixes(self.install) if self.install else []
+
+    def programs(self, package: str) -> tuple[str, ...]:
+        """The names of the programs that ``ros2 run`` finds of an installed package; empty where it is none."""
+        return tuple(p for prefix in self.prefixes if prefix.name == package for p in programs(prefix))
+
+    def entry_points(self, package: str) -> tuple[str, ...]:
+        """The entry points of an installed Python package, as ``name = module:function``, however it names them."""
+        return tuple(e for prefix in self.prefixes if prefix.name == package for e in entry_points(prefix))
+
+
+Targets = Callable[[Build], Iterable[str]]
+"""Says of a workspace that was looked at which of its packages are needed; none of them means all."""
+
+
+def failed(found: Build, log: str) -> Build:
+    """A workspace that could not be built, with what colcon's output tells of it."""
+    search = _FAILED.search(log)
+    name = search["name"] if search else ""
+    own = _log_of(log, name)
+    # What setup.py itself says when colcon first asks it goes past the package's part of the log.
+    own = log if "CalledProcessError" in telling_line(own) else own
+    return replace(found, trouble="build", package=name, line=telling_line(own), log=own[-MAX_LOG:])
+
+
+def look(workspace: Path) -> Build:
+    """The packages that are there to be built, without building them.
+
+    Args:
+        workspace: The folder that holds ``src``.
+    """
+    workspace = workspace.resolve()
+    src = workspace / "src"
+    if not src.is_dir():
+        return Build(workspace, ok=False, trouble="no_workspace", line=_no_workspace(workspace))
+    packages, unusable = survey(src)
+    found = Build(workspace, ok=False, packages=tuple(packages), unusable=tuple(unusable))
+    if packages:
+        return found
+    if unusable:
+        return replace(found, trouble="bad_package", line=unusable[0])
+    return replace(found, trouble="no_package", line=f"there is no package.xml below {src}")
+
+
+def choose(found: Build, targets: Targets | None) -> tuple[list[Package], Build]:
+    """The packages that are to be built, and the workspace with its trouble where these cannot be.
+
+    A package that is not needed, half done or not usable at all, hurts nobody.
+    """
+    chosen = needed(found.packages, targets(found)) if targets is not None else []
+    if chosen or not found.unusable:
+        return chosen or list(found.packages), found
+    return [], replace(found, trouble="bad_package", line=found.unusable[0])
+
+
+def moved(packages: Iterable[Package], src: Path, there: Path) -> list[Package]:
+    """The packages as they are found where their sources are written again.
+
+    Args:
+        packages: The packages.
+        src: The folder that they are in.
+        there: The other folder.
+    """
+    return [replace(package, folder=there / package.folder.relative_to(src)) for package in packages]
+
+
+def command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()) -> list[str]:
+    """Colcon's command line for these packages alone; ``build``, ``install`` and ``log`` come into the folder.
+
+    Args:
+        packages: The packages.
+        folder: Where all that is made comes to.
+        cmake: More arguments for CMake.
+
+    Release defines NDEBUG: without it a value of the wrong type in a field of a generated message ends the whole
+    process with SIGABRT instead of raising an exception.
+    """
+    return [
+        sys.executable, "-m", "colcon", "--log-base", str(folder / "log"),
+        "build", "--paths", *(str(package.folder) for package in packages),
+        "--build-base", str(folder / "build"), "--install-base", str(folder / "install"),
+        "--event-handlers", "console_cohesion+", "console_start_end+", "desktop_notification-", "status-",
+        "--cmake-args", f"-DPython3_EXECUTABLE={sys.executable}", "-DCMAKE_BUILD_TYPE=Release",
+        "-DBUILD_TESTING=OFF", "--no-warn-unused-cli", "-Wno-dev", *cmake,
+    ]  # fmt: skip
+
+
+def _log_of(log: str, package: str) -> str:
+    """The part of colcon's output that belongs to one package, else all of it."""
+    if package:
+        found = re2.search(rf"(?ms)^--- output: {re2.escape(package)}\n(.*?)^---$", log)
+        if found:
+            return found[1]
+    return log
+
+
+def _no_workspace(workspace: Path) -> str:
+    if not workspace.exists():
+        return f"there is no folder {workspace}"
+    if (workspace / "package.xml").is_file():
+        return f"{workspace} is a package: name the workspace, the folder that holds src"
+    return f"{workspace} has no folder src"

@@ -1,0 +1,86 @@
+"""`colcon` in a graded notebook: a plain build is asked of the grader, everything else is colcon's own.
+
+``colcon build`` in a workspace, with ``--packages-select`` or ``--packages-up-to`` at most, ends as it always does:
+with the packages in ``install``, and lines that say which are finished. Only what colcon needs for its next build
+(``build``) is not there, and ``log`` is empty.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from autograder.workspaces.colcon import look
+from autograder.workspaces.install_folder import BESIDE, CannotPlace, place
+from autograder.workspaces.own_builds import GRADERS, build
+from autograder.workspaces.packages import needed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.workspaces.colcon import Build, Targets
+
+UP_TO = "--packages-up-to"
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Build by asking, or become colcon.
+
+    Args:
+        arguments: Of the command line.
+    """
+    chosen = _chosen(arguments)
+    found = look(Path.cwd())
+    if os.environ.get(GRADERS) and chosen is not None and not found.trouble and not found.unusable:
+        option, names = chosen
+        if set(names) <= {package.name for package in found.packages}:
+            made = build(found, _targets(option, names))
+            try:
+                return _told(made)
+            except CannotPlace:
+                pass  # colcon says why
+    os.execv(sys.executable, [sys.executable, "-m", "colcon", *arguments])
+    return 1
+
+
+def _chosen(arguments: Sequence[str]) -> tuple[str, list[str]] | None:
+    """The option and the packages of a plain build; None for any other command."""
+    match list(arguments):
+        case ["build"]:
+            return "", []
+        case ["build", ("--packages-select" | "--packages-up-to") as option, *names]:
+            return (option, names) if names and not any(name.startswith("-") for name in names) else None
+    return None
+
+
+def _targets(option: str, names: Sequence[str]) -> Targets | None:
+    if option == UP_TO:
+        return lambda found: [package.name for package in needed(found.packages, names)]
+    return (lambda _: names) if option else None
+
+
+def _told(made: Build) -> int:
+    """Say what colcon says; the exit code.
+
+    Raises:
+        CannotPlace: The install folder cannot take it.
+    """
+    if not made.ok:
+        print(f"{made.log.rstrip()}\nFailed   <<< {made.package} [{made.seconds:.2f}s, exited with code 1]")
+        print(f"\nSummary: 0 packages finished [{made.seconds:.2f}s]\n  1 package failed: {made.package}")
+        return 1
+    place(made)
+    names = [prefix.name for prefix in made.prefixes]
+    for folder in BESIDE:
+        (made.workspace / folder).mkdir(exist_ok=True)
+        (made.workspace / folder / "COLCON_IGNORE").touch()
+    for name in names:
+        print(f"Starting >>> {name}\nFinished <<< {name} [{made.seconds / len(names):.2f}s]")
+    print(f"\nSummary: {len(names)} package{'s' * (len(names) != 1)} finished [{made.seconds:.2f}s]")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,191 @@
+"""What colcon makes: an install folder, what is where in it, and the environment in which its packages are found.
+
+The environment is what ``source install/setup.bash`` makes. It is worked out here because sourcing needs a shell, half
+a second, and a path without spaces.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import re2
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from autograder.workspaces.colcon import Build
+
+LIBRARY = f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
+BESIDE = ("build", "log")
+"""The other folders that colcon makes, for its next build and for people."""
+_LAYOUT = ".colcon_install_layout"
+_INDEX = "share/ament_index/resource_index"
+
+
+class CannotPlace(RuntimeError):
+    """The workspace's install folder cannot take the build. The message says what to do."""
+
+
+def package_prefixes(install: Path) -> list[Path]:
+    """The prefix of each package in an isolated install folder, in the order of their names."""
+    if not install.is_dir():
+        return []
+    return sorted(folder for folder in install.iterdir() if (folder / "share").is_dir())
+
+
+def python_folders(prefix: Path) -> list[Path]:
+    """The folders of a prefix that Python imports from."""
+    # Debian's Python installs into dist-packages where it is told a prefix of its own.
+    candidates = [prefix / LIBRARY, prefix / "local" / LIBRARY.replace("site-", "dist-")]
+    return [folder for folder in candidates if folder.is_dir()]
+
+
+def programs(prefix: Path) -> list[str]:
+    """The names of the programs that ``ros2 run`` finds of the package in a prefix."""
+    return sorted(file.name for file in (prefix / "lib" / prefix.name).glob("*") if file.is_file())
+
+
+def entry_points(prefix: Path) -> Iterator[str]:
+    """The entry points of the Python package in a prefix, as ``name = module:function``."""
+    for file in (file for folder in python_folders(prefix) for file in folder.glob("*/entry_points.txt")):
+        for line in file.read_text(encoding="utf-8", errors="replace").splitlines():
+            if re2.fullmatch(r"\S+ = [\w.]+:[\w.]+", line):
+                yield line
+
+
+def has_service(prefix: Path, interface: str) -> bool:
+    """True if the package in a prefix has the Python module of a service type.
+
+    Args:
+        prefix: The prefix.
+        interface: The type's name, such as ``"AddTwoInts"``.
+    """
+    words = (f"_{c.lower()}" if c.isupper() and i else c.lower() for i, c in enumerate(interface))
+    return any(prefix.rglob(f"{prefix.name}/srv/_{''.join(words)}.py"))
+
+
+def is_indexed(prefix: Path) -> bool:
+    """True if ament knows of the package in a prefix."""
+    return (prefix / _INDEX / "packages" / prefix.name).is_file()
+
+
+def files_of_interfaces(prefix: Path, package: str) -> Iterator[Path]:
+    """All files and folders of an interface package in a prefix that it may share with others."""
+    for pattern in (
+        f"share/{package}",
+        f"include/{package}",
+        f"{_INDEX}/*/{package}",
+        f"lib/lib{package}__*.so",
+        f"lib/python*/*-packages/{package}*",
+    ):
+        yield from prefix.glob(pattern)
+
+
+def with_prefixes(
+    environment: Mapping[str, str], prefixes: Iterable[Path], *, last: bool = False
+) -> dict[str, str]:
+    """An environment in which packages of these prefixes are found.
+
+    Args:
+        environment: The one to begin with.
+        prefixes: One for each package.
+        last: Whether packages that the environment has already come first.
+    """
+    chosen = list(prefixes)
+    additions = {
+        "AMENT_PREFIX_PATH": [prefix for prefix in chosen if (prefix / "share" / "ament_index").is_dir()],
+        "CMAKE_PREFIX_PATH": chosen,
+        "LD_LIBRARY_PATH": [prefix / "lib" for prefix in chosen if any((prefix / "lib").glob("*.so*"))],
+        "PATH": [prefix / "bin" for prefix in chosen if (prefix / "bin").is_dir()],
+        "PYTHONPATH": [folder for prefix in chosen for folder in python_folders(prefix)],
+    }
+    result = dict(environment)
+    for name, folders in additions.items():
+        there = [part for part in environment.get(name, "").split(os.pathsep) if part]
+        ours = [str(folder) for folder in folders if str(folder) not in there or not last]
+        there = [part for part in there if part not in ours]
+        if joined := [*there, *ours] if last else [*ours, *there]:
+            result[name] = os.pathsep.join(joined)
+    return result
+
+
+def relocated(environment: Mapping[str, str], here: Path, there: Path) -> dict[str, str]:
+    """The environment for somebody who sees one folder at another place."""
+    old, new = f"{here}{os.sep}", f"{there}{os.sep}"
+    return {
+        name: os.pathsep.join(
+            part.replace(old, new, 1) if part.startswith(old) else part for part in value.split(os.pathsep)
+        )
+        if old in value
+        else value
+        for name, value in environment.items()
+    }
+
+
+def without_workspaces(environment: Mapping[str, str], workspace: Path) -> dict[str, str]:
+    """The environment without what is in a workspace: a build must not see the results of the one before."""
+    result = dict(environment)
+    inside = f"{workspace.resolve()}{os.sep}"
+    for name in (
+        "AMENT_PREFIX_PATH",
+        "CMAKE_PREFIX_PATH",
+        "COLCON_PREFIX_PATH",
+        "LD_LIBRARY_PATH",
+        "PYTHONPATH",
+    ):
+        if name in result:
+            parts = result[name].split(os.pathsep)
+            result[name] = os.pathsep.join(part for part in parts if not f"{part}{os.sep}".startswith(inside))
+    return result
+
+
+def place(made: Build) -> Path:
+    """Copy a build from the cache into ``install`` of its workspace, for terminals to source.
+
+    What is there of the same packages is replaced, what is there of others stays. Libraries that a running program
+    has loaded stay loaded: a replaced file is another file, not an overwritten one.
+
+    Returns:
+        The install folder.
+
+    Raises:
+        ValueError: The build failed.
+        CannotPlace: The folder was made with ``--merge-install``, or is not writable.
+    """
+    if made.install is None:
+        raise ValueError("a build that failed has nothing to place")
+    target = made.workspace / "install"
+    layout = target / _LAYOUT
+    if layout.is_file() and layout.read_text(encoding="utf-8").strip() != "isolated":
+        raise CannotPlace(f"{target} was built with --merge-install: delete it, and build again")
+    try:
+        target.mkdir(exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=".new-", dir=target) as fresh:
+            copied = Path(fresh) / "install"
+            shutil.copytree(made.install, copied, symlinks=True, ignore=shutil.ignore_patterns("__pycache__"))
+            rename_paths(copied, str(made.install), str(target))
+            for entry in sorted(copied.iterdir()):
+                _replace(target / entry.name, entry)
+    except OSError as error:
+        raise CannotPlace(f"{target} cannot be written: {error.strerror}") from error
+    return target
+
+
+def _replace(old: Path, new: Path) -> None:
+    if old.is_dir() and not old.is_symlink():
+        shutil.rmtree(old)
+    new.replace(old)
+
+
+def rename_paths(folder: Path, old: str, new: str) -> None:
+    """Replace one path by another in the text files of a folder (setup scripts, what CMake and setuptools wrote)."""
+    for root, _, names in os.walk(folder):
+        for file in (Path(root, name) for name in names):
+            content = file.read_bytes()
+            if old.encode() in content and b"\0" not in content:
+                file.write_bytes(content.replace(old.encode(), new.encode()))

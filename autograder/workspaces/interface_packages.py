@@ -1,0 +1,138 @@
+"""Packages that hold interface definitions and nothing else: what of their texts makes no difference to a build.
+
+Students write the same three lines with other comments and other spaces. A text is only simplified where it is certain
+that it means the same; where it is not, it stays as it is, and the package is built for itself.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree
+
+import re2
+from msgspec.structs import replace
+
+from autograder.workspaces.packages import DEFINITIONS, UNREADABLE
+from autograder.workspaces.sources import Tree
+
+if TYPE_CHECKING:
+    from autograder.messages.workspaces import Source
+    from autograder.workspaces.packages import Package
+
+MAX_SIMPLIFIED = 50_000
+"""Bytes of sources that are simplified; a student's have a thousand. More are built as they are: the time that it takes
+grows with the square."""
+_PROSE = ("LICENSE", "README.md", "README.rst", "CHANGELOG.rst")
+"""Files that only people read, and no build."""
+_FOR_PEOPLE = {"description", "maintainer", "author", "license", "url"}
+"""Elements of package.xml that only people read. Those that package.xml must have are put back with a fixed text."""
+
+
+def holds_only_interfaces(package: Package) -> bool:
+    """True if nothing but interfaces can come of a package: its files are those of an interface package."""
+    files = [path for path in package.folder.rglob("*") if path.is_file()]
+    known = {"package.xml", "CMakeLists.txt", *_PROSE}
+    return (
+        package.build_type == "ament_cmake"
+        and any(path.suffix in DEFINITIONS for path in files)
+        and all(
+            path.suffix in DEFINITIONS or path.relative_to(package.folder).as_posix() in known
+            for path in files
+        )
+        and "_cpp" not in package.cmake_lists
+    )
+
+
+def simplified(tree: Tree) -> Tree:
+    """The sources of such packages with other texts, so that those that mean the same are the same."""
+    if sum(len(source.data or b"") for source in tree.sources) > MAX_SIMPLIFIED:
+        return tree
+    return Tree(tuple(replace(source, data=_simple(source)) for source in tree.sources))
+
+
+def _simple(source: Source) -> bytes | None:
+    path = PurePosixPath(source.path)
+    if source.data is None or path.name in _PROSE:
+        return None if source.data is None else b""
+    rewrite = simple_definition if path.suffix in DEFINITIONS else _SIMPLE_FORMS.get(path.name)
+    try:
+        return rewrite(source.data.decode()).encode() if rewrite else source.data
+    except UnicodeDecodeError:
+        return source.data
+
+
+def simple_definition(text: str) -> str:
+    """A definition without comments and needless spaces; a line that is more than words and these stays as it is.
+
+    To rosidl a blank behind ``---``, in front of a type, or one that is none of ASCII's, is an error.
+    """
+    lines = []
+    for line in text.splitlines():
+        code = line.partition("#")[0]
+        if re2.fullmatch(r"[!-~]+([ \t]+[!-~]+)+[ \t]*", code) and not re2.search("[\"']", line):
+            lines.append(" ".join(code.split()))
+        elif code.strip(" \t"):
+            lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
+def simple_cmake(text: str) -> str:
+    """A CMakeLists.txt without comments and needless spaces; the text itself where it does more than plain commands.
+
+    See cmake-language(7): bracket arguments and comments, escapes, and quoted texts of several lines are left alone.
+    """
+    if re2.search(r"\\|\[=*\[", text) or any(line.count('"') % 2 for line in text.splitlines()):
+        return text
+    found = list(re2.finditer(r'"[^"\n]*"|#[^\n]*|[()]|\n|[^\s()"#]+', text))
+    for one, other in pairwise(found):
+        if one.end() == other.start() and not any(re2.match(r"[()#\n]", word[0]) for word in (one, other)):
+            return text  # a quoted text in the middle of a word
+    words = [word[0] for word in found if not word[0].startswith("#")]
+    out, depth = "", 0
+    for word in words:
+        if word == "\n" and depth > 0:
+            continue
+        if word == ")":
+            depth -= 1
+            out = out.rstrip(" ") + ")"
+        elif word == "(":
+            depth += 1
+            out = out.rstrip(" ") + "("
+        elif word == "\n":
+            out = out.rstrip(" \n") + "\n"
+        else:
+            out += ("" if out.endswith(("(", "\n", " ")) or not out else " ") + word
+    return out.strip() + "\n"
+
+
+def simple_package_xml(text: str) -> str:
+    """A package.xml with the elements that a build looks at, in an order of their own."""
+    try:
+        root = ElementTree.fromstring(text)
+        return _simple_elements(root) or text
+    except UNREADABLE:
+        return text
+
+
+def _simple_elements(root: ElementTree.Element) -> str:
+    """The same of what was read; empty where the elements are not as simple as that."""
+    kept = [element for element in root if element.tag not in _FOR_PEOPLE]
+    if any(len(element) for element in kept if element.tag != "export"):
+        return ""
+    lines = sorted(_element(element) for element in kept)
+    for_people = '<description>-</description><maintainer email="nobody@example.com">-</maintainer><license>-</license>'
+    attributes = "".join(f' {name}="{value}"' for name, value in sorted(root.attrib.items()))
+    return "\n".join([f"<package{attributes}>", for_people, *lines, "</package>"]) + "\n"
+
+
+def _element(element: ElementTree.Element) -> str:
+    element.tail = None
+    for part in element.iter():
+        part.text = part.text.strip() if part.text else None
+        part.tail = None
+    return ElementTree.tostring(element, encoding="unicode")
+
+
+_SIMPLE_FORMS = {"CMakeLists.txt": simple_cmake, "package.xml": simple_package_xml}

@@ -1,0 +1,116 @@
+"""Builds of a workspace of one's own: in a notebook or a terminal, as the student, on the student's own computer.
+
+In a graded notebook the grader is asked for them instead. What ``colcon build`` makes depends on the sources alone, so
+it need not be made a second time for the check, nor for another student with the same sources. The box gets it as an
+archive and sees nothing of the cache that it comes from.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from autograder.messages.lines import Hangup, Lines, NotUnderstood
+from autograder.messages.workspaces import Build as BuildRequest
+from autograder.messages.workspaces import BuildAnswer, BuildDone, BuildFailed, Piece
+from autograder.workspaces import artefacts, cache
+from autograder.workspaces.builds import Builds, BuildTookTooLong
+from autograder.workspaces.install_folder import rename_paths
+from autograder.workspaces.packages import WORKSPACE
+from autograder.workspaces.plain_jobs import PlainJobs
+from autograder.workspaces.sources import BadSources, collect_workspace
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+    from pathlib import Path
+
+    from autograder.workspaces.colcon import Build, Targets
+    from autograder.workspaces.jobs import BuildOrder
+    from autograder.workspaces.packages import Package
+
+GRADERS = "AUTOGRADER_BUILDS"
+"""Names the socket of the grader's side in a graded notebook's environment."""
+LIMIT = 300.0
+"""Seconds of wall time that the grader may take for a build."""
+
+
+def build(found: Build, targets: Targets | None = None) -> Build:
+    """Build packages of a workspace, each time as if for the first time.
+
+    The result is in the cache, not in the workspace: what an earlier build left in ``install`` has no part in it. The
+    workspace is not written to.
+
+    Args:
+        found: The workspace, looked at.
+        targets: See :meth:`autograder.workspaces.builds.Builds.build`.
+    """
+    return OwnBuilds().build(found, targets)
+
+
+class OwnBuilds(Builds):
+    """Builds made in the cache itself; in a graded notebook those that its grader has made."""
+
+    def __init__(self) -> None:
+        super().__init__(cache.root(), PlainJobs(os.environ, handed_in=False))
+
+    def build(
+        self,
+        found: Build,
+        targets: Targets | None,
+        *,
+        name: str = WORKSPACE,
+        cancelled: Callable[[], bool] = lambda: False,
+    ) -> Build:
+        """Build what is needed; who waits here is told of a build that took too long as of one that failed."""
+        try:
+            return super().build(found, targets, name=name, cancelled=cancelled)
+        except BuildTookTooLong as error:
+            return error.build
+
+    def _make(self, found: Build, order: BuildOrder, entry: cache.Entry) -> Build:
+        socket = os.environ.get(GRADERS)
+        asked = _ask(socket, found, order.packages, entry.folder / "install") if socket else None
+        return asked or super()._make(found, order, entry)
+
+
+def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) -> Build | None:
+    """Let the grader build packages of a workspace.
+
+    Args:
+        socket: The grader's.
+        found: The workspace, looked at.
+        chosen: The packages.
+        install: Where the build is put; not there yet.
+
+    Returns:
+        The build, with its install folder's own path in it wherever it names itself; None where nobody answers, or
+        does not want to.
+    """
+    try:
+        collected = collect_workspace(found.workspace)
+        lines = Lines.to(socket, LIMIT)
+    except (BadSources, Hangup):
+        return None
+    with contextlib.closing(lines), contextlib.suppress(Hangup, NotUnderstood, artefacts.BadArtefacts):
+        top = found.workspace.resolve().name
+        lines.say(BuildRequest(len(collected), top, [package.name for package in chosen]))
+        for source in collected:
+            lines.say(source)
+        answer: BuildAnswer = lines.hear(BuildAnswer)
+        if isinstance(answer, BuildFailed):
+            return replace(
+                found,
+                seconds=answer.seconds,
+                trouble=answer.trouble,
+                package=answer.package,
+                line=answer.line,
+                log=answer.log,
+            )
+        if isinstance(answer, BuildDone):
+            archive = b"".join(lines.hear(Piece).data for _ in range(answer.pieces))
+            artefacts.unpack(archive, install)
+            rename_paths(install, answer.install, str(install))
+            return replace(found, ok=True, install=install, seconds=answer.seconds, reused=answer.reused)
+    return None

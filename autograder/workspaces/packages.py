@@ -1,0 +1,247 @@
+"""The packages in a workspace's ``src`` folder, as their files describe them, and the workspace of a launch file."""
+
+from __future__ import annotations
+
+import ast
+import os
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree
+from xml.parsers.expat import ExpatError
+
+import re2
+
+from autograder.workspaces.sources import BadSources, Tree, is_source, read
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from autograder.messages.workspaces import Source
+
+WORKSPACE = "ros2_ws"
+"""The name that workspaces have in the course."""
+PACKAGE_VARIABLE = "AUTOGRADER_ROBOT_PACKAGE"
+"""Names the folder of the course's own package where a grader has put it within reach of a notebook."""
+DEFINITIONS = (".msg", ".srv", ".action")
+"""The endings of the names of interface files."""
+UNREADABLE = (SyntaxError, ValueError, LookupError, RecursionError, MemoryError)
+"""The errors with which Python's parsers of Python and XML refuse a text: malformed, in an encoding that they do not
+know, too deep."""
+MAX_FILES = 5_000
+MAX_BYTES = 100_000_000
+"""Files and bytes of sources beyond which something else than a workspace was named."""
+MAX_PACKAGES = 50
+"""Packages that are looked at; a workspace of the course has a few."""
+MAX_PACKAGE_XML = 20_000
+"""Bytes of a package.xml; real ones have a few thousand. To validate one takes time that grows with the square, so none
+declares entities, with which two thousand bytes stand for eight million."""
+MAX_SETUP = 50_000
+"""Bytes of a setup.py that is read. Python's own parser takes minutes for half a megabyte of one f-string."""
+
+_HIDING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
+
+
+class BadPackage(ValueError):
+    """A package.xml that cannot be used. The message is for a student."""
+
+
+@dataclass(frozen=True)
+class Package:
+    """A package of the workspace.
+
+    Attributes:
+        name: The name in its package.xml.
+        folder: Where it is.
+        build_type: Such as ``"ament_python"``; empty where package.xml names none.
+        dependencies: Everything it depends on, and the groups it is a member of.
+    """
+
+    name: str
+    folder: Path
+    build_type: str
+    dependencies: tuple[str, ...] = ()
+
+    @property
+    def commented(self) -> tuple[str, ...]:
+        """The dependencies that it would also have if the lines in the comments of its package.xml counted."""
+        comments = re2.findall(r"(?s)<!--(.*?)-->", _text(self.folder / "package.xml"))
+        line = r"<(?:\w*depend|member_of_group)\b[^>]*>\s*([^<\s]+)\s*</"
+        return tuple(name for comment in comments for name in re2.findall(line, comment))
+
+    @property
+    def interface_files(self) -> tuple[Path, ...]:
+        """Its .msg, .srv and .action files, as paths inside the package."""
+        found = (file for ending in DEFINITIONS for file in self.folder.rglob(f"*{ending}"))
+        return tuple(sorted(file.relative_to(self.folder) for file in found if file.is_file()))
+
+    @property
+    def modules(self) -> tuple[Path, ...]:
+        """Its Python files, as paths inside the package, those nearest to its folder first."""
+        found = [file.relative_to(self.folder) for file in self.folder.rglob("*.py") if file.is_file()]
+        return tuple(sorted(found, key=lambda file: (len(file.parts), file)))
+
+    @property
+    def cmake_lists(self) -> str:
+        """The text of its CMakeLists.txt without comments; empty where there is none."""
+        return re2.sub(r"#.*", "", _text(self.folder / "CMakeLists.txt"))
+
+    @property
+    def programs(self) -> tuple[str, ...]:
+        """The console scripts that its setup.py names, as they are there.
+
+        Read, not run: texts of the form ``name = module:function`` anywhere in it. What is computed, or is in
+        setup.cfg, is known when the package is built.
+        """
+        return tuple(_entry_points(_text(self.folder / "setup.py")))
+
+
+def find_packages(src: Path) -> list[Package]:
+    """The packages below ``src`` that colcon would build, in the order of their names.
+
+    Raises:
+        BadPackage: A package.xml cannot be read.
+    """
+    packages, unusable = survey(src)
+    if unusable:
+        raise BadPackage(unusable[0])
+    return packages
+
+
+def survey(src: Path) -> tuple[list[Package], list[str]]:
+    """The packages below ``src`` in the order of their names, and what is wrong with those that cannot be used."""
+    packages, unusable = [], []
+    files = sorted(islice(_package_files(src), MAX_PACKAGES + 1))
+    if len(files) > MAX_PACKAGES:
+        return [], [f"there are more than {MAX_PACKAGES} packages below {src.name}"]
+    for file in files:
+        try:
+            packages.append(_package(file))
+        except BadPackage as error:
+            unusable.append(str(error))
+    return sorted(packages, key=lambda package: package.name), unusable
+
+
+def workspace_of(file: Path, beside: Iterable[Path]) -> Path | None:
+    """The workspace that a launch file is in, or the one in a folder beside it.
+
+    Args:
+        file: The launch file.
+        beside: Folders that may hold a workspace of the course's name.
+    """
+    around = [folder for folder in file.resolve().parents if (folder / "src").is_dir()]
+    candidates = [*around[:1], *(folder / WORKSPACE for folder in beside)]
+    found = [folder for folder in candidates if any((folder / "src").glob("**/package.xml"))]
+    return found[0] if found else None
+
+
+def needed(packages: Iterable[Package], targets: Iterable[str]) -> list[Package]:
+    """The targets and all that they depend on, as far as it is among the packages; in the packages' order."""
+    there = list(packages)
+    dependencies: dict[str, set[str]] = {}
+    for package in there:
+        dependencies.setdefault(package.name, set()).update(package.dependencies)
+    wanted, waiting = set[str](), list(targets)
+    while waiting:
+        name = waiting.pop()
+        if name not in wanted:
+            wanted.add(name)
+            waiting += dependencies.get(name, ())
+    return [package for package in there if package.name in wanted]
+
+
+def sources_of(src: Path, packages: Iterable[Package]) -> Tree:
+    """All that a build of packages gets to see, read once.
+
+    Args:
+        src: Where they are.
+        packages: Those that are built.
+
+    Raises:
+        BadSources: There is far too much.
+    """
+    sources: list[Source] = []
+    size = 0
+    for folder in sorted(package.folder for package in packages):
+        for source in read(folder, folder.relative_to(src).as_posix(), MAX_BYTES):
+            sources.append(source)
+            size += len(source.data or b"")
+            if len(sources) > MAX_FILES or size > MAX_BYTES:
+                raise BadSources(
+                    f"{src} holds more than {MAX_FILES} files or {MAX_BYTES // 10**6} MB: is it a workspace?"
+                )
+    return Tree(tuple(sources))
+
+
+def _package_files(src: Path) -> Iterator[Path]:
+    for root, folders, names in os.walk(src):
+        folders[:] = filter(is_source, folders)
+        if any(name in names for name in _HIDING):
+            folders[:] = []
+        elif "package.xml" in names:
+            folders[:] = []  # colcon does not look for packages inside packages
+            yield Path(root, "package.xml")
+
+
+def _package(file: Path) -> Package:
+    shown = f"{file.parent.name}/package.xml"
+    with file.open("rb") as opened:
+        text = opened.read(MAX_PACKAGE_XML + 1)
+    if len(text) > MAX_PACKAGE_XML:
+        raise BadPackage(f"{shown} is larger than {MAX_PACKAGE_XML // 1000} kB")
+    if b"<!ENTITY" in text:
+        raise BadPackage(f"{shown} declares an entity with <!ENTITY; write what it stands for in its place")
+    try:
+        root = ElementTree.fromstring(text)
+    except UNREADABLE as error:
+        raise BadPackage(f"{shown} is not valid XML: {_told(error)}") from error
+    name = (root.findtext("name") or "").strip()
+    if not name:
+        raise BadPackage(f"{shown} has no <name>")
+    _validate(file, shown)
+    depends = [
+        child.text.strip() for child in root if child.text and re2.search("depend|member_of", child.tag)
+    ]
+    build_type = (root.findtext("export/build_type") or "").strip()
+    return Package(name, file.parent, build_type, tuple(depends))
+
+
+def _validate(file: Path, shown: str) -> None:
+    # colcon takes a package whose package.xml is not valid for a plain Python package, without a word.
+    try:
+        from catkin_pkg.package import InvalidPackage, parse_package
+    except ImportError:
+        return
+    try:
+        parse_package(file)
+    except InvalidPackage as error:
+        what = re2.sub(r"^Error\(s\) in package '[^']*':\s*", "", str(error)).strip()
+        raise BadPackage(f"{shown} is not valid: {what}") from error
+    except (*UNREADABLE, ExpatError) as error:
+        raise BadPackage(f"{shown} is not valid: {_told(error)}") from error
+
+
+def _told(error: Exception) -> str:
+    return "it is too deep" if isinstance(error, RecursionError | MemoryError) else str(error)
+
+
+def _entry_points(setup: str) -> Iterator[str]:
+    if len(setup) > MAX_SETUP:
+        return
+    try:
+        tree = ast.parse(setup)
+    except UNREADABLE:
+        return
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            for line in node.value.splitlines():
+                if re2.fullmatch(r"\s*[\w.-]+\s*=\s*[\w.]+\s*:\s*[\w.]+\s*", line):
+                    yield line.strip()
+
+
+def _text(file: Path) -> str:
+    try:
+        return file.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return ""

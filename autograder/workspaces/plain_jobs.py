@@ -1,0 +1,87 @@
+"""Jobs as processes of this user: in a notebook, in a terminal, and for a grader that was told to go on without boxes.
+
+Reports are made as with boxes, but nothing keeps a build or a program away from who makes them.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+from typing import TYPE_CHECKING
+
+from autograder.workspaces.artefacts import pack
+from autograder.workspaces.install_folder import BESIDE, without_workspaces
+from autograder.workspaces.jobs import BUILD_SECONDS, MAX_LOG_BYTES, Built
+from autograder.workspaces.own_session import OwnSession
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from autograder.workspaces.cache import Entry
+    from autograder.workspaces.jobs import BuildOrder, ProgramJob
+
+OWN_BUILD_SECONDS = 300.0
+"""Wall time in which a build of one's own workspace must have ended."""
+
+
+class PlainJobs:
+    """Implements :class:`autograder.workspaces.jobs.Jobs`.
+
+    Args:
+        environment: The whole environment of what is run.
+        handed_in: Whether somebody else has written what is run. It then has a home folder of its own, and of a build
+            only what an archive holds is taken.
+    """
+
+    def __init__(self, environment: Mapping[str, str], *, handed_in: bool) -> None:
+        self.environment: Mapping[str, str] = dict(environment)
+        self._handed_in = handed_in
+
+    def place(self, name: str, entry: Path) -> Path:
+        """The entry itself."""
+        del name
+        return entry
+
+    def tree(self, sources: Path) -> Path:
+        """The sources themselves."""
+        return sources
+
+    def build(self, order: BuildOrder, command: Sequence[str], entry: Entry) -> Built:
+        """Build in the entry; what is handed in is packed, and removed from there again."""
+        seconds, size = (
+            (BUILD_SECONDS, MAX_LOG_BYTES) if self._handed_in else (OWN_BUILD_SECONDS, sys.maxsize)
+        )
+        environment = {**without_workspaces(self.environment, order.workspace), **order.variables}
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)  # setuptools warns of it in every log
+        start = PlainProgram if self._handed_in else OwnSession
+        with start(command, environment, entry.folder, (entry.lock,)) as colcon:
+            output, late = colcon.collect(seconds, size, order.cancelled)
+            code = colcon.exit_code()
+        archive = pack(entry.folder / "install") if self._handed_in and code == 0 else None
+        made = (*BESIDE, "install") if self._handed_in else BESIDE
+        # A tree may be deeper than Python goes.
+        subprocess.run(["rm", "-rf", *(str(entry.folder / name) for name in made)], check=False)
+        return Built(code, output, archive, late=seconds if late else 0.0)
+
+    def start(self, job: ProgramJob) -> PlainProgram:
+        """Start it as a process."""
+        return PlainProgram(job.command, job.environment, job.sources)
+
+
+class PlainProgram(OwnSession):
+    """Implements :class:`autograder.workspaces.jobs.Program`: its home and temporary files are its own."""
+
+    def __init__(
+        self, command: Sequence[str], environment: Mapping[str, str], cwd: Path, holds: Sequence[int] = ()
+    ) -> None:
+        self._home = tempfile.TemporaryDirectory(prefix="job-", ignore_cleanup_errors=True)
+        folders = dict.fromkeys(("HOME", "TMPDIR", "ROS_LOG_DIR"), self._home.name)
+        super().__init__(command, {**environment, **folders}, cwd, holds)
+
+    def end(self, polite: float = 0.0) -> None:
+        """Kill it, and take its files away."""
+        super().end(polite)
+        self.output.close()
+        self._home.cleanup()

@@ -1,0 +1,185 @@
+"""An exercise's plan for a workspace: the packages that it needs, what must be there then, and what is run."""
+
+from __future__ import annotations
+
+import functools
+import os
+import shutil
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder import course
+from autograder.kit.runners import RunsProgram, RunsPrograms, ServesInterface
+from autograder.kit.workspace_report import AMENT_PACKAGE
+from autograder.workspaces.install_folder import files_of_interfaces, has_service, is_indexed
+from autograder.workspaces.packages import WORKSPACE
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from autograder.workspaces.colcon import Build
+    from autograder.workspaces.packages import Package
+
+COURSE_PACKAGE = "my_robot_pkg"
+"""The course's own programs, which are launched where a student has none."""
+_LAUNCH_FILES = ("launch.py", ".xml", ".yaml", ".yml")
+"""The endings of launch files' names."""
+_LARGEST = 1_000_000
+"""Bytes that a launch file may have to be looked into; what a student's folder holds may be of any size."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """An exercise about a workspace.
+
+    Attributes:
+        targets: The packages that it needs, by name; none of them means all that there are.
+        missing: What it asks for and the build has not brought; empty where all is there.
+        command: What is run, in the environment of the build. Asked for only where nothing is missing.
+        definition: The name of the interface file that it is about; empty where it is about none.
+    """
+
+    targets: Callable[[Build], Iterable[str]]
+    missing: Callable[[Build], str]
+    command: Callable[[Build], Sequence[str]]
+    definition: str = ""
+
+
+def plan_for(runner: RunsProgram | RunsPrograms | ServesInterface, arguments: Sequence[str] = ()) -> Plan:
+    """The plan for what an exercise runs in a workspace.
+
+    Args:
+        runner: What the exercise runs.
+        arguments: Of this start; where there are several programs, the first one says which.
+    """
+    match runner:
+        case RunsProgram(package=package, program=program):
+            return _program_plan(package, program, arguments)
+        case RunsPrograms(package=package):
+            return _program_plan(package, arguments[0], arguments[1:])
+        case ServesInterface():
+            return _interface_plan(runner)
+
+
+def _program_plan(package: str, program: str, arguments: Sequence[str]) -> Plan:
+    def missing(made: Build) -> str:
+        if not any(prefix.name == package for prefix in made.prefixes):
+            return package
+        return "" if program in made.programs(package) else program
+
+    return Plan(
+        targets=lambda found: [known.name for known in found.packages if known.name == package],
+        missing=missing,
+        command=lambda _: [ros2(), "run", package, program, *arguments],
+    )
+
+
+def _interface_plan(runner: ServesInterface) -> Plan:
+    interface = Path(runner.file).stem
+
+    def holders(found: Build) -> list[Package]:
+        return [p for p in found.packages if any(file.stem == interface for file in p.interface_files)]
+
+    def generated(made: Build) -> list[Path]:
+        names = {package.name for package in holders(made)}
+        return [p for p in made.prefixes if p.name in names and has_service(p, interface)]
+
+    def missing(made: Build) -> str:
+        entered = any(map(is_indexed, generated(made)))
+        return "" if entered else AMENT_PACKAGE if generated(made) else runner.file
+
+    def probe(made: Build) -> Sequence[str]:
+        service_type = f"{generated(made)[0].name}/srv/{interface}"
+        return [sys.executable, "-m", "autograder.workspaces.probe", service_type, runner.service]
+
+    return Plan(
+        targets=lambda found: [package.name for package in holders(found)],
+        missing=missing,
+        command=probe,
+        definition=runner.file,
+    )
+
+
+def launch_targets(file: Path) -> Callable[[Build], Iterable[str]]:
+    """The packages of a workspace whose names are in a launch file, or in one that it includes.
+
+    Args:
+        file: The launch file, in whatever language.
+    """
+
+    def targets(found: Build) -> list[str]:
+        words = _launch_words(file, found)
+        return [package.name for package in found.packages if package.name in words]
+
+    return targets
+
+
+def lacks_programs(file: Path, made: Build, course_build: Build) -> bool:
+    """True if a launch file is for programs of the course's package that the student's has not got.
+
+    Who has written talker and listener in the notebooks alone has no programs to launch. Who launches programs of
+    other names has them: ``talker`` is then a variable, a node's name or a word in a comment.
+    """
+    words, own, given = _launch_words(file, made), _programs(made), _programs(course_build)
+    return bool(words & given - own) and not words & own - given
+
+
+def reference_workspace() -> Path:
+    """The workspace with the course's own talker and listener; not there in what students are handed."""
+    return course.root() / "solutions" / WORKSPACE
+
+
+def reference_package() -> Path:
+    """The package with the course's own talker and listener."""
+    return reference_workspace() / "src" / COURSE_PACKAGE
+
+
+@functools.cache
+def course_interfaces() -> tuple[Path, ...]:
+    """All files and folders of the interfaces that come with the course.
+
+    Whoever is to make interfaces must not find these: copied, they would look like generated ones.
+    """
+    prefixes = {sys.prefix, *os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)} - {""}
+    packages = course.interfaces()
+    return tuple(
+        sorted(f for one in prefixes for package in packages for f in files_of_interfaces(Path(one), package))
+    )
+
+
+def ros2() -> str:
+    """The ``ros2`` command of this environment."""
+    beside = Path(sys.executable).with_name("ros2")
+    return str(beside) if beside.exists() else shutil.which("ros2") or "ros2"
+
+
+def _launch_words(file: Path, build: Build) -> set[str]:
+    """The words of a launch file and of those that it includes: whatever has its name in the text of another one.
+
+    Tags and keys, such as ``<node`` and ``node:``, are not among the words.
+    """
+    near = [
+        *file.parent.iterdir(),
+        *(path for package in build.packages for path in package.folder.rglob("*")),
+    ]
+    others = {path for path in near if path.name.endswith(_LAUNCH_FILES) and _is_small(path)}
+    words: set[str] = set()
+    unread = {file}
+    while unread:
+        others -= unread
+        text = "\n".join(path.read_text(encoding="utf-8", errors="replace") for path in unread)
+        words.update(re2.findall(r"</?\w+|\w+:?", text))
+        unread = {path for path in others if path.name in text}
+    return words
+
+
+def _is_small(path: Path) -> bool:
+    return path.is_file() and path.stat().st_size <= _LARGEST
+
+
+def _programs(made: Build) -> set[str]:
+    return {program for prefix in made.prefixes for program in made.programs(prefix.name)}

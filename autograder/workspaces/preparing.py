@@ -1,0 +1,120 @@
+"""From a path to a program, here or in a box: look, build what is needed, report, and say what is to be run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from autograder.workspaces.colcon import look
+from autograder.workspaces.install_folder import relocated, with_prefixes
+from autograder.workspaces.packages import WORKSPACE
+from autograder.workspaces.plans import lacks_programs, launch_targets, reference_workspace
+from autograder.workspaces.reporting import built_line, found_line
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from pathlib import Path
+
+    from autograder.workspaces.builds import Builds
+    from autograder.workspaces.colcon import Build, Targets
+    from autograder.workspaces.plans import Plan
+
+COURSE = "course_ws"
+"""The place of the course's own packages, behind the student's."""
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A program that can be started.
+
+    Attributes:
+        command: The command.
+        environment: Its whole environment, in which the builds are found.
+        builds: What it may read, by the names of the places.
+    """
+
+    command: Sequence[str]
+    environment: Mapping[str, str]
+    builds: Mapping[str, Build]
+
+
+@dataclass(frozen=True)
+class Preparation:
+    """Prepares what an exercise runs of a workspace or a launch file, and reports on the way.
+
+    Attributes:
+        builds: Bring what is needed, built; their jobs will run the program.
+        report: Says a line of the report that a check reads.
+        build_ended: Told when a build has ended, before the line about it.
+        cancelled: Says when nobody waits for the program any more.
+    """
+
+    builds: Builds
+    report: Callable[[str], None]
+    build_ended: Callable[[], None] = lambda: None
+    cancelled: Callable[[], bool] = lambda: False
+
+    def workspace(self, plan: Plan, folder: Path) -> Prepared | None:
+        """Prepare what an exercise runs of a workspace.
+
+        Returns:
+            None where there is nothing to run; the report says why.
+        """
+        found = look(folder)
+        self.report(found_line(found, plan))
+        made = found if found.trouble else self._built(found, plan.targets)
+        missing = plan.missing(made) if made.ok else ""
+        self.build_ended()
+        self.report(built_line(made, plan, missing))
+        if not made.ok or missing:
+            return None
+        return Prepared(
+            plan.command(made), self._with(self.builds.jobs.environment, WORKSPACE, made), {WORKSPACE: made}
+        )
+
+    def launch(self, command: Sequence[str], file: Path | None, workspace: Path | None) -> Prepared | None:
+        """Prepare a launch with the student's packages and, after these, the course's own ``my_robot_pkg``.
+
+        Args:
+            command: The launch command.
+            file: The launch file, where it is known.
+            workspace: The workspace that the file belongs to: of that is built what the file needs.
+
+        Returns:
+            None where the student's packages could not be built.
+
+        Raises:
+            RuntimeError: The course's own could not.
+        """
+        builds: dict[str, Build] = {}
+        environment, course_first = self.builds.jobs.environment, False
+        # What students are handed has no programs but theirs: those would be Lab 1.2's solutions.
+        if (own := reference_workspace()).is_dir():
+            builds[COURSE] = self.builds.build(look(own), None, name=COURSE)
+            if not builds[COURSE].ok:
+                raise RuntimeError(f"the course's own packages could not be built: {builds[COURSE].line}")
+        if file is not None and workspace is not None:
+            made = self._built(look(workspace), launch_targets(file))
+            self.build_ended()
+            self.report(built_line(made))
+            if not made.ok:
+                return None
+            course_first = COURSE in builds and lacks_programs(file, made, builds[COURSE])
+            environment = self._with(environment, WORKSPACE, made)
+            builds[WORKSPACE] = made
+        if COURSE in builds:
+            environment = self._with(environment, COURSE, builds[COURSE], last=not course_first)
+        return Prepared(command, environment, builds)
+
+    def _built(self, found: Build, targets: Targets) -> Build:
+        return self.builds.build(found, targets, cancelled=self.cancelled)
+
+    def _with(
+        self, environment: Mapping[str, str], name: str, made: Build, *, last: bool = False
+    ) -> Mapping[str, str]:
+        """An environment in which a build is found, by somebody who sees it at its place."""
+        found = with_prefixes(environment, made.prefixes, last=last)
+        if made.install is None:
+            return found
+        entry = made.install.parent
+        return relocated(found, entry, self.builds.jobs.place(name, entry))

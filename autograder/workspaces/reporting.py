@@ -1,0 +1,98 @@
+"""A workspace and its build, in the words of the report that a check reads."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit.workspace_report import Interface, PackageReport, WorkspaceReport, as_line
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from autograder.workspaces.colcon import Build
+    from autograder.workspaces.packages import Package
+    from autograder.workspaces.plans import Plan
+
+MAX_LOG = 3_000
+"""Characters of a build's log that are reported: its end."""
+
+
+def found_line(found: Build, plan: Plan) -> str:
+    """The line on the sources, before they are built.
+
+    Args:
+        found: The workspace.
+        plan: What the exercise does with it.
+    """
+    return _line(found, "found", plan)
+
+
+def built_line(made: Build, plan: Plan | None = None, missing: str = "") -> str:
+    """The line on the result of a build.
+
+    Args:
+        made: The build.
+        plan: What the exercise does with the workspace; None where it needs no package more than another.
+        missing: Of what the exercise asks for, what is not there.
+    """
+    return _line(made, "built", plan, missing)
+
+
+def no_sources_line(trouble: str) -> str:
+    """The report where there is nothing that could be built.
+
+    Args:
+        trouble: Why, for the student.
+    """
+    return as_line(WorkspaceReport("built", built=False, trouble="no_workspace", line=trouble))
+
+
+def _line(made: Build, phase: str, plan: Plan | None, missing: str = "") -> str:
+    needed = set(plan.targets(made)) if plan else set[str]()
+    definition = plan.definition if plan else ""
+    described = [_described(package, definition, made) for package in made.packages]
+    return as_line(
+        WorkspaceReport(
+            phase=phase,
+            built=made.ok,
+            trouble=made.trouble,
+            package=made.package,
+            line=made.line,
+            log=made.log[-MAX_LOG:],
+            packages=[package for package in described if package.name in needed],
+            missing=missing,
+        ),
+        [package for package in described if package.name not in needed],
+    )
+
+
+def _described(package: Package, definition: str, made: Build) -> PackageReport:
+    files = sorted(package.interface_files, key=lambda file: file.name != definition)
+    return PackageReport(
+        package.name,
+        package.build_type,
+        made.entry_points(package.name) or package.programs,
+        [_interface(package, file, definition) for file in files],
+        package.dependencies,
+        tuple(file.as_posix() for file in package.modules),
+        package.commented,
+        made.programs(package.name),
+    )
+
+
+def _interface(package: Package, file: Path, definition: str) -> Interface:
+    listed = file.name in package.cmake_lists
+    if file.name != definition:
+        return Interface(file.as_posix(), None, listed)
+    text = (package.folder / file).read_text(encoding="utf-8", errors="replace")
+    return Interface(file.as_posix(), _without_comments(text), listed)
+
+
+def _without_comments(text: str) -> str:
+    """A definition without its comments and empty lines. In a text between quotes, # is a letter like any other."""
+    lines = (
+        line if re2.search(r"^[^#]*['\"]", line) else line.partition("#")[0] for line in text.splitlines()
+    )
+    return "\n".join(line.strip() for line in lines if line.strip())

@@ -1,1 +1,0 @@
-"""A workspace or a launch file run as the subject of a check."""

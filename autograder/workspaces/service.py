@@ -1,0 +1,174 @@
+"""The grader's side of checks of workspaces and launch files: told what was submitted, it builds, runs and reports.
+
+It lives in the grader's worker, outside of all boxes, and has two sockets, each a Unix socket:
+
+* The **judge's** socket, which the student's box cannot see. One connection is one check. The judge sends what the
+  notebook has sent as its sources; this side writes them down, reads them, has them built and run, and tells the judge
+  what there is, what came of the build, how processes were started, and what the programs say.
+* The **notebook's** socket, for builds alone: what `colcon build` would make in the box, made outside of it once.
+
+What is said on both is in :mod:`autograder.messages.workspaces`.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+import socket
+import tempfile
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Self
+
+from autograder.messages.lines import Hangup, Lines, NotUnderstood, listen
+from autograder.messages.workspaces import Build, BuildDone, BuildFailed, NotBuilt, Piece, Trouble
+from autograder.workspaces.artefacts import pack
+from autograder.workspaces.builds import BuildTookTooLong
+from autograder.workspaces.colcon import look
+from autograder.workspaces.graded_builds import GradedBuilds
+from autograder.workspaces.packages import WORKSPACE
+from autograder.workspaces.session import Session
+from autograder.workspaces.sources import BadSources, receive
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from autograder.workspaces.colcon import Build as Workspace
+    from autograder.workspaces.jobs import Jobs
+
+MAX_BUILDS = 20
+"""Builds that one notebook may ask for; after that colcon does its work in the box."""
+PIECE = 400_000
+"""Bytes of an archive in one message."""
+
+
+@dataclass(frozen=True)
+class ServiceSockets:
+    """The sockets on which the service listens.
+
+    Attributes:
+        judge: For the judge's box alone.
+        notebook: For the student's box; None for no such socket.
+    """
+
+    judge: Path
+    notebook: Path | None
+
+
+class WorkspaceService:
+    """Serves one submission; leaving the context ends all that runs for it.
+
+    Args:
+        sockets: Sockets to be made; their folders are there.
+        jobs: Builds and runs.
+        builds: The cache of builds; see :func:`autograder.workspaces.cache.graders_root`.
+        variables: What programs have in their environment besides, such as how ROS is to behave.
+        folder: Ours alone, for sources.
+    """
+
+    def __init__(
+        self, sockets: ServiceSockets, jobs: Jobs, builds: Path, variables: Mapping[str, str], folder: Path
+    ) -> None:
+        self._builds = GradedBuilds(builds, jobs)
+        self._variables = variables
+        self._folder = Path(tempfile.mkdtemp(prefix="sources-", dir=folder))
+        self._left = threading.Semaphore(MAX_BUILDS)
+        self._conversations: set[Lines] = set()
+        self._threads: list[threading.Thread] = []
+        self._closing = threading.Event()
+        self._listeners = [self._open(sockets.judge, self._serve_judge)]
+        if sockets.notebook is not None:
+            self._listeners.append(self._open(sockets.notebook, self._serve_notebook))
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Hang up on everybody, and end what runs for them."""
+        self._closing.set()
+        for listener in self._listeners:
+            with contextlib.suppress(OSError):
+                listener.shutdown(socket.SHUT_RDWR)
+            listener.close()
+        for conversation in list(self._conversations):
+            conversation.close()
+        for thread in self._threads:
+            thread.join()
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+    def _open(self, path: Path, serve: Callable[[Lines, Path], None]) -> socket.socket:
+        listener = listen(path)
+        thread = threading.Thread(target=self._accept, args=(listener, serve), daemon=True)
+        self._threads.append(thread)
+        thread.start()
+        return listener
+
+    def _accept(self, listener: socket.socket, serve: Callable[[Lines, Path], None]) -> None:
+        """One conversation after the other: a check is alone, and so is a build."""
+        while not self._closing.is_set():
+            try:
+                connection, _ = listener.accept()
+            except OSError:
+                return
+            lines = Lines(connection)
+            self._conversations.add(lines)
+            if self._closing.is_set():
+                lines.close()
+                return
+            folder = Path(tempfile.mkdtemp(prefix="c-", dir=self._folder))
+            try:
+                serve(lines, folder)
+            except Hangup:
+                pass
+            except Exception as error:
+                with contextlib.suppress(Hangup):
+                    lines.say(Trouble(f"{type(error).__name__}: {error}"[:500]))
+            finally:
+                lines.close()
+                self._conversations.discard(lines)
+                shutil.rmtree(folder, ignore_errors=True)
+
+    def _serve_judge(self, lines: Lines, folder: Path) -> None:
+        with Session(lines, self._builds, self._variables, folder) as session:
+            session.serve()
+
+    def _serve_notebook(self, lines: Lines, folder: Path) -> None:
+        """Answer one wish for a build (:mod:`autograder.workspaces.own_builds`)."""
+        if not self._left.acquire(blocking=False):
+            lines.say(NotBuilt("this notebook has had enough builds"))
+            return
+        try:
+            order = lines.hear(Build)
+            receive(lines, order.count, order.path, folder)
+        except (BadSources, NotUnderstood) as error:
+            lines.say(NotBuilt(str(error)))
+            return
+        made = look(folder / order.path)
+        if not made.trouble:
+            made = self._made(made, frozenset(order.only))
+        if made.ok and made.install is not None:
+            self._send(lines, made, made.install)
+            return
+        told = (text.replace(f"{folder}/", "") for text in (made.trouble, made.package, made.line, made.log))
+        lines.say(BuildFailed(made.seconds, *told))
+
+    def _made(self, found: Workspace, names: frozenset[str]) -> Workspace:
+        def targets(there: Workspace) -> list[str]:
+            return [package.name for package in there.packages if package.name in names]
+
+        try:
+            return self._builds.build(found, targets, cancelled=self._closing.is_set)
+        except BuildTookTooLong as error:
+            return error.build
+
+    def _send(self, lines: Lines, made: Workspace, install: Path) -> None:
+        archive = pack(install)
+        pieces = [archive[at : at + PIECE] for at in range(0, len(archive), PIECE)]
+        place = self._builds.jobs.place(WORKSPACE, install.parent) / "install"
+        lines.say(BuildDone(len(pieces), str(place), made.seconds, made.reused))
+        for piece in pieces:
+            lines.say(Piece(piece))

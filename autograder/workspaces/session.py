@@ -1,0 +1,246 @@
+"""One check of a workspace or a launch file, on the grader's side."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
+
+from autograder import exercises
+from autograder.kit.runners import Launches, ServesInterface
+from autograder.messages import workspaces as messages
+from autograder.messages.lines import Hangup, NotUnderstood
+from autograder.workspaces.jobs import ProgramJob
+from autograder.workspaces.packages import workspace_of
+from autograder.workspaces.plans import course_interfaces, plan_for, ros2
+from autograder.workspaces.preparing import Preparation
+from autograder.workspaces.processes import watched
+from autograder.workspaces.reporting import no_sources_line
+from autograder.workspaces.sources import BadSources, receive
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from autograder.kit.runners import Runner
+    from autograder.messages.lines import Lines
+    from autograder.workspaces.graded_builds import GradedBuilds
+    from autograder.workspaces.jobs import Program
+    from autograder.workspaces.preparing import Prepared
+
+MAX_LINE = 4_000
+"""Bytes of one line of a program's output that are kept."""
+MAX_OUTPUT = 2_000_000
+"""Bytes of output that are passed on of one run."""
+
+
+@dataclass(frozen=True)
+class Submitted:
+    """What a check is about.
+
+    Attributes:
+        runner: What the exercise runs of it.
+        tree: The folder that it was written to.
+        path: The workspace or launch file in it.
+        trouble: Why nothing was written, for the student; empty where something was.
+        variables: More variables of the environment of its programs.
+    """
+
+    runner: Runner | None
+    tree: Path
+    path: str
+    trouble: str
+    variables: Mapping[str, str]
+
+
+class Session:
+    """One check. The judge may start what was submitted several times; it is built once.
+
+    Args:
+        lines: The judge's end.
+        builds: Bring what is needed; their jobs run it.
+        variables: Of the programs' environment.
+        folder: Empty, ours alone.
+    """
+
+    def __init__(
+        self, lines: Lines, builds: GradedBuilds, variables: Mapping[str, str], folder: Path
+    ) -> None:
+        self._lines = lines
+        self._builds = builds
+        self._variables = variables
+        self._tree = folder / "submitted"
+        self._run: _Run | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stop()
+
+    def serve(self) -> None:
+        """Do what the judge says until it hangs up.
+
+        Raises:
+            Hangup: It did.
+        """
+        first = self._lines.hear(messages.Check)
+        wrong = self._take_sources(first)
+        submitted = Submitted(
+            exercises.get(first.exercise).runner,
+            self._tree,
+            first.path,
+            first.trouble or wrong,
+            {**self._variables, "ROS_DOMAIN_ID": str(first.domain)},
+        )
+        self._lines.say(messages.Ready())
+        while True:
+            order: messages.ToService = self._lines.hear(messages.ToService)
+            if isinstance(order, messages.Interrupt):
+                self._interrupt(order.run)
+                continue
+            self._stop()
+            if isinstance(order, messages.Start):
+                self._run = _Run(self._lines, self._builds, submitted, order)
+            else:
+                self._lines.say(messages.Stopped(order.run))
+
+    def _take_sources(self, check: messages.Check) -> str:
+        """Write down what was submitted; what is wrong with it, if anything is."""
+        self._tree.mkdir()
+        try:
+            receive(self._lines, check.count, check.path, self._tree)
+        except BadSources as error:
+            return str(error)
+        except NotUnderstood:
+            return "a file has not the form of one"
+        return ""
+
+    def _interrupt(self, number: int) -> None:
+        if self._run is not None and self._run.number == number:
+            self._run.interrupt()
+
+    def _stop(self) -> None:
+        run, self._run = self._run, None
+        if run is not None:
+            run.end()
+
+
+class _Run:
+    """One start of what was submitted, until it ends or is ended."""
+
+    def __init__(
+        self, lines: Lines, builds: GradedBuilds, submitted: Submitted, order: messages.Start
+    ) -> None:
+        self._lines = lines
+        self._submitted = submitted
+        self.number, self._arguments = order.run, order.arguments
+        self._cancelled = threading.Event()
+        self._jobs = builds.jobs
+        self._prepare = Preparation(builds, self._report, self._build_ended, self._cancelled.is_set)
+        self._program: Program | None = None
+        self._changing = threading.Lock()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def end(self) -> None:
+        """Kill what runs, and wait until nothing of it is left."""
+        self._cancelled.set()
+        self._thread.join()
+
+    def interrupt(self) -> None:
+        """Press Ctrl-C at what runs, where it runs."""
+        with self._changing:
+            if self._program is not None:
+                self._program.interrupt()
+
+    def _run(self) -> None:
+        """Look, build, report, run, tell."""
+        try:
+            self._work()
+        except Hangup:
+            pass
+        except Exception as error:
+            self._lines.say(messages.Trouble(f"{type(error).__name__}: {error}"[:500]))
+
+    def _work(self) -> None:
+        what = self._submitted
+        if what.trouble:
+            self._report(no_sources_line(what.trouble))
+            self._exited(1)
+        elif what.runner is None:
+            raise LookupError("this exercise takes no path")
+        elif isinstance(what.runner, Launches):
+            self._launch(what.tree / what.path)
+        else:
+            plan = plan_for(what.runner, self._arguments)
+            self._follow(self._prepare.workspace(plan, what.tree / what.path))
+
+    def _launch(self, file: Path) -> None:
+        tree = self._submitted.tree
+        if not file.is_file():
+            self._lines.say(messages.Output(self.number, f"there is no launch file {self._submitted.path}"))
+            self._exited(1)
+            return
+        workspace = workspace_of(file, (file.parent, tree))
+        if workspace is not None and not workspace.is_relative_to(tree):
+            workspace = None
+        seen = self._jobs.tree(tree) / file.relative_to(tree)
+        self._follow(self._prepare.launch([ros2(), "launch", str(seen)], file, workspace), watch=True)
+
+    def _hidden(self) -> Sequence[Path]:
+        """The course's own interfaces that a task is to make, hidden so that they cannot be copied."""
+        return course_interfaces() if isinstance(self._submitted.runner, ServesInterface) else ()
+
+    def _follow(self, prepared: Prepared | None, *, watch: bool = False) -> None:
+        """Run a program to its end, or until nobody wants it any more."""
+        if prepared is None:
+            self._exited(1)
+            return
+        folders = {name: one.install.parent for name, one in prepared.builds.items() if one.install}
+        variables = {**prepared.environment, **self._submitted.variables}
+        program = self._jobs.start(
+            ProgramJob(prepared.command, variables, self._submitted.tree, folders, self._hidden())
+        )
+        with self._changing:
+            self._program = program
+        try:
+            with watched(program.pid, self._report) if watch else contextlib.nullcontext():
+                self._pass_on(program)
+        finally:
+            with self._changing:
+                self._program = None
+            program.end()
+        if not self._cancelled.is_set():
+            self._exited(program.exit_code())
+
+    def _pass_on(self, program: Program) -> None:
+        """Pass on its output, line by line, as long as it is wanted."""
+        left, line = MAX_OUTPUT, b""
+        while not self._cancelled.is_set() and (data := program.read(0.1)) != b"":
+            *complete, line = (line + (data or b"")).split(b"\n")
+            for text in complete:
+                left -= min(len(text), MAX_LINE) + 1  # an empty line has to be sent, too
+                if left > 0:
+                    self._say_output(text)
+            line = line[:MAX_LINE]
+        if line and left > 0:
+            self._say_output(line)
+
+    def _say_output(self, line: bytes) -> None:
+        text = line[:MAX_LINE].decode("utf-8", "replace").rstrip("\r")
+        self._lines.say(messages.Output(self.number, text))
+
+    def _report(self, line: str) -> None:
+        """Tell the judge a line of the report, as if its paths began where the notebook is."""
+        tree = self._submitted.tree
+        text = line.replace(f"{tree}/", "").replace(str(tree), ".")
+        self._lines.say(messages.ReportLine(self.number, text))
+
+    def _build_ended(self) -> None:
+        """Tell the judge that it waits for no build any more."""
+        self._lines.say(messages.BuildEnded(self.number))
+
+    def _exited(self, code: int | None) -> None:
+        self._lines.say(messages.Exited(self.number, code))

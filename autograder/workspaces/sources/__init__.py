@@ -1,1 +1,0 @@
-"""The sources of a workspace: which packages there are, and which files belong to them."""

@@ -1,0 +1,218 @@
+"""Builds and programs in real boxes: what a student's setup.py and program can do there, and what they cannot."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.boxes.fork_server import BESIDE, SUPERVISOR_MODULE, ForkServer
+from autograder.boxes.sandbox import Enclosure, why_impossible
+from autograder.workspaces.boxed_jobs import BoxedJobs, BoxedProgram
+from autograder.workspaces.colcon import look
+from autograder.workspaces.graded_builds import GradedBuilds
+from autograder.workspaces.jobs import ProgramJob
+from autograder.workspaces.plans import course_interfaces
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from autograder.workspaces.colcon import Build
+
+pytestmark = pytest.mark.skipif(bool(why_impossible()), reason=f"no boxes here: {why_impossible()}")
+
+
+@pytest.fixture(scope="module")
+def supervisors() -> Iterator[str]:
+    with tempfile.TemporaryDirectory() as folder:
+        process = ForkServer(BESIDE, SUPERVISOR_MODULE, Path(folder) / "k")
+        yield process.address
+        process.stop()
+
+
+@pytest.fixture
+def jobs(supervisors: str, tmp_path: Path) -> Iterator[BoxedJobs]:
+    with Enclosure(supervisors, tmp_path / "submission") as submission:
+        yield BoxedJobs(supervisors, submission, tmp_path)
+
+
+@pytest.fixture
+def builds(jobs: BoxedJobs, tmp_path: Path) -> GradedBuilds:
+    (tmp_path / "builds").mkdir(mode=0o700)
+    return GradedBuilds(tmp_path / "builds", jobs)
+
+
+def made(builds: GradedBuilds, workspace: Path, setup: str = "") -> Build:
+    """The workspace's build, with some lines at the end of its setup.py."""
+    file = workspace / "src" / "tiny_pkg" / "setup.py"
+    file.write_text(file.read_text() + setup)
+    return builds.build(look(workspace), None, name="ros2_ws")
+
+
+def said(program: BoxedProgram) -> str:
+    output = b""
+    while (data := program.read(20.0)) != b"":
+        assert data is not None, "the program says nothing and does not end"
+        output += data
+    program.end()
+    return output.decode()
+
+
+def test_it_is_built_in_a_box_and_run_in_another(
+    builds: GradedBuilds, jobs: BoxedJobs, workspace: Path, tmp_path: Path
+) -> None:
+    build = made(builds, workspace)
+    assert build.ok, build.log
+    assert build.install is not None
+    assert not build.install.is_relative_to(workspace)
+    (tmp_path / "tree").mkdir()
+    program = jobs.start(
+        ProgramJob(
+            [sys.executable, "/home/student/ros2_ws/install/tiny_pkg/lib/tiny_pkg/hello"],
+            {**jobs.environment, "PYTHONPATH": f"/home/student/ros2_ws/install/tiny_pkg/{_library()}"},
+            sources=tmp_path / "tree",
+            entries={"ros2_ws": build.install.parent},
+            hidden=(),
+        )
+    )
+    assert said(program) == "hello from the workspace\n"
+    assert program.exit_code() == 0
+
+
+def test_a_program_sees_nothing_that_the_notebook_has_written(supervisors: str, tmp_path: Path) -> None:
+    (tmp_path / "tree").mkdir()
+    with Enclosure(supervisors, tmp_path / "submission") as submission:
+        write = "for folder in /home/student /tmp /dev/shm; do touch $folder/of-the-notebook; done; ls /tmp"
+        assert b"of-the-notebook" in submission.run(["/bin/sh", "-c", write], limit=20.0).output
+        jobs = BoxedJobs(supervisors, submission, tmp_path)
+        look_for = ["/bin/sh", "-c", "ls -R /home/student /tmp /dev/shm; touch /home/student/notebook/x"]
+        program = jobs.start(ProgramJob(look_for, jobs.environment, tmp_path / "tree", entries={}, hidden=()))
+        output = said(program)
+    assert "of-the-notebook" not in output
+    assert "Read-only file system" in output
+
+
+def test_ctrl_c_reaches_a_program_in_its_box(jobs: BoxedJobs, tmp_path: Path) -> None:
+    (tmp_path / "tree").mkdir()
+    wait = ["/bin/sh", "-c", "trap 'echo bye; exit 4' INT; echo ready; while :; do sleep 0.05; done"]
+    program = jobs.start(ProgramJob(wait, jobs.environment, tmp_path / "tree", entries={}, hidden=()))
+    assert program.read(60.0) == b"ready\n"
+    program.interrupt()
+    assert said(program) == "bye\n"
+    assert program.exit_code() == 4
+
+
+def _library() -> str:
+    return f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
+
+
+def test_a_build_says_what_is_wrong_as_it_does_without_a_box(builds: GradedBuilds, workspace: Path) -> None:
+    build = made(builds, workspace, "\nsetup(")
+    assert (build.ok, build.trouble, build.package) == (False, "build", "tiny_pkg")
+    assert "SyntaxError" in build.line
+
+
+def test_a_build_reaches_nothing_of_the_grader_s(
+    builds: GradedBuilds, workspace: Path, tmp_path: Path
+) -> None:
+    """It looks for other processes, the cache, the sources' owner, the network and a pipe that is not its own."""
+    secret = tmp_path / "builds" / "secret"
+    secret.touch()
+    build = made(
+        builds,
+        workspace,
+        f"""
+import os, pathlib, socket
+found = [name for name in os.listdir('/proc') if name.isdigit()]
+lines = [f'processes {{len(found) < 20}}', 'cache %s' % os.path.exists({str(secret)!r})]
+try:
+    socket.create_connection(('127.0.0.1', 22), 0.2)
+except OSError as error:
+    lines.append(f'network {{error.errno}}')
+try:
+    pathlib.Path(__file__).write_text('changed')
+except (OSError, NameError) as error:
+    lines.append('sources read-only')
+lines.append(f'interfaces {{[name for _, name in socket.if_nameindex()]}}')
+raise SystemExit('; '.join(lines))
+""",
+    )
+    assert not build.ok
+    assert "processes True; cache False; network 111; sources read-only; interfaces ['lo']" in build.log
+
+
+def test_killing_everything_is_only_a_failed_build(builds: GradedBuilds, workspace: Path) -> None:
+    build = made(builds, workspace, "\nimport os\nos.kill(-1, 9)\n")
+    assert (build.ok, build.trouble) == (False, "build")
+
+
+def test_nothing_that_a_build_starts_outlives_it(builds: GradedBuilds, workspace: Path) -> None:
+    mark = f"sleep 1{os.getpid()}"
+    assert made(
+        builds,
+        workspace,
+        f"\nimport subprocess\nsubprocess.Popen({mark.split()!r}, start_new_session=True, stdout=-3, stderr=-3)\n",
+    ).ok
+    assert (
+        mark not in subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True).stdout
+    )
+
+
+def test_a_build_that_fills_its_disk_fails(builds: GradedBuilds, workspace: Path) -> None:
+    build = made(
+        builds,
+        workspace,
+        "\nfor number in range(6):\n"
+        "    with open(f'/tmp/{number}', 'wb') as file:\n"
+        "        for _ in range(90):\n"
+        "            file.write(b'x' * 1_000_000)\n",
+    )
+    assert not build.ok
+    assert "No space left" in build.log
+
+
+def test_an_install_folder_may_hold_nothing_but_files(builds: GradedBuilds, workspace: Path) -> None:
+    build = made(
+        builds,
+        workspace,
+        "\nimport os\npipe = '/home/student/ros2_ws/install/pipe'\nos.path.exists(pipe) or os.mkfifo(pipe)\n",
+    )
+    assert (build.ok, build.line) == (False, "'./pipe' is neither a file nor a folder")
+
+
+def test_whoever_makes_interfaces_does_not_find_those_of_the_course(
+    builds: GradedBuilds, workspace: Path
+) -> None:
+    libraries = [str(path) for path in course_interfaces() if path.suffix == ".so"]
+    lines = f"""
+sizes = [len(open(name, 'rb').read()) for name in {libraries}]
+raise SystemExit('there are %d' % len([size for size in sizes if size]))
+"""
+    assert "there are 0" not in made(builds, workspace, lines).log
+    definition = workspace / "src" / "tiny_pkg" / "srv" / "AddTwoInts.srv"
+    definition.parent.mkdir()
+    definition.write_text("int64 a\n---\nint64 b\n")
+    assert "there are 0" in builds.build(look(workspace), None, name="ros2_ws").log
+
+
+def test_the_builds_of_one_notebook_have_so_much_room_and_no_more(
+    jobs: BoxedJobs, workspace: Path, tmp_path: Path
+) -> None:
+    cache = tmp_path / "narrow"
+    cache.mkdir(mode=0o700)
+    (workspace / "src" / "tiny_pkg" / "tiny_pkg" / "fat.py").write_bytes(b"#" * 300_000)
+    narrow = GradedBuilds(cache, jobs, room=400_000)
+    first = made(narrow, workspace)
+    assert first.ok
+    second = made(narrow, workspace, "# other sources\n")
+    assert not second.ok
+    assert "kB are left for it" in second.log
+    assert sum(file.stat().st_size for file in cache.rglob("*") if file.is_file()) < 450_000
+    assert made(GradedBuilds(cache, jobs), workspace).ok  # somebody else has room

@@ -1,0 +1,141 @@
+"""The cache: one owner, one builder at a time, no half-built entry, a bound on its size."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+
+from autograder.workspaces import cache
+
+
+def fill(key: str, size: int = 10) -> None:
+    with cache.entry(key, cache.root()) as entry:
+        (entry.folder / "file").write_bytes(b"x" * size)
+        entry.finish()
+
+
+def test_an_interrupted_entry_does_not_count(empty_cache: Path) -> None:
+    with contextlib.suppress(KeyboardInterrupt), cache.entry("a", cache.root()) as entry:
+        (entry.folder / "half").touch()
+        raise KeyboardInterrupt
+    assert not (empty_cache / "a").exists()
+    with cache.entry("a", cache.root()) as entry:
+        assert not entry.complete
+
+
+def test_an_entry_counts_for_the_key_that_it_was_built_for_alone(empty_cache: Path) -> None:
+    fill("a")
+    (empty_cache / "a").rename(empty_cache / "b")
+    assert not cache.is_complete("b", empty_cache)
+    with cache.entry("b", cache.root()) as entry:
+        assert not entry.complete
+        assert list(entry.folder.iterdir()) == []
+
+
+def test_what_a_killed_builder_left_is_removed(empty_cache: Path) -> None:
+    (empty_cache / "a").mkdir(parents=True)
+    empty_cache.chmod(0o700)
+    (empty_cache / "a" / "half").touch()
+    with cache.entry("a", cache.root()) as entry:
+        assert not entry.complete
+        assert list(entry.folder.iterdir()) == []
+
+
+def test_the_build_of_a_killed_builder_is_ended_before_another_begins(empty_cache: Path) -> None:
+    """As where JupyterLab restarts a kernel in a check: colcon has a session of its own, and would go on."""
+    program = """
+import os, signal
+from autograder.workspaces import cache
+from autograder.workspaces.own_session import OwnSession
+# The session's first process is gone, and one that it has started goes on writing.
+below = "while true; do mkdir -p half; echo x > half/$$; done"
+command = ["/bin/sh", "-c", f"({below}) & echo $!; wait"]
+with cache.entry("a", cache.root()) as entry:
+    colcon = OwnSession(command, os.environ, entry.folder, (entry.lock,))
+    print(int(colcon.read(60.0)), flush=True)
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+    killed = subprocess.run([sys.executable, "-c", program], stdout=subprocess.PIPE, check=False)
+    assert killed.returncode == -signal.SIGKILL
+    writing = int(killed.stdout)
+    with cache.entry("a", cache.root()) as entry:
+        assert state_of(writing) in ("", "Z")  # nobody may have waited for it yet
+        assert list(entry.folder.iterdir()) == []
+
+
+def state_of(pid: int) -> str:
+    """A process's state, as ps shows it; empty where there is none."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
+    except OSError:
+        return ""
+
+
+def test_two_builders_of_one_key_take_turns() -> None:
+    built: list[str] = []
+    entered = threading.Event()
+
+    def builder(name: str) -> None:
+        with cache.entry("a", cache.root()) as entry:
+            entered.set()
+            if not entry.complete:
+                built.append(name)
+                entry.finish()
+
+    with cache.entry("a", cache.root()) as entry:
+        waiting = threading.Thread(target=builder, args=("second",))
+        waiting.start()
+        assert not entered.wait(0.1)
+        entry.finish()
+    waiting.join(timeout=180)
+    assert entered.is_set()
+    assert built == []
+
+
+def test_who_waits_for_an_entry_can_give_up(empty_cache: Path) -> None:
+    empty_cache.mkdir(mode=0o700)
+    with cache.entry("a", cache.root()) as held:
+        with pytest.raises(cache.GivenUp), cache.entry("a", cache.root(), cancelled=lambda: True):
+            pass
+        held.finish()
+    with cache.entry("a", cache.root(), cancelled=lambda: True) as entry:
+        assert entry.complete
+
+
+def test_a_folder_that_others_may_write_to_is_not_used(empty_cache: Path) -> None:
+    empty_cache.mkdir()
+    empty_cache.chmod(0o777)
+    assert cache.root() != empty_cache
+    empty_cache.chmod(0o700)
+    assert cache.root() == empty_cache
+
+
+def test_a_link_to_a_folder_is_not_used(empty_cache: Path, tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir(mode=0o700)
+    empty_cache.symlink_to(tmp_path / "elsewhere")
+    assert cache.root() != empty_cache
+
+
+def test_the_oldest_go_first_and_those_in_use_stay(empty_cache: Path) -> None:
+    for number, key in enumerate("abc"):
+        fill(key, size=100)
+        os.utime(empty_cache / key / "complete", (number, number))
+    assert cache.make_room(empty_cache, limit=250) == ["a"]
+    fill("d", size=1000)
+    assert cache.make_room(empty_cache, limit=0) == ["b", "c"]
+    assert (empty_cache / "d").is_dir()
+
+
+def test_an_entry_that_somebody_holds_is_not_removed(empty_cache: Path) -> None:
+    fill("a")
+    os.utime(empty_cache / "a" / "complete", (0, 0))
+    with cache.entry("a", cache.root()):
+        os.utime(empty_cache / "a" / "complete", (0, 0))
+        assert cache.make_room(empty_cache, limit=0) == []

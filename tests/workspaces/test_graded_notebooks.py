@@ -1,0 +1,74 @@
+"""Whole notebooks about files, graded in boxes. That they get the same without is what `autograder execute` shows."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder import course
+from autograder.boxes.sandbox import why_impossible
+from autograder.execution.plan import NotebookKind, plan
+from autograder.grading.running import engine
+
+sys.path.insert(0, str(Path(__file__).parent))
+from graded import gradable, graders_judge, judged_answer
+
+from tests.tiers import asked_for
+
+if TYPE_CHECKING:
+    from autograder.boxes.execution import Execution
+
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
+
+needs_boxes = pytest.mark.skipif(bool(why_impossible()), reason=f"no boxes here: {why_impossible()}")
+NOTEBOOKS = ("lab_1_1", "lab_1_2", "lab_1_3", "exercise_1_1")
+HANDED_OUT = "lab_1_1"
+ANSWERS = (
+    "lab_1_1.hello/wrong/entry_point_module.workspace",
+    "lab_1_2.programs/right/the_labs_own.workspace",
+    "lab_1_2.programs/wrong/ignores_ctrl_c.workspace",
+    "exercise_1_1.remap/wrong/only_one_remapped_listener.launch.xml",
+)
+
+
+@pytest.fixture(scope="module")
+def executions(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> dict[tuple[NotebookKind, str], Execution]:
+    """What came of the notebooks that this session asks for: of masters, and of one as it is handed out."""
+    asked = {(NotebookKind.MASTER, notebook) for notebook in asked_for(request, "notebook")}
+    asked.add((NotebookKind.CHAPTER, HANDED_OUT))
+    planned = [one for one in plan(course.root(), NOTEBOOKS) if (one.kind, one.task.notebook) in asked]
+    tasks = [replace(one.task, boxed=True) for one in planned]
+    done = engine.execute_all(tasks, tmp_path_factory.mktemp("s"), 2)
+    return {(NotebookKind(result.task.student), result.task.notebook): result.execution for result in done}
+
+
+@needs_boxes
+@pytest.mark.parametrize("notebook", NOTEBOOKS)
+def test_the_master_gets_full_marks(
+    executions: dict[tuple[NotebookKind, str], Execution], notebook: str
+) -> None:
+    execution = executions[NotebookKind.MASTER, notebook]
+    assert execution.trouble == ""
+    assert [verdict for verdict in execution.verdicts.values() if verdict.score != verdict.max_score] == []
+
+
+@needs_boxes
+def test_the_chapter_as_it_is_handed_out_gets_none(
+    executions: dict[tuple[NotebookKind, str], Execution],
+) -> None:
+    execution = executions[NotebookKind.CHAPTER, HANDED_OUT]
+    assert execution.trouble == ""
+    assert [verdict.score for verdict in execution.verdicts.values()] == [0]
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_answers_are_judged_as_in_a_terminal(name: str, tmp_path: Path) -> None:
+    (answer,) = (answer for answer in gradable() if answer.name == name)
+    with graders_judge(tmp_path) as judge:
+        assert answer.objection(judged_answer(judge, answer)) == ""

@@ -1,0 +1,133 @@
+"""Packages as their files describe them, and the key of their sources."""
+
+from __future__ import annotations
+
+import shutil
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.workspaces import builds, packages
+from autograder.workspaces.interface_packages import simple_package_xml
+from autograder.workspaces.sources import BadSources
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def test_a_package_is_read_and_not_run(workspace: Path) -> None:
+    (package,) = packages.find_packages(workspace / "src")
+    assert (package.name, package.build_type) == ("tiny_pkg", "ament_python")
+    assert package.programs == ("hello = tiny_pkg.hello:main",)
+
+
+def test_a_line_inside_a_comment_is_no_dependency_and_is_told(workspace: Path) -> None:
+    file = workspace / "src" / "tiny_pkg" / "package.xml"
+    hidden = "<!--\n <depend> rclpy </depend>\n <member_of_group>a_group</member_of_group> -->"
+    file.write_text(file.read_text().replace("</package>", f"{hidden}</package>"))
+    (package,) = packages.find_packages(workspace / "src")
+    assert package.commented == ("rclpy", "a_group")
+    assert "a_group" not in package.dependencies
+
+
+def test_an_ignored_package_is_none(workspace: Path) -> None:
+    ignored = workspace / "src" / "ignored_pkg"
+    shutil.copytree(workspace / "src" / "tiny_pkg", ignored)
+    (ignored / "COLCON_IGNORE").touch()
+    assert [package.name for package in packages.find_packages(workspace / "src")] == ["tiny_pkg"]
+
+
+def key_of(src: Path) -> str:
+    return builds.key(packages.sources_of(src, packages.find_packages(src)))
+
+
+def test_the_key_is_of_bytes_names_and_bits(workspace: Path) -> None:
+    src = workspace / "src"
+    module = src / "tiny_pkg" / "tiny_pkg" / "hello.py"
+    keys = [key_of(src)]
+    module.write_text(module.read_text() + "\n")
+    keys.append(key_of(src))
+    module.chmod(0o755)
+    keys.append(key_of(src))
+    module.rename(module.with_name("hallo.py"))
+    keys.append(key_of(src))
+    assert len(set(keys)) == 4
+
+
+def test_what_python_and_jupyter_leave_behind_is_no_source(workspace: Path) -> None:
+    src = workspace / "src"
+    before = key_of(src)
+    for name in ("__pycache__", ".ipynb_checkpoints"):
+        (src / "tiny_pkg" / name).mkdir()
+        (src / "tiny_pkg" / name / "left.py").write_text("left")
+    assert key_of(src) == before
+
+
+def test_the_toolchain_is_in_the_key(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = key_of(workspace / "src")
+    monkeypatch.setenv("CXXFLAGS", "-O0")
+    assert key_of(workspace / "src") != before
+
+
+def test_far_too_much_is_refused(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(packages, "MAX_FILES", 2)
+    with pytest.raises(BadSources, match="is it a workspace"):
+        key_of(workspace / "src")
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"<?xml version='1.0' encoding='nonsense'?><package/>",
+        b"<?xml version='1.0' encoding='shift_jis'?><package/>",
+        "<?xml version='1.0' encoding='utf-16'?><package><name>tiny_pkg</name></package>".encode("utf-16"),
+        b"<package><name>tiny_pkg</name>" + b"<a>" * 2_500 + b"</a>" * 2_500 + b"</package>",
+    ],
+    ids=["unknown encoding", "several bytes a character", "UTF-16", "deep"],
+)
+def test_an_odd_package_file_is_the_packages_own_fault(workspace: Path, content: bytes) -> None:
+    (workspace / "src" / "tiny_pkg" / "package.xml").write_bytes(content)
+    with pytest.raises(packages.BadPackage, match="is not valid"):
+        list(packages.find_packages(workspace / "src"))
+    assert simple_package_xml(content.decode("utf-8", "replace"))
+
+
+def test_a_package_file_is_not_longer_than_it_looks(workspace: Path) -> None:
+    # Two thousand bytes stood for 120,000 dependencies, and fifty such packages took minutes outside of any box.
+    many = f"""<!ENTITY a "<depend>x</depend>"><!ENTITY b "{"&a;" * 400}">"""
+    content = f"<!DOCTYPE package [{many}]><package><name>tiny_pkg</name>{'&b;' * 300}</package>"
+    (workspace / "src" / "tiny_pkg" / "package.xml").write_text(content)
+    with pytest.raises(packages.BadPackage, match="declares an entity"):
+        packages.find_packages(workspace / "src")
+
+
+def test_a_package_file_with_thousands_of_dependencies_is_not_validated(workspace: Path) -> None:
+    # catkin_pkg compares each of them with each other: 20,000 took minutes, outside of any box.
+    depends = "".join(f"<depend>p{number}</depend>" for number in range(1_000))
+    content = f"<package><name>tiny_pkg</name>{depends}</package>"
+    (workspace / "src" / "tiny_pkg" / "package.xml").write_text(content)
+    with pytest.raises(packages.BadPackage, match="larger than 20 kB"):
+        list(packages.find_packages(workspace / "src"))
+
+
+def test_nobody_looks_at_hundreds_of_packages(workspace: Path) -> None:
+    for number in range(60):
+        (folder := workspace / "src" / f"p{number}").mkdir()
+        (folder / "package.xml").write_text("<package/>")
+    with pytest.raises(packages.BadPackage, match="more than 50 packages below src"):
+        packages.find_packages(workspace / "src")
+
+
+@pytest.mark.parametrize(
+    "deep",
+    [
+        "-" * 100_000 + "1",
+        "+".join(["1"] * 100_000),
+        "(" * 300 + ")" * 300,
+        'f"' + "{1}" * 150_000 + '"',  # minutes for Python's parser
+    ],
+)
+def test_a_setup_too_deep_to_be_read_has_no_programs(workspace: Path, deep: str) -> None:
+    (workspace / "src" / "tiny_pkg" / "setup.py").write_text(deep)
+    (package,) = packages.find_packages(workspace / "src")
+    assert package.programs == ()

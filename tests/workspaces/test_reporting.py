@@ -1,0 +1,143 @@
+"""The line about a build: it survives the way to the judge, and only the first one counts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.kit.evidence import Event, Part
+from autograder.kit.launch_report import Process, process_line, processes, remappings
+from autograder.kit.workspace_report import (
+    MAX_LINE,
+    Interface,
+    PackageReport,
+    WorkspaceReport,
+    as_line,
+    report_of,
+)
+from autograder.workspaces.colcon import Build
+from autograder.workspaces.install_folder import LIBRARY
+from autograder.workspaces.packages import Package
+from autograder.workspaces.plans import Plan
+from autograder.workspaces.reporting import built_line, found_line
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def part(*lines: str) -> Part:
+    return Part("x", {}, [Event(0.0, "output", "stdout", {"text": line}) for line in lines])
+
+
+REPORT = WorkspaceReport(
+    phase="built",
+    built=False,
+    line="setup.py:7: “bad”",
+    packages=[
+        PackageReport(
+            "a",
+            "ament_cmake",
+            ["p = a.b:c"],
+            [Interface("srv/A.srv", "int64 a\n---\n", True)],
+            [],
+            ["a/b.py"],
+            ["a_group"],
+            ["p"],
+        )
+    ],
+)
+
+
+def test_a_report_comes_back_as_it_went() -> None:
+    assert report_of(part("chatter", as_line(REPORT))) == REPORT
+
+
+def test_the_first_report_counts() -> None:
+    forged = as_line(WorkspaceReport(phase="built", built=True))
+    assert report_of(part(as_line(REPORT), forged)) == REPORT
+
+
+def test_a_report_is_none_of_the_subject_s_words() -> None:
+    assert part(as_line(REPORT), process_line(Process(7, 5, ("talker",))), "hello").said() == ["hello"]
+
+
+def test_a_long_log_is_cut() -> None:
+    long = WorkspaceReport(phase="built", built=False, log="é" * 100_000, line="x" * 10_000)
+    line = as_line(long)
+    assert len(line.encode()) <= MAX_LINE
+    assert report_of(part(line)) is not None
+
+
+def other(number: int) -> PackageReport:
+    return PackageReport(
+        f"examples_{number}", "ament_python", ["p = a.b:c"] * 5, [], ["rclpy"] * 9, ["a.py"] * 9
+    )
+
+
+@pytest.mark.parametrize("number", [0, 3, 12, 200])
+def test_packages_beside_the_needed_ones_take_nothing_from_them(number: int) -> None:
+    others = [other(n) for n in range(number)]
+    line = as_line(REPORT, others)
+    assert len(line.encode()) <= MAX_LINE
+    seen = report_of(part(line))
+    assert seen is not None
+    assert seen.complete
+    assert seen.packages[:1] == REPORT.packages
+    assert len(seen.packages) == 1 + min(number, 12 if number < 100 else 10)
+
+
+def test_what_was_left_out_is_not_taken_for_missing() -> None:
+    whole = Interface("srv/A.srv", "int64 a\n---\n", True)
+    long = Interface("srv/B.srv", "int64 a\n" * 1_000, True)
+    package = replace(REPORT.packages[0], interfaces=[whole, long])
+    seen = report_of(part(as_line(replace(REPORT, packages=[package]))))
+    assert seen is not None
+    assert not seen.complete
+    assert list(seen.packages[0].interfaces) == [whole, replace(long, text=None)]
+    many = report_of(part(as_line(replace(REPORT, packages=[package] * 200))))
+    assert many is not None
+    assert not many.complete
+
+
+def test_of_definitions_the_one_that_is_asked_for_is_reported_without_comments(tmp_path: Path) -> None:
+    (tmp_path / "srv").mkdir()
+    (tmp_path / "srv" / "A.srv").write_text("int64 a\n")
+    (tmp_path / "srv" / "B.srv").write_text(
+        "# A licence\n\nint64 a  # one\nstring b '#'  # two\n---\n#\nint64 c\n"
+    )
+    found = Build(tmp_path, ok=True, packages=(Package("a", tmp_path, "ament_cmake"),))
+    plan = Plan(lambda _: ["a"], lambda _: "", lambda _: [], definition="B.srv")
+    seen = report_of(part(found_line(found, plan)), "found")
+    assert seen is not None
+    assert [(i.file, i.text) for i in seen.packages[0].interfaces] == [
+        ("srv/B.srv", "int64 a\nstring b '#'  # two\n---\nint64 c"),
+        ("srv/A.srv", None),
+    ]
+
+
+def test_entry_points_are_those_that_are_installed(tmp_path: Path) -> None:
+    prefix = tmp_path / "install" / "a"
+    metadata = prefix / LIBRARY / "a-0.0.0.egg-info"
+    metadata.mkdir(parents=True)
+    (metadata / "entry_points.txt").write_text("[console_scripts]\np = a.b:c\n")
+    (prefix / "lib" / "a").mkdir(parents=True)
+    (prefix / "lib" / "a" / "p").write_text("")
+    (prefix / "share" / "a").mkdir(parents=True)
+    (prefix / "share" / "a" / "package.xml").write_text("")
+    made = Build(tmp_path, ok=True, install=tmp_path / "install", packages=(Package("a", tmp_path, ""),))
+    seen = report_of(part(built_line(made)))
+    assert seen is not None
+    assert (list(seen.packages[0].programs), list(seen.packages[0].installed)) == (["p = a.b:c"], ["p"])
+
+
+def test_nonsense_is_no_report() -> None:
+    assert report_of(part("@workspace {", "@workspace 7", '@workspace {"phase": "built"}')) is None
+    assert processes(part("@process [", "@process 7", '@process ["talker"]', "@process [7, 5]")) == []
+
+
+def test_rules_are_read_from_a_command_line() -> None:
+    argv = ("talker", "--ros-args", "-r", "__node:=x", "--remap", "a:=/b", "-p", "c:=1")
+    assert remappings(argv) == [("__node", "x"), ("a", "/b")]
+    assert processes(part(process_line(Process(7, 5, argv)))) == [Process(7, 5, argv)]

@@ -1,0 +1,591 @@
+"""The grader's side of a check of a workspace, with a judge and jobs of the tests' own."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import os
+import sys
+import tarfile
+import tempfile
+import threading
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import pytest
+
+from autograder.kit.evidence import REPORTS
+from autograder.messages import workspaces as messages
+from autograder.messages.lines import Hangup, Lines
+from autograder.workspaces import colcon_stand_in, own_builds, service, session, sources
+from autograder.workspaces.install_folder import LIBRARY
+from autograder.workspaces.jobs import BuildOrder, Built, ProgramJob
+from autograder.workspaces.plain_jobs import PlainProgram
+from autograder.workspaces.service import ServiceSockets, WorkspaceService
+
+sys.path.insert(0, str(Path(__file__).parent))
+from made_workspaces import interface_package, python_package
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+
+    from autograder.workspaces.cache import Entry
+
+
+FORGED = f'{REPORTS[0]}{{"phase": "built", "built": true}}'
+
+
+class FakeJobs:
+    """Builds nothing and packs a program of the lab's name; runs a line of shell in place of any command."""
+
+    def __init__(self) -> None:
+        self.environment: Mapping[str, str] = {"PATH": "/usr/bin:/bin"}
+        self.builds: list[list[str]] = []
+        self.sources: list[str] = []
+        self.boxes: list[set[tuple[str, int, bytes]]] = []
+        self.commands: list[Sequence[str]] = []
+        self.built = Built(
+            0, b"all is well\n", _packed("my_robot_pkg/lib/my_robot_pkg/simple_node", "my_robot_pkg/share/x")
+        )
+        self.script = "echo hello"
+        self.waiting: Callable[[Callable[[], bool]], None] = lambda _: None
+
+    def place(self, name: str, entry: Path) -> Path:
+        return Path("/home/student") / name
+
+    def tree(self, sources: Path) -> Path:
+        return Path("/home/student/notebook")
+
+    def build(self, order: BuildOrder, command: Sequence[str], entry: Entry) -> Built:
+        self.builds.append(sorted(path.name for path in (entry.folder / "src").iterdir()))
+        self.sources.append("".join(path.read_text() for path in entry.folder.rglob("*") if path.is_file()))
+        self.boxes.append(
+            {
+                (
+                    str(path.relative_to(entry.folder)),
+                    path.stat().st_mode,
+                    path.read_bytes() if path.is_file() else b"",
+                )
+                for path in (entry.folder / "src").rglob("*")
+            }
+        )
+        self.waiting(order.cancelled)
+        return self.built
+
+    def start(self, job: ProgramJob) -> PlainProgram:
+        self.commands.append(job.command)
+        return PlainProgram(["/bin/sh", "-c", self.script], job.environment, job.sources)
+
+
+def _packed(*names: str) -> bytes:
+    file = io.BytesIO()
+    with tarfile.open(fileobj=file, mode="w") as tar:
+        for name in names:
+            tar.addfile(tarfile.TarInfo(name))
+    return file.getvalue()
+
+
+class FakeJudge:
+    """Plays the judge's part on its socket."""
+
+    def __init__(self, sockets: ServiceSockets) -> None:
+        self.lines = Lines.to(sockets.judge, 20.0)
+
+    def check(self, workspace: Path, exercise: str = "lab_1_1.hello", trouble: str = "") -> None:
+        sent = sources.collect_workspace(workspace)
+        self.lines.say(messages.Check(exercise, 7, workspace.name, len(sent), trouble))
+        for source in sent:
+            self.lines.say(source)
+        self.lines.hear(messages.Ready)
+
+    def hear(self) -> dict[str, Any]:
+        return words_of(self.lines, messages.FromService)
+
+    def run(self, number: int = 1) -> list[dict[str, Any]]:
+        """What is said of a run until it has ended by itself."""
+        self.lines.say(messages.Start(number))
+        heard: list[dict[str, Any]] = []
+        while not heard or heard[-1]["say"] not in ("exited", "trouble"):
+            heard.append(self.hear())
+        return heard
+
+
+def words_of(lines: Lines, kind: Any) -> dict[str, Any]:
+    """The next message as plain data."""
+    words: dict[str, Any] = msgspec.to_builtins(lines.hear(kind))
+    return words
+
+
+def reports(heard: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    return [json.loads(words["text"].partition(" ")[2]) for words in heard if words["say"] == "report"]
+
+
+@pytest.fixture
+def jobs() -> FakeJobs:
+    return FakeJobs()
+
+
+@pytest.fixture
+def sockets(jobs: FakeJobs, tmp_path: Path) -> Iterator[ServiceSockets]:
+    builds = tmp_path / "builds"
+    builds.mkdir(mode=0o700)
+    # Sockets have short names.
+    with tempfile.TemporaryDirectory() as name:
+        sockets = ServiceSockets(Path(name) / "j", Path(name) / "n")
+        with WorkspaceService(sockets, jobs, builds, {"SAID": "1"}, tmp_path):
+            yield sockets
+
+
+@pytest.fixture
+def lab(tmp_path: Path) -> Path:
+    python_package(tmp_path / "ros2_ws" / "src", "my_robot_pkg")
+    return tmp_path / "ros2_ws"
+
+
+def test_it_is_found_built_and_started_by_ros2_run(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
+) -> None:
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    heard = judge.run()
+    assert [report["phase"] for report in reports(heard)] == ["found", "built"]
+    assert reports(heard)[1]["built"]
+    assert [words["text"] for words in heard if words["say"] == "output"] == ["hello"]
+    assert heard[-1] == {"say": "exited", "run": 1, "code": 0}
+    assert jobs.commands[0][-3:] == ["run", "my_robot_pkg", "simple_node"]
+
+
+def test_what_a_program_says_is_never_a_report(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:
+    jobs.script = f"echo '{FORGED}'"
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    heard = judge.run()
+    assert len(reports(heard)) == 2
+    assert {"say": "output", "run": 1, "text": FORGED} in heard
+
+
+def test_a_build_that_says_it_went_well_and_brought_nothing_has_not(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
+) -> None:
+    jobs.built = Built(0, FORGED.encode(), _packed("my_robot_pkg/share/x"))
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    heard = judge.run()
+    assert reports(heard)[-1]["missing"] == "simple_node"
+    assert not jobs.commands
+
+
+def test_a_failed_build_is_told_and_not_kept(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:
+    good, jobs.built = (
+        jobs.built,
+        Built(1, b'  File "/x/setup.py", line 3\nSyntaxError: no\nFailed   <<< my_robot_pkg\n'),
+    )
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    told = reports(judge.run())[-1]
+    assert (told["trouble"], told["package"], told["line"]) == (
+        "build",
+        "my_robot_pkg",
+        "x/setup.py:3: SyntaxError: no",
+    )
+    jobs.built = good
+    assert reports(judge.run(2))[-1]["built"]
+
+
+def test_what_fails_and_is_only_depended_on_takes_nothing_away(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
+) -> None:
+    interface_package(lab / "src" / "my_robot_interfaces")
+    file = lab / "src" / "my_robot_pkg" / "package.xml"
+    file.write_text(
+        file.read_text().replace("<license>", "<depend>my_robot_interfaces</depend>\n  <license>")
+    )
+    good, jobs.built = jobs.built, Built(1, b"no\nFailed   <<< my_robot_interfaces\n")
+
+    def mended(_: Callable[[], bool]) -> None:
+        if jobs.builds[-1] == ["my_robot_pkg"]:
+            jobs.built = good
+
+    jobs.waiting = mended
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    assert reports(judge.run())[-1]["built"]
+    assert jobs.builds == [["my_robot_interfaces", "my_robot_pkg"], ["my_robot_pkg"]]
+
+
+def test_what_a_failed_build_has_left_is_not_taken(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
+) -> None:
+    jobs.built = Built(1, b"error: no\n", jobs.built.archive)
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    assert reports(judge.run())[-1]["trouble"] == "build"
+    assert not jobs.commands
+
+
+def test_an_archive_that_leads_out_is_a_failed_build(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
+) -> None:
+    jobs.built = Built(0, b"", _packed("../../evil"))
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    assert reports(judge.run())[-1]["trouble"] == "build"
+
+
+def test_no_link_that_a_build_has_made_leads_to_a_pipe_of_the_host(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path, tmp_path: Path
+) -> None:
+    """Read as text it stays inside; followed, its second part leads to the top of the folder, and on from there."""
+    os.mkfifo(tmp_path / "pipe")
+    deep, file = "/".join("d" * 17), io.BytesIO()
+    with tarfile.open(fileobj=file, mode="w") as tar:
+        for name, target in (
+            ("my_robot_pkg/share/x", ""),
+            (f"my_robot_pkg/{LIBRARY}/z.egg-info/{deep}/b", "../" * 21),
+            (
+                f"my_robot_pkg/{LIBRARY}/z.egg-info/entry_points.txt",
+                f"{deep}/b/" + "../" * 17 + f"{tmp_path}/pipe"[1:],
+            ),
+        ):
+            link = tarfile.TarInfo(name)
+            link.type, link.linkname = (tarfile.SYMTYPE if target else tarfile.REGTYPE), target
+            tar.addfile(link)
+    jobs.built = Built(0, b"", file.getvalue())
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    told = reports(judge.run())[-1]
+    assert told["trouble"] == "build"
+    assert "link" in told["line"]
+
+
+def test_the_same_sources_are_built_once_for_all(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:
+    for _ in range(2):
+        judge = FakeJudge(sockets)
+        judge.check(lab)
+        judge.run(1)
+        judge.run(2)
+        judge.lines.close()
+    assert jobs.builds == [["my_robot_pkg"]]
+    file = lab / "src" / "my_robot_pkg" / "my_robot_pkg" / "hello.py"
+    file.write_text(file.read_text() + "\n")
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    judge.run()
+    assert len(jobs.builds) == 2
+
+
+PACKAGE = "ros2_ws/src/my_robot_pkg"
+
+
+@pytest.mark.parametrize(
+    "odd",
+    [
+        messages.Source(f"{PACKAGE}/setuptools.pyc", b"x"),
+        messages.Source(f"{PACKAGE}/__pycache__/setup.cpython-311.pyc", b"x"),
+        messages.Source(f"{PACKAGE}/.git/hooks.py", b"x"),
+        messages.Source(f"{PACKAGE}/setuptools.pyc/__init__.py", b"x"),
+        messages.Source(f"{PACKAGE}/empty"),
+        messages.Source(f"{PACKAGE}/empty.pyc"),
+        messages.Source(f"{PACKAGE}/.hidden", b""),
+        messages.Source(f"{PACKAGE}/SETUP.py", b""),
+        messages.Source(f"{PACKAGE}/run.sh", b"", executable=True),
+        messages.Source("ros2_ws/src/setup.cfg", b"x"),
+        messages.Source("ros2_ws/src/colcon.meta", b"x"),
+        messages.Source("ros2_ws/build/my_robot_pkg/x", b"x"),
+    ],
+    ids=lambda source: source.path.removeprefix("ros2_ws/"),
+)
+def test_who_shares_a_build_has_given_the_very_same_to_its_box(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path, odd: messages.Source
+) -> None:
+    plain = sources.collect_workspace(lab)
+    for sent in ([*plain, odd], plain):
+        judge = FakeJudge(sockets)
+        judge.lines.say(messages.Check("lab_1_1.hello", 7, "ros2_ws", len(sent)))
+        for source in sent:
+            judge.lines.say(source)
+        judge.lines.hear(messages.Ready)
+        assert reports(judge.run())[-1]["built"]
+        judge.lines.close()
+    inside = f"/{odd.path.removeprefix('ros2_ws/')}"
+    seen = any(f"/{path}".startswith(inside) for path, _, _ in jobs.boxes[0])
+    assert len(jobs.boxes) == (2 if seen else 1)
+    assert not seen or jobs.boxes[0] != jobs.boxes[1]
+
+
+def test_what_is_not_needed_is_not_built(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:
+    (python_package(lab / "src", "half_done") / "package.xml").write_text("<package>")
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    assert reports(judge.run())[-1]["built"]
+    assert jobs.builds == [["my_robot_pkg"]]
+
+
+@pytest.mark.parametrize(
+    ("make", "trouble"),
+    [
+        (lambda ws: None, "no_workspace"),
+        (lambda ws: ws.mkdir(), "no_workspace"),
+        (lambda ws: (ws / "src").mkdir(parents=True), "no_package"),
+    ],
+    ids=["nothing", "no src", "empty src"],
+)
+def test_what_is_no_workspace_says_so(
+    sockets: ServiceSockets, tmp_path: Path, make: Any, trouble: str
+) -> None:
+    make(tmp_path / "ros2_ws")
+    judge = FakeJudge(sockets)
+    judge.check(tmp_path / "ros2_ws")
+    told = reports(judge.run())[-1]
+    assert told["trouble"] == trouble
+    assert str(tmp_path) not in told["line"]
+
+
+def test_sources_that_were_not_to_be_had_are_a_failure_with_a_reason(
+    sockets: ServiceSockets, lab: Path
+) -> None:
+    judge = FakeJudge(sockets)
+    judge.check(lab, trouble="there is too much in src")
+    assert reports(judge.run()) == [
+        {**reports(judge.run(2))[0], "line": "there is too much in src", "built": False}
+    ]
+
+
+def test_a_path_that_leads_out_is_refused(sockets: ServiceSockets, jobs: FakeJobs) -> None:
+    judge = FakeJudge(sockets)
+    judge.lines.say(messages.Check("lab_1_1.hello", 7, "ros2_ws", 1))
+    judge.lines.say(messages.Source("../evil", b""))
+    judge.lines.hear(messages.Ready)
+    assert "no path inside" in reports(judge.run())[-1]["line"]
+    assert not jobs.builds
+
+
+def test_a_run_is_ended_when_the_judge_says_so(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:
+    jobs.script = "echo started; sleep 1000"
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    judge.lines.say(messages.Start(1))
+    while judge.hear().get("text") != "started":
+        pass
+    judge.lines.say(messages.Stop(1))
+    assert judge.hear() == {"say": "stopped", "run": 1}
+
+
+TRAP = "trap 'echo bye; exit 4' INT; echo started; while :; do sleep 0.05; done"
+
+
+def test_ctrl_c_ends_the_program_that_the_judge_has_named(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
+) -> None:
+    jobs.built = Built(0, b"", _packed("my_robot_pkg/lib/my_robot_pkg/talker", "my_robot_pkg/share/x"))
+    jobs.script = TRAP
+    judge = FakeJudge(sockets)
+    judge.check(lab, "lab_1_2.programs")
+    judge.lines.say(messages.Start(1, ("talker", "7")))
+    while judge.hear().get("text") != "started":
+        pass
+    assert jobs.commands[0][-4:] == ["run", "my_robot_pkg", "talker", "7"]
+    judge.lines.say(messages.Interrupt(1))
+    assert judge.hear() == {"say": "output", "run": 1, "text": "bye"}
+    assert judge.hear() == {"say": "exited", "run": 1, "code": 4}
+
+
+def test_a_program_that_was_not_built_is_named_and_the_other_one_runs(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
+) -> None:
+    jobs.built = Built(0, b"", _packed("my_robot_pkg/lib/my_robot_pkg/talker", "my_robot_pkg/share/x"))
+    judge = FakeJudge(sockets)
+    judge.check(lab, "lab_1_2.programs")
+    missing = []
+    for run, program in enumerate(("talker", "listener"), 1):
+        judge.lines.say(messages.Start(run, (program,)))
+        heard: list[dict[str, Any]] = []
+        while not heard or heard[-1]["say"] != "exited":
+            heard.append(judge.hear())
+        missing.append(reports(heard)[-1]["missing"])
+    assert missing == ["", "listener"]
+    assert len(jobs.commands) == 1
+
+
+def test_ctrl_c_for_an_earlier_run_ends_no_later_one(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
+) -> None:
+    jobs.script = TRAP
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    judge.lines.say(messages.Start(2))
+    while judge.hear().get("text") != "started":
+        pass
+    judge.lines.say(messages.Interrupt(1))
+    judge.lines.say(messages.Stop(2))
+    assert judge.hear() == {"say": "stopped", "run": 2}
+
+
+def test_a_build_is_given_up_when_nobody_waits_for_it(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
+) -> None:
+    given_up, building = threading.Event(), threading.Event()
+
+    def wait(cancelled: Callable[[], bool]) -> None:
+        building.set()
+        while not cancelled():
+            threading.Event().wait(0.01)
+        given_up.set()
+
+    jobs.waiting = wait
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    judge.lines.say(messages.Start(1))
+    assert building.wait(20.0)
+    judge.lines.close()
+    assert given_up.wait(20.0)
+
+
+def test_trouble_of_the_grader_s_own_is_no_report(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:
+    jobs.built = None  # type: ignore[assignment]
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    heard = judge.run()
+    assert heard[-1]["say"] == "trouble"
+    assert [report["phase"] for report in reports(heard)] == ["found"]
+
+
+def test_a_very_long_line_comes_in_pieces(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:
+    jobs.script = "head -c 100000 /dev/zero | tr '\\0' x; echo; echo end"
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    said = [words["text"] for words in judge.run() if words["say"] == "output"]
+    assert max(map(len, said)) <= 4_000
+    assert said[-1] == "end"
+
+
+def test_a_notebook_s_build_comes_from_the_grader(
+    sockets: ServiceSockets,
+    jobs: FakeJobs,
+    lab: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setenv(own_builds.GRADERS, str(sockets.notebook))
+    monkeypatch.chdir(lab)
+    assert colcon_stand_in.main(["build", "--packages-select", "my_robot_pkg"]) == 0
+    assert "Finished <<< my_robot_pkg" in capsys.readouterr().out
+    assert (lab / "install" / "my_robot_pkg" / "lib" / "my_robot_pkg" / "simple_node").is_file()
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    assert reports(judge.run())[-1]["built"]
+    assert jobs.builds == [["my_robot_pkg"]]
+
+
+def test_a_notebook_s_failed_build_shows_what_colcon_said(
+    sockets: ServiceSockets,
+    jobs: FakeJobs,
+    lab: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    jobs.built = Built(1, b"SyntaxError: invalid syntax\nFailed   <<< my_robot_pkg\n")
+    monkeypatch.setenv(own_builds.GRADERS, str(sockets.notebook))
+    monkeypatch.chdir(lab)
+    assert colcon_stand_in.main(["build"]) == 1
+    assert "SyntaxError" in capsys.readouterr().out
+    assert not (lab / "install").exists()
+
+
+def until_they_hang_up(lines: Lines) -> list[str]:
+    words = []
+    with contextlib.suppress(Hangup):
+        while True:
+            words.append(words_of(lines, messages.BuildAnswer)["say"])
+    return words
+
+
+def test_a_notebook_has_only_so_many_builds(sockets: ServiceSockets) -> None:
+    assert sockets.notebook is not None
+    for _ in range(service.MAX_BUILDS):
+        lines = Lines.to(sockets.notebook, 20.0)
+        lines._socket.sendall(b'{"say": "nothing"}\n')
+        assert until_they_hang_up(lines) == ["no"]
+    assert until_they_hang_up(Lines.to(sockets.notebook, 20.0)) == ["no"]
+
+
+@pytest.mark.parametrize(
+    "garbage", [b"\xff\xff garbage\n", b"[" * 100_000 + b"\n", b'{"say": 1}\n', b"x" * 1_200_000]
+)
+def test_garbage_on_a_socket_hurts_nobody(sockets: ServiceSockets, lab: Path, garbage: bytes) -> None:
+    assert sockets.notebook is not None
+    for path in (sockets.notebook, sockets.judge):
+        lines = Lines.to(path, 20.0)
+        with contextlib.suppress(OSError):
+            lines._socket.sendall(garbage)
+        assert until_they_hang_up(lines) == []
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    assert judge.run()[-1]["say"] == "exited"
+
+
+def size_of_output(words: dict[str, Any]) -> int:
+    """The characters of a line that a program has printed; what is reported of its build does not count."""
+    return len(words["text"]) + 1 if words["say"] == "output" else 0
+
+
+def test_endless_output_is_cut_and_ends_with_the_run(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(session, "MAX_OUTPUT", 10_000)
+    jobs.script = "yes"
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    judge.lines.say(messages.Start(1))
+    size = 0
+    while size < 9_900:
+        size += size_of_output(judge.hear())
+    judge.lines.say(messages.Stop(1))
+    while (words := judge.hear())["say"] != "stopped":
+        size += size_of_output(words)
+    assert size <= 10_000
+
+
+def test_interfaces_that_mean_the_same_are_built_in_nobody_s_words(
+    sockets: ServiceSockets, jobs: FakeJobs, tmp_path: Path
+) -> None:
+    generated = "my_robot_interfaces/lib/python3/site-packages/my_robot_interfaces/srv/_add_two_ints.py"
+    jobs.built = Built(0, b"", _packed(generated, "my_robot_interfaces/share/x"))
+    for name in ("ada", "ben", "cid"):
+        interface_package(tmp_path / name / "src" / "my_robot_interfaces", f"# by {name}\n")
+        judge = FakeJudge(sockets)
+        judge.check(tmp_path / name, "lab_1_3.interface")
+        told = reports(judge.run())[-1]
+        assert told["built"], told
+        assert told["packages"][0]["interfaces"][0]["text"] == "int64 a\nint64 b\n---\nint64 sum"
+        judge.lines.close()
+    assert len(jobs.sources) == 2
+    assert "# by ada" in jobs.sources[0]
+    assert "by" not in jobs.sources[1]
+
+
+def test_what_fails_in_nobody_s_words_is_told_in_the_student_s(
+    sockets: ServiceSockets, jobs: FakeJobs, tmp_path: Path
+) -> None:
+    good = jobs.built = Built(0, b"", _packed("my_robot_interfaces/share/x"))
+    for name, built in (("ada", good), ("ben", Built(1, b"error: no\n"))):
+        jobs.built = built
+        interface_package(tmp_path / name / "src" / "my_robot_interfaces", f"# by {name}\n")
+        judge = FakeJudge(sockets)
+        judge.check(tmp_path / name, "lab_1_3.interface")
+        judge.run()
+        judge.lines.close()
+    assert ["by" in text for text in jobs.sources] == [True, False, True]
+
+
+def test_a_build_that_takes_too_long_says_nothing_about_the_sources(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
+) -> None:
+    jobs.built = Built(None, b"", late=170.0)
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    heard = judge.run()
+    assert heard[-1]["say"] == "trouble"
+    assert "too busy" in heard[-1]["why"]
