@@ -8,11 +8,10 @@ from __future__ import annotations
 from autograder.notebook.checking import judge_link
 from autograder.notebook.checking.check import check
 from autograder.notebook.checking.watched_cells import unwatch, watch
-from autograder.notebook.nodes import executors
-from autograder.notebook.nodes.executors import spin_in_background, spinning
+from autograder.notebook.nodes import ros_session
+from autograder.notebook.nodes.background import spin_in_background, spinning
 from autograder.notebook.nodes.ros_session import RosSession
-from autograder.notebook.observing.graph_picture import draw_graph
-from autograder.notebook.observing.graph_watch import watch_graph
+from autograder.notebook.observing.graph_picture import draw_graph, watch_graph
 from autograder.notebook.observing.plots import plot
 from autograder.notebook.observing.recordings import read_recording, recording
 from autograder.notebook.robot import start_robot
@@ -37,4 +36,4 @@ __all__ = [
 def start_ros() -> RosSession:
     """Start ROS in this kernel, once; harmless when the cell is run again. Its judge warms up meanwhile."""
     judge_link.warm_up()
-    return executors.start_ros()
+    return ros_session.start_ros()

@@ -18,7 +18,7 @@ from nbformat.v4 import new_code_cell, new_notebook
 from rclpy.node import Node
 from std_msgs.msg import String
 
-from autograder.notebook.nodes.executors import stop_all
+from autograder.notebook.nodes.background import stop_all
 from autograder.notebook.nodes.ros_session import start_ros
 from autograder.ros_domain import claim_free_domain
 
@@ -256,7 +256,8 @@ import queue, threading, time
 import rclpy
 from rclpy.node import Node
 from std_msgs.msg import String
-from autograder.notebook.nodes.executors import *
+from autograder.notebook.nodes.background import spin_in_background, spinning, stop_all
+from autograder.notebook.nodes.ros_session import start_ros
 
 class TalkerNode(Node):
     def __init__(self, name="talker_node", text="hello"):

@@ -251,7 +251,10 @@ def test_a_wrong_argument_shows_the_students_line_only(notebook: Notebook) -> No
 
 
 def test_a_notebook_in_ci_stops_at_the_cell_whose_callbacks_fail(run_cells: Callable[..., list[Any]]) -> None:
-    set_up = "import threading, time\nfrom rclpy.node import Node\nfrom autograder.notebook.nodes.executors import *"
+    set_up = (
+        "import threading, time\nfrom rclpy.node import Node\n"
+        "from autograder.notebook import spin_in_background, spinning, start_ros"
+    )
     broken = """
 start_ros()
 ticked = threading.Event()

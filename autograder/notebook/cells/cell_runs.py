@@ -11,7 +11,7 @@ import hashlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from autograder.notebook.cells.student_tracebacks import notebook_shell
+from autograder.notebook.cells.cell_output import notebook_shell
 
 if TYPE_CHECKING:
     from collections.abc import Callable

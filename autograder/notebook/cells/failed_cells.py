@@ -10,7 +10,7 @@ import re  # noqa: TID251  (a student's cells, in their own kernel)
 from dataclasses import dataclass
 from typing import Any
 
-from autograder.notebook.cells.student_tracebacks import last_student_line, notebook_shell
+from autograder.notebook.cells.cell_output import last_student_line, notebook_shell
 
 _DEFINED = re.compile(r"^(?:class|(?:async\s+)?def)\s+(\w+)", re.MULTILINE)
 """Also finds names in a cell that Python cannot parse."""

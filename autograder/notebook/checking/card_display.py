@@ -21,7 +21,7 @@ from autograder import course
 from autograder.cards import bundle
 from autograder.cards.card import Solution
 from autograder.cards.wording import duration
-from autograder.notebook.cells.student_tracebacks import notebook_shell
+from autograder.notebook.cells.cell_output import notebook_shell
 from autograder.notebook.checking.judge_link import SOCKET_VARIABLE
 
 if TYPE_CHECKING:

@@ -1,18 +1,20 @@
-"""The check cell: run the subject at the judge's word, show its card, give the score."""
+"""The check cell: run the subject at the judge's word, show its card, note it in the journal, give the score."""
 
 from __future__ import annotations
 
 import inspect
+import os
 from typing import TYPE_CHECKING, Any, Protocol
 
+from autograder import course, journal
 from autograder.cards import bundle
 from autograder.messages import checks as messages
+from autograder.notebook.cells.cell_output import notebook_shell
 from autograder.notebook.cells.failed_cells import raise_if_stale
 from autograder.notebook.checking.captured_output import CapturedOutput
 from autograder.notebook.checking.card_display import CardDisplay, is_live, is_validating
 from autograder.notebook.checking.check_context import CheckContext
-from autograder.notebook.checking.judge_link import JudgeLink, JudgeUnreachable
-from autograder.notebook.checking.kept_checks import keep
+from autograder.notebook.checking.judge_link import SOCKET_VARIABLE, JudgeLink, JudgeUnreachable
 from autograder.notebook.checking.path_run import PathRun, is_path, send_sources
 from autograder.notebook.checking.shorter_waits import GraphQuestions, ShorterWaits
 from autograder.notebook.checking.subject_run import SubjectRun, Tell
@@ -169,6 +171,45 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: Place) -> Verdi
         finally:
             if run is not None:
                 run.stop()
+
+
+def keep(verdict: Verdict) -> None:
+    """Note a check in the journal; where it was the last one of a chapter, show the certificate.
+
+    A grader's kernel has no journal. Nothing here can break a check: what cannot be read or written is left out.
+    """
+    if notebook_shell() is None or os.environ.get(SOCKET_VARIABLE):
+        return
+    try:
+        ended = _chapter_ended_by(verdict)
+    except (OSError, course.NoCourse, course.BrokenChapter):
+        ended = None
+    if ended is not None and is_live():
+        _show_certificate(*ended)
+
+
+def _chapter_ended_by(verdict: Verdict) -> tuple[str, float, float] | None:
+    """Title, points and time of the chapter that had all its points with this check and not before."""
+    place = journal.own_place()
+    before = journal.best(journal.entries(place))
+    journal.note_check(verdict, place)
+    if place is None or not verdict.passed:
+        return None
+    after = journal.best(journal.entries(place))
+    for chapter in course.chapters(course.root()):
+        finished = journal.finished(chapter, after)
+        if finished is not None and journal.finished(chapter, before) is None:
+            wanted = [name for lab in chapter.labs for name in chapter.exercises_of(lab)]
+            return chapter.title, sum(after[name].possible for name in wanted), finished
+    return None
+
+
+def _show_certificate(title: str, points: float, finished: float) -> None:
+    from IPython.display import display
+
+    from autograder.cards import certificate
+
+    display(certificate.mimebundle(title, points, finished), raw=True)  # type: ignore[no-untyped-call]
 
 
 def _kind(subject: Any) -> str:

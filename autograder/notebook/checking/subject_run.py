@@ -14,7 +14,7 @@ from rclpy.node import Node
 from std_msgs.msg import Empty
 
 from autograder.messages.checks import Constructed, Raised, Returned, Started
-from autograder.notebook.cells.student_tracebacks import student_frames
+from autograder.notebook.cells.cell_output import student_frames
 from autograder.notebook.checking.judge_link import MAX_TEXT
 from autograder.notebook.nodes.spin_threads import Failure, SpinThreads
 

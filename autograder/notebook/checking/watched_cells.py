@@ -18,11 +18,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from autograder.cards import bundle
-from autograder.notebook.cells.student_tracebacks import notebook_shell
+from autograder.notebook.cells.cell_output import notebook_shell
 from autograder.notebook.checking.card_display import display_card, is_live, renew_card, update_card
-from autograder.notebook.checking.check import after_each_check, converse, what_to_pass
+from autograder.notebook.checking.check import after_each_check, converse, keep, what_to_pass
 from autograder.notebook.checking.judge_link import JudgeLink, JudgeUnreachable
-from autograder.notebook.checking.kept_checks import keep
 from autograder.verdict import State, not_checked
 
 if TYPE_CHECKING:

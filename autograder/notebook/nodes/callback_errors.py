@@ -13,9 +13,8 @@ from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
 
-from autograder.notebook.cells.notebook_output import say
-from autograder.notebook.cells.student_tracebacks import PlainlyShownError, last_student_line, render
-from autograder.notebook.nodes.node_ends import NodeEndedError, node_label
+from autograder.notebook.cells.cell_output import PlainlyShownError, last_student_line, render, say
+from autograder.notebook.nodes.kernel_nodes import NodeEndedError, node_label
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

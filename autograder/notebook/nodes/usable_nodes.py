@@ -7,9 +7,9 @@ from typing import Any
 
 from rclpy.node import Node
 
-from autograder.notebook.cells.student_tracebacks import PlainlyShownError
+from autograder.notebook.cells.cell_output import PlainlyShownError
+from autograder.notebook.nodes.kernel_nodes import NodeEndedError, is_destroyed, node_label
 from autograder.notebook.nodes.lending_executors import LendingExecutor
-from autograder.notebook.nodes.node_ends import NodeEndedError, is_destroyed, node_label
 
 
 class NotANodeError(PlainlyShownError, TypeError):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import rclpy
 from geometry_msgs.msg import Twist, Vector3
 
-from autograder.notebook.nodes.node_ends import is_destroyed
+from autograder.notebook.nodes.kernel_nodes import is_destroyed
 
 if TYPE_CHECKING:
     from rclpy.node import Node

@@ -12,8 +12,7 @@ from rclpy.node import Node
 from sensor_msgs.msg import LaserScan
 from std_srvs.srv import SetBool, Trigger
 
-from autograder.notebook.robot.motion import START, STILL, TICK, Pose, Velocity, move
-from autograder.notebook.robot.room import ROOM
+from autograder.notebook.robot.motion import ROOM, START, STILL, TICK, Pose, Velocity, move
 from autograder.notebook.robot.walking import Walking
 
 if TYPE_CHECKING:

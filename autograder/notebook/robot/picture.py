@@ -8,13 +8,11 @@ from dataclasses import dataclass, replace
 from html import escape
 from typing import TYPE_CHECKING
 
-from autograder.notebook.robot.motion import RADIUS
-from autograder.notebook.robot.room import ROOM
+from autograder.notebook.robot.motion import RADIUS, ROOM
 
 if TYPE_CHECKING:
-    from autograder.notebook.robot.motion import Pose
+    from autograder.notebook.robot.motion import Point, Pose
     from autograder.notebook.robot.node import RobotState
-    from autograder.notebook.robot.room import Point
 
 _SCALE = 75
 """Pixels per metre."""

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from IPython.display import display
 
-from autograder.notebook.nodes.background import replace_named
-from autograder.notebook.nodes.executors import spin_in_background, start_ros
+from autograder.notebook.nodes.background import replace_named, spin_in_background
+from autograder.notebook.nodes.ros_session import start_ros
 from autograder.notebook.observing.live_picture import LivePicture
 from autograder.notebook.robot.node import RobotNode
 from autograder.notebook.robot.picture import RobotPicture

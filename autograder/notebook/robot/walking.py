@@ -11,8 +11,7 @@ from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.task import Future
 from small_robot_interfaces.action import WalkTo
 
-from autograder.notebook.robot.motion import towards
-from autograder.notebook.robot.room import ROOM
+from autograder.notebook.robot.motion import ROOM, towards
 
 if TYPE_CHECKING:
     from rclpy.node import Node

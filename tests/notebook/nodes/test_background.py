@@ -14,8 +14,9 @@ from rclpy.executors import Executor
 from rclpy.node import Node
 
 from autograder.notebook.nodes import spin_threads
-from autograder.notebook.nodes.executors import spin_in_background, start_ros, stop_all
-from autograder.notebook.nodes.node_ends import NodeEndedError, is_destroyed, release_waiting_calls
+from autograder.notebook.nodes.background import spin_in_background, stop_all
+from autograder.notebook.nodes.kernel_nodes import NodeEndedError, is_destroyed, release_waiting_calls
+from autograder.notebook.nodes.ros_session import start_ros
 from autograder.notebook.nodes.spin_threads import CallbackBrokenOff
 
 if TYPE_CHECKING:

@@ -10,7 +10,8 @@ import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
-from autograder.notebook.nodes.executors import spin_in_background, spinning, start_ros
+from autograder.notebook.nodes.background import spin_in_background, spinning
+from autograder.notebook.nodes.ros_session import start_ros
 from autograder.notebook.nodes.usable_nodes import (
     NodeBusyError,
     NotANodeError,

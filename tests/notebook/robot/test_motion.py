@@ -1,4 +1,4 @@
-"""How the robot moves, and what stops it."""
+"""How the robot moves, what stops it, and what its laser sees in the two rooms."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ import math
 
 import pytest
 
-from autograder.notebook.robot.motion import RADIUS, START, Pose, Velocity, move, towards
-from autograder.notebook.robot.room import ROOM
+from autograder.notebook.robot.motion import RADIUS, ROOM, START, Pose, Velocity, move, towards
 
 
 def driven(pose: Pose, velocity: Velocity, seconds: float) -> Pose:
@@ -59,3 +58,24 @@ def test_it_finds_the_door_whatever_it_looks_at(heading: float) -> None:
         if math.dist(pose.point, ROOM.door) < 0.1:
             return
     pytest.fail(f"it ended at {pose}")
+
+
+@pytest.mark.parametrize(
+    ("angle", "metres"),
+    [
+        (0.0, 5.0),
+        (math.pi / 2, 2.0),
+        (math.pi, 1.0),
+        (-math.pi / 2, 2.0),
+        (math.atan2(1.0, 3.0), math.hypot(3.0, 1.0)),
+    ],
+)
+def test_a_ray_ends_at_the_first_wall_and_goes_through_the_door(angle: float, metres: float) -> None:
+    assert ROOM.ranges((1.0, 2.0), (angle,)) == [pytest.approx(metres)]
+
+
+def test_every_ray_of_every_place_ends() -> None:
+    angles = tuple(math.tau * number / 97 for number in range(97))
+    for x in (0.3, 2.0, 3.9, 4.1, 5.7):
+        for y in (0.3, 2.0, 3.7):
+            assert max(ROOM.ranges((x, y), angles)) < math.hypot(ROOM.width, ROOM.height)

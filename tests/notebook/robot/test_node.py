@@ -17,7 +17,7 @@ from sensor_msgs.msg import LaserScan
 from small_robot_interfaces.action import WalkTo
 from std_srvs.srv import SetBool, Trigger
 
-from autograder.notebook.nodes.executors import spin_in_background
+from autograder.notebook.nodes.background import spin_in_background
 from autograder.notebook.robot import walking
 from autograder.notebook.robot.motion import START
 from autograder.notebook.robot.node import RAYS, RobotNode

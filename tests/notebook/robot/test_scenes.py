@@ -9,8 +9,7 @@ import pytest
 from my_robot_interfaces.action import Fibonacci
 from small_robot_interfaces.action import WalkTo
 
-from autograder.notebook.robot.motion import START, STILL, TICK, Moved, Pose, move
-from autograder.notebook.robot.room import ROOM
+from autograder.notebook.robot.motion import ROOM, START, STILL, TICK, Moved, Pose, move
 from autograder.notebook.robot.scenes import SAYS_EVERY, Scene, Spiral, Tour
 
 if TYPE_CHECKING:

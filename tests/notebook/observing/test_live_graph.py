@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from autograder.notebook.observing.graph_watch import watch_graph
+from autograder.notebook.observing.graph_picture import watch_graph
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,15 +19,15 @@ import rclpy
 from rclpy.node import Node
 from std_msgs.msg import String
 from autograder.notebook import start_ros, watch_graph, spin_in_background
-import autograder.notebook.observing.graph_watch as graph_watch
+import autograder.notebook.observing.graph_picture as graph_picture
 start_ros()
-graph_watch.PERIOD = 0.02
+graph_picture.PERIOD = 0.02
 pictures = []
-usual = graph_watch.GraphPicture
+usual = graph_picture.GraphPicture
 def noted(*parts):
     pictures.append(usual(*parts))
     return pictures[-1]
-graph_watch.GraphPicture = noted
+graph_picture.GraphPicture = noted
 def await_picture(good):
     while not any(good(picture) for picture in list(pictures)):
         time.sleep(0.01)
@@ -94,7 +94,7 @@ watch.stop()
 def test_it_ends_with_ros_and_when_everything_is_stopped(run: Callable[..., list[Any]]) -> None:
     *_, said = run(
         "watch = watch_graph()",
-        "from autograder.notebook.nodes.executors import stop_all\n"
+        "from autograder.notebook.nodes.background import stop_all\n"
         "stop_all(); watch._thread.join(); print(watch.running)",
         "watch = watch_graph()",
         "rclpy.shutdown(); watch._thread.join(); print(watch.running)",

@@ -9,7 +9,7 @@ import pytest
 
 from autograder import course, exercises, journal
 from autograder.journal import Entry
-from autograder.notebook.checking import kept_checks
+from autograder.notebook.checking import check as check_cell
 from autograder.notebook.checking.judge_link import SOCKET_VARIABLE
 from autograder.verdict import State, Verdict
 
@@ -26,9 +26,9 @@ def shown(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """The certificates that a notebook has shown."""
     found: list[Any] = []
     monkeypatch.delenv(SOCKET_VARIABLE, raising=False)
-    monkeypatch.setattr(kept_checks, "notebook_shell", lambda: "a notebook")
-    monkeypatch.setattr(kept_checks, "is_live", lambda: True)
-    monkeypatch.setattr(kept_checks, "_show", lambda *words: found.append(words))
+    monkeypatch.setattr(check_cell, "notebook_shell", lambda: "a notebook")
+    monkeypatch.setattr(check_cell, "is_live", lambda: True)
+    monkeypatch.setattr(check_cell, "_show_certificate", lambda *words: found.append(words))
     return found
 
 
@@ -43,10 +43,10 @@ def test_the_check_that_ends_the_chapter_shows_the_certificate_once(shown: list[
     chapter = course.chapters(course.root())[0]
     *others, last = [name for lab in chapter.labs for name in chapter.exercises_of(lab)]
     for name in others:
-        kept_checks.keep(passed(name))
+        check_cell.keep(passed(name))
     assert shown == []
-    kept_checks.keep(passed(last))
-    kept_checks.keep(passed(last))
+    check_cell.keep(passed(last))
+    check_cell.keep(passed(last))
     (words,) = shown
     assert words[:2] == (chapter.title, 10.0 * (len(others) + 1))
     assert len(journal.entries(kept)) == len(others) + 2
@@ -56,7 +56,7 @@ def test_the_certificate_is_a_card_of_its_own(monkeypatch: pytest.MonkeyPatch) -
     display = importlib.import_module("IPython.display")
     cards: list[dict[str, str]] = []
     monkeypatch.setattr(display, "display", lambda card, raw: cards.append(card))
-    kept_checks._show("Nodes", 130.0, 0.0)
+    check_cell._show_certificate("Nodes", 130.0, 0.0)
     assert "<svg" in cards[0]["text/html"]
     assert cards[0]["text/plain"].startswith("Chapter complete: Nodes.")
 
@@ -65,7 +65,7 @@ def test_a_graders_kernel_keeps_nothing(
     shown: list[Any], kept: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(SOCKET_VARIABLE, "/somewhere/judge.socket")
-    kept_checks.keep(passed("lab_1_2.talker"))
+    check_cell.keep(passed("lab_1_2.talker"))
     assert not kept.exists()
 
 
@@ -78,12 +78,12 @@ def test_no_trouble_of_the_journal_breaks_a_check(
     else:
         monkeypatch.delenv(journal.VARIABLE)
         monkeypatch.setenv("AUTOGRADER_COURSE", str(kept))
-    kept_checks.keep(passed("lab_1_2.talker"))
+    check_cell.keep(passed("lab_1_2.talker"))
     assert shown == []
 
 
 def test_what_ended_before_is_not_shown_again(shown: list[Any], kept: Path) -> None:
     for name in exercises.all_ids():
         journal.note(Entry("check", name, 1, 10, 10))
-    kept_checks.keep(passed(exercises.all_ids()[0]))
+    check_cell.keep(passed(exercises.all_ids()[0]))
     assert shown == []
