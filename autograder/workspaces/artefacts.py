@@ -45,12 +45,21 @@ class _ShortHeaders(tarfile.TarInfo):
 
 
 def pack(install: Path) -> bytes:
-    """An install folder as an archive, of which no file is opened that is not a regular one; empty where it is none."""
-    if not install.is_dir():
+    """An install folder as an archive; empty where there is none, or too much in it. Only regular files are opened."""
+    file, size = io.BytesIO(), 0
+
+    def bounded(member: tarfile.TarInfo) -> tarfile.TarInfo:
+        nonlocal size
+        size += member.size
+        if size > MAX_BYTES:
+            raise BadArtefacts("the build made too much to be packed")
+        return member
+
+    try:
+        with tarfile.open(fileobj=file, mode="w") as tar:
+            tar.add(install, arcname=".", filter=bounded)
+    except (OSError, RecursionError, BadArtefacts):
         return b""
-    file = io.BytesIO()
-    with tarfile.open(fileobj=file, mode="w") as tar:
-        tar.add(install, arcname=".")
     return file.getvalue()
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from autograder.workspaces.cache import Entry
@@ -22,6 +22,8 @@ BUILD_SECONDS = 170.0
 waits for it, so that a machine that is too busy is never taken for a build that failed."""
 MAX_LOG_BYTES = 1_000_000
 """Output that is kept of a build."""
+MAX_LINE = 4_000
+"""Bytes of one line of a program's output that are passed on."""
 MAX_ARCHIVE_BYTES = 64_000_000
 """All that a build may have made, as an archive; an interface package has 1.3 million."""
 
@@ -115,6 +117,29 @@ class Program(Protocol):
     def end(self) -> None:
         """Kill it and all that it has started; may be called twice."""
         ...
+
+
+def output_lines(
+    program: Program, wanted: Callable[[], bool] = lambda: True, within: float = 0.1
+) -> Iterator[str]:
+    """The lines of a program's output as they come, to its end or as long as they are wanted; long ones are cut.
+
+    Args:
+        program: The program.
+        wanted: Asked now and then.
+        within: Seconds between two questions where nothing comes.
+    """
+    line = b""
+    while wanted() and (data := program.read(within)) != b"":
+        *complete, line = (line + (data or b"")).split(b"\n")
+        yield from map(_as_text, complete)
+        line = line[:MAX_LINE]
+    if line:
+        yield _as_text(line)
+
+
+def _as_text(line: bytes) -> str:
+    return line[:MAX_LINE].decode("utf-8", "replace").rstrip("\r")
 
 
 class Jobs(Protocol):

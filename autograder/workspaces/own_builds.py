@@ -12,9 +12,8 @@ import os
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, Lines, NotUnderstood
-from autograder.messages.workspaces import Build as BuildRequest
-from autograder.messages.workspaces import BuildAnswer, BuildDone, BuildFailed, Piece
 from autograder.workspaces import artefacts, cache
 from autograder.workspaces.builds import Builds, BuildTookTooLong
 from autograder.workspaces.install_folder import rename_paths
@@ -95,11 +94,11 @@ def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) ->
         return None
     with contextlib.closing(lines), contextlib.suppress(Hangup, NotUnderstood, artefacts.BadArtefacts):
         top = found.workspace.resolve().name
-        lines.say(BuildRequest(len(collected), top, [package.name for package in chosen]))
+        lines.say(messages.Build(len(collected), top, [package.name for package in chosen]))
         for source in collected:
             lines.say(source)
-        answer: BuildAnswer = lines.hear(BuildAnswer)
-        if isinstance(answer, BuildFailed):
+        answer: messages.BuildAnswer = lines.hear(messages.BuildAnswer)
+        if isinstance(answer, messages.BuildFailed):
             return replace(
                 found,
                 seconds=answer.seconds,
@@ -108,8 +107,8 @@ def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) ->
                 line=answer.line,
                 log=answer.log,
             )
-        if isinstance(answer, BuildDone):
-            archive = b"".join(lines.hear(Piece).data for _ in range(answer.pieces))
+        if isinstance(answer, messages.BuildDone):
+            archive = b"".join(lines.hear(messages.Piece).data for _ in range(answer.pieces))
             artefacts.unpack(archive, install)
             rename_paths(install, answer.install, str(install))
             return replace(found, ok=True, install=install, seconds=answer.seconds, reused=answer.reused)

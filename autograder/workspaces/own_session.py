@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 import time
-from typing import IO, TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Self
 
 from autograder import process_trees
 
@@ -57,6 +57,8 @@ class OwnSession:
             start_new_session=True,
             pass_fds=holds,
         )
+        assert self._process.stdout is not None
+        self._output = self._process.stdout
         self.pid = self._process.pid
 
     def __enter__(self) -> Self:
@@ -64,13 +66,7 @@ class OwnSession:
 
     def __exit__(self, *_: object) -> None:
         self.end()
-        self.output.close()
-
-    @property
-    def output(self) -> IO[bytes]:
-        """Its output, for callers that do not use :meth:`read`."""
-        assert self._process.stdout is not None
-        return self._process.stdout
+        self._output.close()
 
     def read(self, within: float) -> bytes | None:
         """Its output since the last call; None for nothing yet, no bytes at its end.
@@ -78,16 +74,13 @@ class OwnSession:
         Args:
             within: Seconds to wait for something.
         """
-        data = self._read(within)
+        if self._output.closed:
+            return b""
+        ready, _, _ = select.select([self._output], [], [], within)
+        data = os.read(self._output.fileno(), 1 << 16) if ready else None
         if data == b"":
             self._process.wait()
         return data
-
-    def _read(self, within: float) -> bytes | None:
-        if self.output.closed:
-            return b""
-        ready, _, _ = select.select([self.output], [], [], within)
-        return os.read(self.output.fileno(), 1 << 16) if ready else None
 
     def collect(
         self, limit: float, size: int, unwanted: Callable[[], bool] = lambda: False

@@ -83,5 +83,5 @@ class PlainProgram(OwnSession):
     def end(self, polite: float = 0.0) -> None:
         """Kill it, and take its files away."""
         super().end(polite)
-        self.output.close()
+        self._output.close()
         self._home.cleanup()

@@ -21,8 +21,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
+from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, Lines, NotUnderstood, listen
-from autograder.messages.workspaces import Build, BuildDone, BuildFailed, NotBuilt, Piece, Trouble
 from autograder.workspaces.artefacts import pack
 from autograder.workspaces.builds import BuildTookTooLong
 from autograder.workspaces.colcon import look
@@ -34,7 +34,7 @@ from autograder.workspaces.sources import BadSources, receive
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from autograder.workspaces.colcon import Build as Workspace
+    from autograder.workspaces.colcon import Build
     from autograder.workspaces.jobs import Jobs
 
 MAX_BUILDS = 20
@@ -126,7 +126,7 @@ class WorkspaceService:
                 pass
             except Exception as error:
                 with contextlib.suppress(Hangup):
-                    lines.say(Trouble(f"{type(error).__name__}: {error}"[:500]))
+                    lines.say(messages.Trouble(f"{type(error).__name__}: {error}"[:500]))
             finally:
                 lines.close()
                 self._conversations.discard(lines)
@@ -139,13 +139,13 @@ class WorkspaceService:
     def _serve_notebook(self, lines: Lines, folder: Path) -> None:
         """Answer one wish for a build (:mod:`autograder.workspaces.own_builds`)."""
         if not self._left.acquire(blocking=False):
-            lines.say(NotBuilt("this notebook has had enough builds"))
+            lines.say(messages.NotBuilt("this notebook has had enough builds"))
             return
         try:
-            order = lines.hear(Build)
+            order = lines.hear(messages.Build)
             receive(lines, order.count, order.path, folder)
         except (BadSources, NotUnderstood) as error:
-            lines.say(NotBuilt(str(error)))
+            lines.say(messages.NotBuilt(str(error)))
             return
         made = look(folder / order.path)
         if not made.trouble:
@@ -154,10 +154,10 @@ class WorkspaceService:
             self._send(lines, made, made.install)
             return
         told = (text.replace(f"{folder}/", "") for text in (made.trouble, made.package, made.line, made.log))
-        lines.say(BuildFailed(made.seconds, *told))
+        lines.say(messages.BuildFailed(made.seconds, *told))
 
-    def _made(self, found: Workspace, names: frozenset[str]) -> Workspace:
-        def targets(there: Workspace) -> list[str]:
+    def _made(self, found: Build, names: frozenset[str]) -> Build:
+        def targets(there: Build) -> list[str]:
             return [package.name for package in there.packages if package.name in names]
 
         try:
@@ -165,10 +165,10 @@ class WorkspaceService:
         except BuildTookTooLong as error:
             return error.build
 
-    def _send(self, lines: Lines, made: Workspace, install: Path) -> None:
+    def _send(self, lines: Lines, made: Build, install: Path) -> None:
         archive = pack(install)
         pieces = [archive[at : at + PIECE] for at in range(0, len(archive), PIECE)]
         place = self._builds.jobs.place(WORKSPACE, install.parent) / "install"
-        lines.say(BuildDone(len(pieces), str(place), made.seconds, made.reused))
+        lines.say(messages.BuildDone(len(pieces), str(place), made.seconds, made.reused))
         for piece in pieces:
-            lines.say(Piece(piece))
+            lines.say(messages.Piece(piece))

@@ -11,7 +11,7 @@ from autograder import exercises
 from autograder.kit.runners import Launches, ServesInterface
 from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, NotUnderstood
-from autograder.workspaces.jobs import ProgramJob
+from autograder.workspaces.jobs import ProgramJob, output_lines
 from autograder.workspaces.packages import workspace_of
 from autograder.workspaces.plans import course_interfaces, plan_for, ros2
 from autograder.workspaces.preparing import Preparation
@@ -29,10 +29,8 @@ if TYPE_CHECKING:
     from autograder.workspaces.jobs import Program
     from autograder.workspaces.preparing import Prepared
 
-MAX_LINE = 4_000
-"""Bytes of one line of a program's output that are kept."""
 MAX_OUTPUT = 2_000_000
-"""Bytes of output that are passed on of one run."""
+"""Characters of output that are passed on of one run."""
 
 
 @dataclass(frozen=True)
@@ -217,20 +215,11 @@ class _Run:
 
     def _pass_on(self, program: Program) -> None:
         """Pass on its output, line by line, as long as it is wanted."""
-        left, line = MAX_OUTPUT, b""
-        while not self._cancelled.is_set() and (data := program.read(0.1)) != b"":
-            *complete, line = (line + (data or b"")).split(b"\n")
-            for text in complete:
-                left -= min(len(text), MAX_LINE) + 1  # an empty line has to be sent, too
-                if left > 0:
-                    self._say_output(text)
-            line = line[:MAX_LINE]
-        if line and left > 0:
-            self._say_output(line)
-
-    def _say_output(self, line: bytes) -> None:
-        text = line[:MAX_LINE].decode("utf-8", "replace").rstrip("\r")
-        self._lines.say(messages.Output(self.number, text))
+        left = MAX_OUTPUT
+        for text in output_lines(program, lambda: not self._cancelled.is_set()):
+            left -= len(text) + 1  # an empty line has to be sent, too
+            if left > 0:
+                self._lines.say(messages.Output(self.number, text))
 
     def _report(self, line: str) -> None:
         """Tell the judge a line of the report, as if its paths began where the notebook is."""

@@ -6,11 +6,11 @@ import os
 import sys
 import threading
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
 
 from autograder.messages.checks import Exited, Output, Sources
 from autograder.messages.workspaces import Source
-from autograder.short_lines import short_lines
+from autograder.workspaces.jobs import output_lines
 from autograder.workspaces.own_session import OwnSession
 from autograder.workspaces.packages import workspace_of
 from autograder.workspaces.sources import BadSources, collect_launch, collect_workspace
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
 POLITE = 1.5
 """Seconds of wall time that the programs have to end after an interrupt, before they are killed."""
-MAX_LINE = 4_000
-"""Bytes of one line of output."""
 
 
 class PathRun:
@@ -69,14 +67,10 @@ class PathRun:
         return True
 
     def _follow(self, program: OwnSession) -> None:
-        with program.output as stream:
-            self._pass_on(stream)
+        with program:
+            for text in output_lines(program, within=POLITE):
+                self._tell(Output(self._number, text))
         self._tell(Exited(self._number, program.wait()))
-
-    def _pass_on(self, stream: IO[bytes]) -> None:
-        for line in short_lines(stream, MAX_LINE):
-            text = line.decode("utf-8", "replace").rstrip("\r\n")
-            self._tell(Output(self._number, text))
 
 
 def is_path(subject: object) -> bool:

@@ -1,14 +1,11 @@
 """A picture of the running graph, also a live one: nodes, and the topics, services and actions between them.
 
-It is SVG, with the same in words beside it for those who cannot see it, and is an ``img`` with data in it:
-JupyterLab takes SVG elements out of what it does not trust yet, and leaves their letters. JupyterLab's theme does not
-reach into it, so its dark form is the light one with the brightness turned round. It has a ground of its own, so that
-it is readable where the style is taken out as well.
+It is SVG, with the same in words beside it for those who cannot see it. JupyterLab's theme does not reach into it, so
+its dark form is the light one with the brightness turned round.
 """
 
 from __future__ import annotations
 
-import base64
 import itertools
 import time
 from dataclasses import dataclass, field
@@ -16,7 +13,7 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from autograder.notebook.observing.graph_layout import Arrow, Point, lay_out
-from autograder.notebook.observing.live_picture import LivePicture
+from autograder.notebook.observing.live_picture import LivePicture, as_image, svg_page
 from autograder.notebook.observing.ros_graph import Channel, ChannelKind, RosGraph, look, read_graph
 from autograder.notebook.observing.topic_traffic import TopicTraffic
 
@@ -106,13 +103,10 @@ class GraphPicture:
 
     def _repr_html_(self) -> str:
         sentences = self.sentences()
-        data = base64.b64encode(self.svg().encode()).decode()
-        words = "".join(f"<li>{escape(sentence)}</li>" for sentence in sentences)
-        return (
-            f'{_DARK}<img class="ros-graph" alt="The running graph. {escape(" ".join(sentences))}" '
-            f'src="data:image/svg+xml;base64,{data}">'
-            f"<details><summary>The graph in words</summary><ul>{words}</ul></details>"
-        )
+        words = f"The running graph. {' '.join(sentences)}"
+        image = as_image(self.svg(), words, 'class="ros-graph"')
+        items = "".join(f"<li>{escape(sentence)}</li>" for sentence in sentences)
+        return f"{_DARK}{image}<details><summary>The graph in words</summary><ul>{items}</ul></details>"
 
     def svg(self) -> str:
         """The picture alone."""
@@ -230,12 +224,8 @@ class _Drawing:
         width, height = (extent + 2 * _MARGIN for extent in self._turned(self._layout.extent))
         boxes = "".join(self._box(name) for name in self._layout.centres)
         lines = "".join(self._line(arrow) for arrow in self._layout.arrows)
-        return (
-            f'<svg xmlns="http://www.w3.org/2000/svg" role="img" width="{width:.0f}" height="{height:.0f}" '
-            f'viewBox="0 0 {width:.0f} {height:.0f}">'
-            f"<title>The running graph</title><desc>{escape(self._words)}</desc><style>{_STYLE}</style>"
-            f'<rect class="ground" width="100%" height="100%" rx="6"/>{lines}{boxes}</svg>'
-        )
+        head = f"<title>The running graph</title><desc>{escape(self._words)}</desc>"
+        return svg_page(width, height, head, _STYLE, lines + boxes)
 
     def _turned(self, point: Point) -> Point:
         return (point[1], point[0]) if self._down else point

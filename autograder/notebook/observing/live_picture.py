@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import base64
 import contextlib
 import contextvars
 import threading
 import time
+from html import escape
 from typing import TYPE_CHECKING, Any, Protocol
 
 from rclpy._rclpy_pybind11 import InvalidHandle, RCLError
@@ -21,6 +23,36 @@ if TYPE_CHECKING:
 
 GONE = (InvalidHandle, RCLError, NotInitializedException, ExternalShutdownException)
 """The errors of a node's methods where the node was destroyed or ROS was shut down meanwhile."""
+
+
+def svg_page(width: float, height: float, head: str, style: str, body: str) -> str:
+    """An SVG picture on a ground of its own, so that it is readable where its style is taken out.
+
+    Args:
+        width: Pixels.
+        height: Pixels.
+        head: Its title, and a description where there is one, as elements.
+        style: CSS.
+        body: The elements above the ground.
+    """
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" role="img" width="{width:.0f}" height="{height:.0f}" '
+        f'viewBox="0 0 {width:.0f} {height:.0f}">{head}<style>{style}</style>'
+        f'<rect class="ground" width="100%" height="100%" rx="6"/>{body}</svg>'
+    )
+
+
+def as_image(svg: str, words: str, attributes: str = "") -> str:
+    """A picture as an ``img`` with data in it: JupyterLab takes SVG elements out of what it does not trust yet.
+
+    Args:
+        svg: The picture.
+        words: The same in words, for those who cannot see it.
+        attributes: More of the element's.
+    """
+    data = base64.b64encode(svg.encode()).decode()
+    more = f" {attributes}" if attributes else ""
+    return f'<img{more} alt="{escape(words)}" src="data:image/svg+xml;base64,{data}">'
 
 
 class Pictures(Protocol):

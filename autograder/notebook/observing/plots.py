@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import math
 import time
 import zlib
@@ -14,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import re2
 
 from autograder.cards.axis import round_step
-from autograder.notebook.observing.live_picture import LivePicture
+from autograder.notebook.observing.live_picture import LivePicture, as_image, svg_page
 from autograder.notebook.observing.topic_traffic import ANY, message_class
 
 if TYPE_CHECKING:
@@ -127,19 +126,15 @@ class PlotPicture:
         )
 
     def _repr_html_(self) -> str:
-        data = base64.b64encode(self.svg().encode()).decode()
-        return f'<img alt="{escape(repr(self))}" src="data:image/svg+xml;base64,{data}">'
+        return as_image(self.svg(), repr(self))
 
     def svg(self) -> str:
         """The picture alone."""
         words = self.note or ("" if self.points else "nothing has arrived yet")
-        drawn = f'<text x="{_LEFT}" y="{_HEIGHT / 2}">{escape(words)}</text>' if words else self._curve()
-        return (
-            f'<svg xmlns="http://www.w3.org/2000/svg" role="img" width="{_WIDTH}" height="{_HEIGHT}" '
-            f'viewBox="0 0 {_WIDTH} {_HEIGHT}"><title>{escape(repr(self))}</title><style>{_STYLE}</style>'
-            f'<rect class="ground" width="100%" height="100%" rx="6"/>'
-            f'<text class="name" x="{_LEFT}" y="16">{escape(self.title)}</text>{drawn}</svg>'
-        )
+        curve = f'<text x="{_LEFT}" y="{_HEIGHT / 2}">{escape(words)}</text>' if words else self._curve()
+        name = f'<text class="name" x="{_LEFT}" y="16">{escape(self.title)}</text>'
+        head = f"<title>{escape(repr(self))}</title>"
+        return svg_page(_WIDTH, _HEIGHT, head, _STYLE, name + curve)
 
     def _curve(self) -> str:
         low, high = min(value for _, value in self.points), max(value for _, value in self.points)

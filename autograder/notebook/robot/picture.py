@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import base64
 import math
 from dataclasses import dataclass, replace
 from html import escape
 from typing import TYPE_CHECKING
 
+from autograder.notebook.observing.live_picture import as_image, svg_page
 from autograder.notebook.robot.motion import RADIUS, ROOM
 
 if TYPE_CHECKING:
@@ -71,26 +71,22 @@ class RobotPicture:
         )
 
     def _repr_html_(self) -> str:
-        data = base64.b64encode(self.svg().encode()).decode()
         width, height = _page()
         # Decoded before it is shown: the picture before it stays until then, so nothing flickers.
-        return (
-            f'<img alt="{escape(repr(self))}" width="{width}" height="{height}" decoding="sync" '
-            f'style="max-width: 100%; height: auto" '
-            f'src="data:image/svg+xml;base64,{data}">'
+        attributes = (
+            f'width="{width}" height="{height}" decoding="sync" style="max-width: 100%; height: auto"'
         )
+        return as_image(self.svg(), repr(self), attributes)
 
     def svg(self) -> str:
         """The picture alone."""
         width, height = _page()
-        return (
-            f'<svg xmlns="http://www.w3.org/2000/svg" role="img" width="{width}" height="{height}" '
-            f'viewBox="0 0 {width} {height}"><title>{escape(repr(self))}</title>'
-            f"<style>{_STYLE}{self._gliding()}</style>"
-            f'<rect class="ground" width="100%" height="100%" rx="6"/>'
-            f"{self._rooms()}{self._sight()}{self._way()}{self._robot()}{self._bubble()}"
-            f'<text x="{_MARGIN}" y="{height - 10}">{escape(self._dials())}</text></svg>'
+        dials = f'<text x="{_MARGIN}" y="{height - 10}">{escape(self._dials())}</text>'
+        body = "".join(
+            [self._rooms(), self._sight(), self._way(), self._robot(), self._bubble(), dials],
         )
+        head = f"<title>{escape(repr(self))}</title>"
+        return svg_page(width, height, head, _STYLE + self._gliding(), body)
 
     def _rooms(self) -> str:
         left, top = _at((0, ROOM.height))
