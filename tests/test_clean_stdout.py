@@ -54,7 +54,7 @@ def test_stray_lines_go_to_stderr_only_in_the_meantime(capfd: pytest.CaptureFixt
 class _Noisy:
     name = "noisy"
 
-    def verdict(self, seed: str, *, warm: bool) -> bytes:
+    def verdict(self, seed: str) -> bytes:
         _say_as_fast_dds()
         return to_json(VERDICT)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -84,15 +83,9 @@ class Answer:
             file.write_text(self.text, encoding="utf-8")
         return [part.format(file=file, workspace=workspace) for part in self.command]
 
-    @property
-    def may_be_warm(self) -> bool:
-        """True if it is a plain Python program, and not one of those that are always started from nothing."""
-        plain = self.base is None and self.command == (sys.executable, "{file}")
-        return plain and zlib.crc32(self.name.encode()) % COLD != 0
-
-    def verdict(self, seed: str, *, warm: bool) -> bytes:
+    def verdict(self, seed: str) -> bytes:
         """Judge it in this very process; the verdict as JSON."""
-        return to_json(checked(self, seed, warm=warm)[0])
+        return to_json(checked(self, seed)[0])
 
     def objection(self, verdict: Verdict) -> str:
         """The difference from the expected verdict, or an empty string."""
@@ -144,10 +137,6 @@ def named(name: str) -> Answer:
 def folder_of(exercise_id: str) -> Path:
     """The folder with the answers to an exercise."""
     return exercises.path(exercise_id).with_suffix(".answers")
-
-
-COLD = 6
-"""One program in so many is always run as everybody runs programs, in a process that begins with nothing."""
 
 
 def longest_first(wanted: Iterable[Answer]) -> list[Answer]:

@@ -11,11 +11,10 @@ from autograder.clean_stdout import private_stdout
 from autograder.verdict import State, Verdict, from_json
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Iterable
 
     from autograder.authoring.answers import Answer
     from autograder.judge.verdicts.trial import Checked
-    from autograder.kit.model import Exercise
 
 LIMIT = 240.0
 """Seconds of wall time in which an answer must have been judged."""
@@ -29,7 +28,7 @@ class Judged(Protocol):
         """The name by which a person finds it."""
         ...
 
-    def verdict(self, seed: str, *, warm: bool) -> bytes:
+    def verdict(self, seed: str) -> bytes:
         """Judge it in this very process, a fork made for it; the verdict as JSON."""
         ...
 
@@ -59,7 +58,6 @@ def judge_all(
     *,
     jobs: int,
     done: Callable[[Turn[T], Verdict], None],
-    warm: bool = False,
     failed: Callable[[Turn[T], str], None] | None = None,
 ) -> None:
     """Judge, in this order, in forks of this process, which must have no other threads.
@@ -68,7 +66,6 @@ def judge_all(
         turns: What to judge, and with which inputs.
         jobs: How many at once.
         done: Called with each verdict as it comes.
-        warm: Run most programs in forks of a process that has imported ROS.
         failed: Called with what has no verdict, and why.
 
     Raises:
@@ -81,7 +78,7 @@ def judge_all(
     while waiting or running:
         while waiting and len(running) < jobs:
             turn, attempt = waiting.pop(0)
-            child = Child(lambda turn=turn: _verdict_in_child(turn, warm=warm), LIMIT)  # type: ignore[misc]
+            child = Child(lambda turn=turn: _verdict_in_child(turn), LIMIT)  # type: ignore[misc]
             running[child.reading] = (turn, attempt, child)
         ready, _, _ = select.select(list(running), [], [])
         for descriptor in ready:
@@ -99,41 +96,20 @@ def judge_all(
                 raise NoVerdict(f"{turn.subject.name}: {outcome.trouble}")
 
 
-def _verdict_in_child(turn: Turn[T], *, warm: bool) -> bytes:
+def _verdict_in_child(turn: Turn[T]) -> bytes:
     # The parent's standard output is for verdicts.
     private_stdout().close()
-    return turn.subject.verdict(turn.seed, warm=warm)
+    return turn.subject.verdict(turn.seed)
 
 
-def checked(answer: Answer, seed: str, *, warm: bool) -> tuple[Verdict, Checked | None]:
+def checked(answer: Answer, seed: str) -> tuple[Verdict, Checked | None]:
     """Judge an answer of the bank in this process; the evidence, too, where the judge itself had no trouble."""
     from autograder import exercises
     from autograder.judge.subjects.command import checked_here
 
     exercise = exercises.get(answer.exercise)
     with HeldFolder("autograder-answer-") as folder:
-        command = answer.unpack(folder.path)
-        if warm and answer.may_be_warm and not exercise.wraps_commands:
-            return _checked_warm(exercise, command, seed)
-        return checked_here(exercise, command, seed, None)
-
-
-def _checked_warm(exercise: Exercise, command: Sequence[str], seed: str) -> tuple[Verdict, Checked | None]:
-    """The same as ``checked_here``, with the program in a fork of this process."""
-    from autograder.authoring.warm_python import WarmPython, WarmScript
-    from autograder.judge.bench.wire import JudgeFailed
-    from autograder.judge.serving import domain
-    from autograder.judge.verdicts import reference, trial
-    from autograder.verdict import not_checked
-
-    subject = WarmScript(WarmPython(), command)
-    try:
-        with domain.lease() as domain_id:
-            expected = reference.load(exercise.id)
-            found = trial.check(exercise, subject, expected, seed=seed, domain_id=domain_id)
-            return found.verdict, found
-    except JudgeFailed as error:
-        return not_checked(exercise.id, exercise.title, exercise.points, str(error)), None
+        return checked_here(exercise, answer.unpack(folder.path), seed, None)
 
 
 def warm_up() -> None:

@@ -53,9 +53,9 @@ class Transcribed(Answer):
 
     folder: Path = Path()
 
-    def verdict(self, seed: str, *, warm: bool) -> bytes:
+    def verdict(self, seed: str) -> bytes:
         """Judge it in this very process; the verdict as JSON."""
-        verdict, found = checked(self, seed, warm=warm)
+        verdict, found = checked(self, seed)
         if found is not None:
             file = self.folder / f"{self.short_name}.txt"
             file.parent.mkdir(parents=True, exist_ok=True)
@@ -178,7 +178,7 @@ def judged(wanted: Sequence[Answer], *, jobs: int = JOBS, tell: Callable[[str], 
         surprises[turn.subject.name] = Surprise(name, f"no verdict: {trouble}", "The error stands above.")
 
     warm_up()
-    judge_all([Turn(answer, "try") for answer in wanted], jobs=jobs, done=take, failed=fail, warm=True)
+    judge_all([Turn(answer, "try") for answer in wanted], jobs=jobs, done=take, failed=fail)
     return [surprises[answer.name] for answer in wanted if answer.name in surprises]
 
 

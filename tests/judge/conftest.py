@@ -27,7 +27,7 @@ def verdicts(request: pytest.FixtureRequest) -> Iterator[dict[str, Verdict]]:
     """The verdicts on all answers that this session asks for."""
     names = [answer.name for answer in asked_for(request, "answer")]
     process = subprocess.Popen(
-        [sys.executable, "-m", "tests.measure", "bank", "--lines", "--warm", "--jobs", str(JOBS), *names],
+        [sys.executable, "-m", "tests.measure", "bank", "--lines", "--jobs", str(JOBS), *names],
         cwd=Path(__file__).parents[2],
         stdout=subprocess.PIPE,
         text=True,

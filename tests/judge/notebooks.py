@@ -5,13 +5,13 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
+import subprocess
+import sys
 import tempfile
-import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import exercises
-from autograder.authoring.warm_python import WarmPython
 from autograder.judge.serving import attached
 from autograder.judge.serving.process import JudgeDied, JudgeProcess
 from autograder.judge.settings import subject_environment
@@ -56,7 +56,7 @@ class _ForkedJudge:
 def verdict_in_notebook(exercise_id: str, file: Path, seed: str) -> bytes:
     """Run a program that ends with its check; what the judge tells a grader of it, as JSON.
 
-    Must run in a fork without threads of a process that is warm.
+    Must run in a fork without threads of a process that has imported what a judge needs.
 
     Args:
         exercise_id: The exercise's id.
@@ -65,19 +65,18 @@ def verdict_in_notebook(exercise_id: str, file: Path, seed: str) -> bytes:
     """
     exercise = exercises.get(exercise_id)
     CommandSubject([])  # makes this process the one that gets the orphans
-    warm = WarmPython()
-    helpers = [warm.pid]
+    judges: list[int] = []
 
     def start(listener: int, orders: int) -> _ForkedJudge:
         forked = _ForkedJudge(listener, orders)
-        helpers.append(forked.pid)
+        judges.append(forked.pid)
         return forked
 
     with tempfile.TemporaryDirectory(prefix="notebook-") as folder:
         try:
             with JudgeProcess(Path(folder) / "judge", seed=seed, start=start) as judge:
                 judge.open(exercise.id)
-                _run(warm, file, judge.socket_path, exercise.limit + SPARE, helpers)
+                _run(file, judge.socket_path, exercise.limit + SPARE, judges)
                 report = judge.close_report()
         except JudgeDied as error:
             return to_json(not_checked(exercise.id, exercise.title, exercise.points, str(error)))
@@ -87,16 +86,19 @@ def verdict_in_notebook(exercise_id: str, file: Path, seed: str) -> bytes:
     return to_json(report.verdict or failed(exercise.id, exercise.title, exercise.points, never_asked))
 
 
-def _run(warm: WarmPython, file: Path, socket: Path, limit: float, helpers: Sequence[int]) -> None:
+def _run(file: Path, socket: Path, limit: float, judges: Sequence[int]) -> None:
     environment = subject_environment(0) | {"AUTOGRADER_JUDGE_SOCKET": str(socket)}
-    program = warm.run([str(file)], environment, file.parent)
-    timer = threading.Timer(limit, program.send_signal, [signal.SIGKILL])
-    timer.start()
-    readers = [threading.Thread(target=stream.read) for stream in (program.stdout, program.stderr)]
-    for reader in readers:
-        reader.start()
-    program.wait()
-    timer.cancel()
-    end_descendants(LEFTOVERS, spare=helpers)
-    for reader in readers:
-        reader.join()
+    nothing = subprocess.DEVNULL
+    with subprocess.Popen(
+        [sys.executable, str(file)],
+        env=environment,
+        cwd=file.parent,
+        stdin=nothing,
+        stdout=nothing,
+        stderr=nothing,
+        start_new_session=True,
+    ) as program:
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            program.wait(limit)
+        program.kill()
+    end_descendants(LEFTOVERS, spare=judges)

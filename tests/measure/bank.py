@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
-from autograder.authoring.answers import COLD, Answer, answers, longest_first
+from autograder.authoring.answers import Answer, answers, longest_first
 from autograder.authoring.judging import Turn, judge_all, warm_up
 from autograder.verdict import to_json
 
@@ -35,9 +35,6 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of this program."""
     of_answers(parser)
     parser.add_argument("--print", action="store_true", help="print the programs, judge none")
-    parser.add_argument(
-        "--warm", action="store_true", help=f"run all but one program in {COLD} in warm forks"
-    )
     parser.add_argument("--lines", action="store_true", help="print each verdict as a line of JSON")
 
 
@@ -60,7 +57,7 @@ def main(options: argparse.Namespace) -> int:
     began = time.monotonic()
     warm_up()
     turns = [Turn(answer, "turn 0") for answer in longest_first(wanted)]
-    judge_all(turns, jobs=options.jobs, done=done, warm=options.warm)
+    judge_all(turns, jobs=options.jobs, done=done)
     if not options.lines:
         print(f"{len(wanted)} answers in {time.monotonic() - began:.0f} s, {len(objections)} objections")
     return 1 if objections else 0

@@ -72,7 +72,6 @@ def judge_here(out: Path, parts: Sequence[str], seeds: Sequence[str], jobs: int,
             jobs=jobs,
             done=lambda turn, verdict: take(turn, outcome(verdict, texts=texts)),
             failed=lambda turn, _: take(turn, "no verdict"),
-            warm=True,
         )
 
 

@@ -82,9 +82,9 @@ class Seen:
         """Where its line is left."""
         return self.folder / hashlib.sha256(self.name.encode()).hexdigest()
 
-    def verdict(self, seed: str, *, warm: bool) -> bytes:
+    def verdict(self, seed: str) -> bytes:
         """Judge it in this process; the verdict as JSON."""
-        verdict, found = checked(self.answer, seed, warm=warm)
+        verdict, found = checked(self.answer, seed)
         if found is not None:
             # When that was must not tell two makings of the same evidence apart.
             seen = msgspec.structs.replace(unpack(packed(found)), at=0.0)
@@ -218,7 +218,7 @@ def make(wanted: Sequence[Answer], *, jobs: int) -> list[str]:
         for exercise_id in {answer.exercise for answer in wanted}:
             stimulus.digest(exercise_id)  # once, before all the forks
         turns = [Turn(Seen(answer, Path(folder)), "evidence") for answer in longest_first(wanted)]
-        judge_all(turns, jobs=jobs, done=done, failed=failed, warm=True)
+        judge_all(turns, jobs=jobs, done=done, failed=failed)
     for exercise_id in exercises.all_ids():
         _write(exercise_id, made.get(exercise_id, {}))
     for file in FOLDER.glob("*.xz"):

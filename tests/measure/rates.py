@@ -130,7 +130,7 @@ def measured(part: str, form: Form) -> Any:
     """
     seed = str(secrets.randbelow(100_000))
     options: dict[str, list[str]] = {
-        "bank": ["--lines", "--warm", *form.bank],
+        "bank": ["--lines", *form.bank],
         "mutants": ["--sample", str(form.mutants), "--seed", seed, "--json"],
         "soak": ["--judgements", str(form.judgements), "--seed", seed, "--json", *form.bank],
         "steady_class": ["--times", str(form.times), "--json"],

@@ -75,7 +75,7 @@ def drawn(wanted: Sequence[Answer], number: int, seed: int, *, same_inputs: bool
 
 
 def soak(turns: Sequence[Turn[Answer]], *, jobs: int, busy: int) -> Repeated:
-    """Judge answers of the bank in this order; this process must have no threads, and becomes warm.
+    """Judge answers of the bank in this order; this process must have no threads.
 
     Args:
         turns: The answers, and their inputs.
@@ -93,7 +93,7 @@ def soak(turns: Sequence[Turn[Answer]], *, jobs: int, busy: int) -> Repeated:
 
     with busy_loops(busy):
         warm_up()
-        judge_all(turns, jobs=jobs, done=done, warm=True, failed=failed)
+        judge_all(turns, jobs=jobs, done=done, failed=failed)
     return ends.result((time.monotonic() - began) / 60, f"{jobs} at a time beside {busy} busy loops")
 
 

@@ -65,13 +65,13 @@ class Mutant:
         before, after = self.subject.text.splitlines(), self.text.splitlines()
         return "\n".join(list(difflib.unified_diff(before, after, lineterm="", n=1))[2:])
 
-    def verdict(self, seed: str, *, warm: bool) -> bytes:
+    def verdict(self, seed: str) -> bytes:
         """Judge it in this very process, a fork made for it; the verdict as JSON."""
         listed = self.subject.listed
         with TemporaryDirectory(prefix="mutant-") as folder:
             file = Path(folder, "mutants", listed.file.name if listed else "solution.py")
             file.parent.mkdir()
-            return self.subject.verdict(self.text, file, seed, warm=warm)
+            return self.subject.verdict(self.text, file, seed)
 
 
 def mutants(subject: Subject) -> list[Mutant]:

@@ -68,7 +68,7 @@ def judged(
     def failed(turn: Turn[Mutant], trouble: str) -> None:
         take(no_result(turn.subject, turn.seed))
 
-    judge_all(turns, jobs=jobs, done=done, warm=True, failed=failed)
+    judge_all(turns, jobs=jobs, done=done, failed=failed)
     return results
 
 

@@ -44,19 +44,18 @@ class Subject:
         """Such as ``"lab_1_2.talker/reference"``."""
         return f"{self.exercise}/{self.answer}"
 
-    def verdict(self, text: str, file: Path, seed: str, *, warm: bool) -> bytes:
+    def verdict(self, text: str, file: Path, seed: str) -> bytes:
         """Judge a changed text in this process, a fork made for it.
 
         Args:
             text: What is judged.
             file: Where it is to be written.
             seed: What random inputs are drawn from.
-            warm: Run a program in a fork that has imported ROS.
         """
         file.write_text(text, encoding="utf-8")
         if self.listed is None:
             return verdict_in_notebook(self.exercise, file, seed)
-        return replace(self.listed, file=file, edit=None).verdict(seed, warm=warm)
+        return replace(self.listed, file=file, edit=None).verdict(seed)
 
 
 def subjects() -> Iterator[Subject]:
