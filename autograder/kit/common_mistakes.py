@@ -11,10 +11,10 @@ import re2
 from autograder.kit.crashes import CRASHES, OTHER_CRASHES, traceback_of
 from autograder.kit.giving_up import ended_at_once
 from autograder.kit.hangs import something_spins
-from autograder.kit.model import Advice, Mistake
+from autograder.kit.model import Advice, Mistake, mistake
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
     from autograder.kit.evidence import Evidence, Part
 
@@ -24,6 +24,7 @@ __all__ = [
     "NOTHING_THERE",
     "NOT_BEGUN",
     "OTHER_CRASHES",
+    "USAGE_MESSAGE",
     "ended_too_early",
     "endpoint_name",
     "everything_twice",
@@ -32,7 +33,6 @@ __all__ = [
     "one_is_missing",
     "only_if_ended",
     "qos_mismatch",
-    "usage_message",
     "went_deaf",
 ]
 
@@ -66,8 +66,7 @@ def endpoint_name(role: str) -> Mistake:
         near = difflib.get_close_matches(missing[0], strange, n=1, cutoff=0.0) or sorted(strange)
         return Advice(
             f"Your node {verb} {near[0]}; the {noun} is called {missing[0]}.",
-            f"Correct the name. `ros2 {noun} list` shows what is on the graph: two nodes meet only where the "
-            f"names are "
+            f"Correct the name. `ros2 {noun} list` shows what is on the graph: two nodes meet only where the names are "
             "the same to the letter.",
         )
 
@@ -84,10 +83,8 @@ def message_type(role: str) -> Mistake:
             return None
         expected = wanted[name]
         return Advice(
-            f"On {name} your node uses {made[name]}; the other side uses {expected}. Two types on one name never "
-            f"meet.",
-            f"Import and use {expected.split('/')[-1]} from "
-            f"{expected.split('/')[0]}.{expected.split('/')[1]}.",
+            f"On {name} your node uses {made[name]}; the other side uses {expected}. Two types on one name never meet.",
+            f"Import and use {expected.split('/')[-1]} from {expected.split('/')[0]}.{expected.split('/')[1]}.",
         )
 
     return Mistake("message_type", recognise, certain=True)
@@ -124,11 +121,9 @@ def qos_mismatch(role: str) -> Mistake:
             return None
         policy = mismatch.data["policy"]
         return Advice(
-            f"Your node and the other side are both on {mismatch.name}, but their {policy} does not fit, so nothing "
-            f"is "
+            f"Your node and the other side are both on {mismatch.name}, but their {policy} does not fit, so nothing is "
             "exchanged.",
-            "Use the queue depth 10 in place of the QoS profile: that is reliable and volatile, as the "
-            "other side is.",
+            "Use the queue depth 10 in place of the QoS profile: that is reliable and volatile, as the other side is.",
         )
 
     return Mistake("qos_mismatch", recognise, certain=True)
@@ -184,8 +179,7 @@ def went_deaf(role: str) -> Mistake:
             "that spun it."
             if _worked(part, role)
             else "Your program spins, but not this node: it was taken away from the executor, or never added to it.",
-            "Spin a node in one place only. rclpy.spin_once or spin_until_future_complete, called in a "
-            "callback or "
+            "Spin a node in one place only. rclpy.spin_once or spin_until_future_complete, called in a callback or "
             "beside another executor, takes the node away from that one for good.",
         )
 
@@ -213,29 +207,29 @@ def _main_guard(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         "The program ended at once and said nothing: its main() was not called, or nothing keeps it alive.",
-        "End the file with `if __name__ == '__main__':` and `main()` below it (two underscores on each "
-        "side), and let "
+        "End the file with `if __name__ == '__main__':` and `main()` below it (two underscores on each side), and let "
         "main() end with rclpy.spin(node).",
     )
-
-
-def usage_message() -> Mistake:
-    """It says how it is to be called, and asks nobody for anything."""
-    return Mistake("usage_message", _usage_message, certain=True)
 
 
 _USAGE = re2.compile(r"(?i)\b(?:usage|uso|utilisation|aufruf|benutzung|verwendung|gebruik)\b")
 
 
-def _usage_message(evidence: Evidence) -> Advice | None:
+def _usage_message(evidence: Evidence) -> str:
+    """The line in which it says how it is to be called, where it asks nobody for anything."""
     told = [line for part in evidence for line in part.said() if _USAGE.search(line)]
-    if not told or any(part.of("request") or part.of("goal") for part in evidence):
-        return None
-    return Advice(
-        f"Your program did not accept the arguments that it was called with: “{told[0].strip()}”.",
-        "Count them: sys.argv[0] is the program itself, so two arguments make len(sys.argv) 3. Negative numbers are "
-        "numbers, too.",
-    )
+    asked = any(part.of("request") or part.of("goal") for part in evidence)
+    return told[0].strip() if told and not asked else ""
+
+
+USAGE_MESSAGE = mistake(
+    "usage_message",
+    _usage_message,
+    "Your program did not accept the arguments that it was called with: “{}”.",
+    "Count them: sys.argv[0] is the program itself, so two arguments make len(sys.argv) 3. Negative numbers are "
+    "numbers, too.",
+    certain=True,
+)
 
 
 def ended_too_early(evidence: Evidence) -> Advice | None:
@@ -252,13 +246,13 @@ def ended_too_early(evidence: Evidence) -> Advice | None:
     )
 
 
-def only_if_ended(recognise: Callable[[Evidence], Advice | None]) -> Callable[[Evidence], Advice | None]:
-    """The same, but only where each run of the subject came to its own end: time had no part in it then."""
+def only_if_ended(mistake: Mistake) -> Mistake:
+    """The same, and certain, where each run of the subject came to its own end: time had no part in it then."""
 
-    def ended(evidence: Evidence) -> Advice | None:
-        return recognise(evidence) if all(part.ending for part in evidence) else None
+    def recognise(evidence: Evidence) -> Advice | None:
+        return mistake.recognise(evidence) if all(part.ending for part in evidence) else None
 
-    return ended
+    return Mistake(mistake.key, recognise, certain=True)
 
 
 def _not_written(evidence: Evidence) -> Advice | None:
@@ -298,37 +292,29 @@ def _returned_at_once(evidence: Evidence) -> Advice | None:
     return None if asked or not all(map(ended_at_once, evidence)) else _returned_silently(evidence)
 
 
-def _nothing_on_the_graph(evidence: Evidence) -> Advice | None:
-    if any(part.had_node for part in evidence):
-        return None
-    if any(
-        part.of("log") or part.of("request") or part.of("goal") or part.of("message") for part in evidence
-    ):
-        return None
-    return Advice(
-        "No node of yours appeared on the graph.",
-        "Make the node (rclpy.init(), then your class or create_node) and keep the program running.",
-    )
-
-
-def _never_constructed(evidence: Evidence) -> Advice | None:
-    if not any(part.first("subject", "never_constructed") for part in evidence):
-        return None
-    return Advice(
-        "Making your node never comes to an end: its __init__ goes on and on, or waits for something.",
-        "Let __init__ only make what the node needs, and leave the work to callbacks: no loop and no wait in it.",
-    )
-
-
-NEVER_CONSTRUCTED = Mistake("never_ended", _never_constructed, certain=True)
-
-
+NEVER_CONSTRUCTED = mistake(
+    "never_ended",
+    lambda evidence: any(part.first("subject", "never_constructed") for part in evidence),
+    "Making your node never comes to an end: its __init__ goes on and on, or waits for something.",
+    "Let __init__ only make what the node needs, and leave the work to callbacks: no loop and no wait in it.",
+    certain=True,
+)
 NOT_BEGUN = Mistake("not_written", _returned_at_once, certain=True)
 """A function as it was handed out: to be asked before anything is said of how it asks, waits or gives up."""
 NOTHING_THERE = (
     Mistake("not_written", _returned_silently, certain=True),
     Mistake("main_guard", _main_guard, certain=True),
-    Mistake("nothing_on_the_graph", _nothing_on_the_graph, certain=True),
+    mistake(
+        "nothing_on_the_graph",
+        lambda evidence: (
+            not any(
+                part.had_node or any(map(part.of, ("log", "request", "goal", "message"))) for part in evidence
+            )
+        ),
+        "No node of yours appeared on the graph.",
+        "Make the node (rclpy.init(), then your class or create_node) and keep the program running.",
+        certain=True,
+    ),
     Mistake("not_written", _not_written),
     Mistake("ended_too_early", ended_too_early),
 )

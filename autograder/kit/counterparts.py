@@ -13,7 +13,6 @@ class Speaker(Protocol):
 
     def send(self, **fields: Any) -> None:
         """Publish one message with these fields."""
-        ...
 
 
 class Server(Protocol):
@@ -21,11 +20,9 @@ class Server(Protocol):
 
     def release(self) -> None:
         """Give the answer that was held back."""
-        ...
 
     def close(self) -> None:
         """Take the service away."""
-        ...
 
 
 class ActionCounterpart(Protocol):
@@ -33,15 +30,12 @@ class ActionCounterpart(Protocol):
 
     def await_goal(self, within: float) -> bool:
         """Wait until a goal arrived and was answered; False where none came in ``within`` seconds."""
-        ...
 
     def send_feedback(self, **fields: Any) -> None:
         """Send one feedback message for the current goal."""
-        ...
 
     def say_status(self) -> None:
         """Say the current goal's status on the action's topic, as a server does when it begins to execute a goal."""
-        ...
 
     def await_cancel(self, within: float, *, wall: bool = True) -> bool:
         """Wait until somebody asked to cancel the current goal; False where nobody did.
@@ -50,15 +44,12 @@ class ActionCounterpart(Protocol):
             within: Seconds.
             wall: Whether they are those of the wall, and not those that the machine had for the subject.
         """
-        ...
 
     def await_result_request(self, within: float) -> bool:
         """Wait until somebody asked for the result."""
-        ...
 
     def finish(self, status: str, **fields: Any) -> None:
         """End the goal with ``"succeeded"``, ``"canceled"`` or ``"aborted"`` and this result."""
-        ...
 
 
 class Caller(Protocol):
@@ -69,15 +60,12 @@ class Caller(Protocol):
 
     def await_server(self, within: float) -> bool:
         """Wait until it may call; False where nobody serves name and type in ``within`` seconds."""
-        ...
 
     def ask(self, *requests: Mapping[str, Any]) -> None:
         """Send requests, one right after the other, without waiting for an answer."""
-        ...
 
     def await_answers(self, quiet: float) -> bool:
         """Wait until every call is answered; False where nothing at all happened for ``quiet`` seconds."""
-        ...
 
 
 class ActionCaller(Protocol):
@@ -89,12 +77,9 @@ class ActionCaller(Protocol):
 
     def await_server(self, within: float) -> bool:
         """Wait until it may send goals; False where nobody serves name and type in ``within`` seconds."""
-        ...
 
     def send_goal(self, **fields: Any) -> int:
         """Send a goal, and ask for its result once it is accepted; its number."""
-        ...
 
     def cancel(self, goal: int) -> None:
         """Ask to cancel a goal."""
-        ...

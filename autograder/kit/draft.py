@@ -31,24 +31,19 @@ class Recipe(Protocol[View_co]):
     @property
     def roles(self) -> tuple[str, ...]:
         """The endpoints that make up the subject's public face."""
-        ...
 
     @property
     def ladder(self) -> Sequence[Mistake]:
         """The common mistakes, most telling first; :data:`OWN` and :data:`OWN_LATE` stand for the exercise's."""
-        ...
 
     def scenario(self, bench: Bench) -> None:
         """Drive the bench through all parts."""
-        ...
 
     def seen(self, evidence: Evidence) -> View_co:
         """The subject, as it was seen."""
-        ...
 
     def expected(self, evidence: Evidence) -> View_co:
         """The reference solution, as it was recorded."""
-        ...
 
 
 OWN = Mistake("", lambda _: None)

@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.crashes import SLIPS, meant
-from autograder.kit.model import Advice
+from autograder.kit.model import mistake
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from autograder.kit.evidence import Evidence, Part
-    from autograder.kit.model import Bench
+    from autograder.kit.model import Bench, Mistake
 
 PATIENCE = "patience_sec"
 """The parameter by which a notebook's function is told how long to wait; also its name among a part's inputs."""
@@ -214,13 +214,12 @@ def ended_at_once(part: Part) -> bool:
     return limit is not None and part.ending is not None and waited(part) < limit * TOO_SHORT
 
 
-def patience_not_kept(part: Part) -> Advice | None:
-    """The advice for a function that waits by a limit of its own."""
-    wrong = broken_patience(part)
-    if not wrong:
-        return None
-    return Advice(
-        f"When there is no server, your function {wrong}: it waits by a limit of its own.",
+def patience_not_kept(absent: str) -> Mistake:
+    """A function waits by a limit of its own in the run without a server, which is called ``absent``."""
+    return mistake(
+        "patience_not_kept",
+        lambda evidence: broken_patience(evidence.part(absent)),
+        "When there is no server, your function {}: it waits by a limit of its own.",
         f"Use {PATIENCE} as the limit of the wait: `wait_for_service(timeout_sec={PATIENCE})`, "
         f"`wait_for_server(timeout_sec={PATIENCE})`, or a loop that ends {PATIENCE} seconds after it began.",
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from autograder.kit.crashes import meant, what_and_where
-from autograder.kit.giving_up import gave_up, patience_not_kept
+from autograder.kit.giving_up import SILENT, gave_up, patience_not_kept
 from autograder.kit.goal_reports import (
     ABORTED,
     ABSENT,
@@ -30,104 +30,130 @@ from autograder.kit.goal_reports import (
     said_of_result,
     unshown_feedback,
 )
-from autograder.kit.model import Advice
+from autograder.kit.model import Advice, Mistake, mistake
 from autograder.kit.texts_said import mentions
 
 if TYPE_CHECKING:
-    from autograder.kit.evidence import Evidence
+    from autograder.kit.evidence import Evidence, Part
 
 
-def waits_for_nobody(evidence: Evidence) -> Advice | None:
-    """Without a server it never ends, and does not say that it waits."""
-    if not given_up(evidence).startswith("still waiting"):
-        return None
-    return Advice(
-        f"When there is no action server, your client is {given_up(evidence)}.",
-        "Give the wait a limit of a few seconds: `if not client.wait_for_server(timeout_sec=5.0):` say so and stop.",
-    )
+def _first_time(evidence: Evidence) -> Part:
+    """The run in which a goal succeeds."""
+    return evidence.part(LATE)
 
 
-def another_patience(evidence: Evidence) -> Advice | None:
-    """A function gives up at another moment than it was told."""
-    return patience_not_kept(evidence.part(ABSENT))
+# --- the server, and the goal -------------------------------------------------------------------------------------
+
+WAITS_FOR_NOBODY = mistake(
+    "waits_forever",
+    lambda evidence: given_up(evidence) if given_up(evidence).startswith("still waiting") else "",
+    "When there is no action server, your client is {}.",
+    "Give the wait a limit of a few seconds: `if not client.wait_for_server(timeout_sec=5.0):` say so and stop.",
+    certain=True,
+)
 
 
-def waits_forever(evidence: Evidence) -> Advice | None:
-    """With a server that is there, it neither sends a goal nor ends."""
-    part = evidence.part(LATE)
-    if not part.endpoints("action_client") or part.ending is not None or asked_for(part):
-        return None
-    return Advice(
-        "The server was there, but your client never sent a goal and never ended.",
-        "Wait with a limit, `client.wait_for_server(timeout_sec=5.0)`, and send the goal as soon as it is True.",
-    )
+WAITS_FOREVER = mistake(
+    "waits_forever",
+    lambda evidence: (
+        _first_time(evidence).endpoints("action_client")
+        and _first_time(evidence).ending is None
+        and not asked_for(_first_time(evidence))
+    ),
+    "The server was there, but your client never sent a goal and never ended.",
+    "Wait with a limit, `client.wait_for_server(timeout_sec=5.0)`, and send the goal as soon as it is True.",
+)
+GAVE_UP_TOO_EARLY = mistake(
+    "gave_up_too_early",
+    lambda evidence: gave_up(
+        [evidence.part(name) for name in SERVED], evidence.part(ABSENT), lambda part: bool(asked_for(part))
+    ),
+    "The server was there, or came a moment late, and your client had already given up.",
+    "Wait for it with wait_for_server and a few seconds of patience before you send the goal.",
+)
 
 
-def gave_up_too_early(evidence: Evidence) -> Advice | None:
-    """It ended before it had met the server."""
-    served = [evidence.part(name) for name in SERVED]
-    if not gave_up(served, evidence.part(ABSENT), lambda part: bool(asked_for(part))):
-        return None
-    return Advice(
-        "The server was there, or came a moment late, and your client had already given up.",
-        "Wait for it with wait_for_server and a few seconds of patience before you send the goal.",
-    )
-
-
-def order_never_filled(evidence: Evidence) -> Advice | None:
-    """Every goal asks for order 0, also where another one was given."""
+def _order_never_filled(evidence: Evidence) -> bool:
     made = [order for part in evidence if part.inputs.get("order") != 0 for order in asked_for(part)]
-    if not made or any(made):
-        return None
-    return Advice(
-        "The goal asks for order 0: its field was never filled.",
-        "Set goal.order (or Fibonacci.Goal(order=...)). A misspelt keyword is ignored silently.",
-    )
+    return bool(made) and not any(made)
 
 
-def wrong_order(evidence: Evidence) -> Advice | None:
-    """Another order than the one given, or several goals."""
+ORDER_NEVER_FILLED = mistake(
+    "field_typo",
+    _order_never_filled,
+    "The goal asks for order 0: its field was never filled.",
+    "Set goal.order (or Fibonacci.Goal(order=...)). A misspelt keyword is ignored silently.",
+    certain=True,
+)
+
+
+def _wrong_order(evidence: Evidence) -> str:
     wrong = goals_as_seen(evidence)
-    if not wrong or wrong in (NO_GOAL, NOT_AWAITED, CANCELED):
-        return None
-    return Advice(
-        f"The judge got {wrong}.",
-        "Send one goal, once, with the order that your function or program was given (sys.argv[1] on a command line). "
-        "If a timer sends the goal, switch the timer off after that: timer.cancel().",
-    )
+    return "" if wrong in (NO_GOAL, NOT_AWAITED, CANCELED) else wrong
 
 
-def canceled_unasked(evidence: Evidence) -> Advice | None:
-    """It asks to cancel a goal that nobody wants canceled."""
-    if goals_as_seen(evidence) != CANCELED:
-        return None
-    return Advice(
-        "Your client asked the server to cancel its goal, on its way.",
-        "The task asks for the whole goal: leave out cancel_goal_async(), and wait for the result.",
-    )
+WRONG_ORDER = mistake(
+    "wrong_order",
+    _wrong_order,
+    "The judge got {}.",
+    "Send one goal, once, with the order that your function or program was given (sys.argv[1] on a command line). "
+    "If a timer sends the goal, switch the timer off after that: timer.cancel().",
+    certain=True,
+)
+CANCELED_UNASKED = mistake(
+    "goal_canceled",
+    lambda evidence: goals_as_seen(evidence) == CANCELED,
+    "Your client asked the server to cancel its goal, on its way.",
+    "The task asks for the whole goal: leave out cancel_goal_async(), and wait for the result.",
+    certain=True,
+)
 
 
-def never_spun(evidence: Evidence) -> Advice | None:
-    """It sent its goal, and nothing that came back was taken in."""
-    part = evidence.part(LATE)
-    if not asked_for(part) or part.first("result_request") is not None or not part.of("unanswered"):
-        return None
-    return Advice(
-        "Your client sent its goal, but it receives no answer: none of its callbacks is called any more.",
-        "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future, timeout_sec=5.0), in one "
-        "place.",
-    )
+NEVER_SPUN = mistake(
+    "never_spun",
+    lambda evidence: (
+        asked_for(_first_time(evidence))
+        and _first_time(evidence).of("unanswered")
+        and not _first_time(evidence).first("result_request")
+    ),
+    "Your client sent its goal, but it receives no answer: none of its callbacks is called any more.",
+    "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future, timeout_sec=5.0), in one "
+    "place.",
+)
 
 
-def result_of_rejected_goal(evidence: Evidence) -> Advice | None:
-    """It asked for a result that will never be."""
-    if evidence.part(REFUSED).first("result_request") is None:
-        return None
-    return Advice(
-        "The goal was rejected, and your client asked for its result all the same: there is none, and the status that "
-        "comes back is 0, UNKNOWN.",
-        "Look at goal_handle.accepted first. Where it is False, say so and stop.",
-    )
+def _ended_before(evidence: Evidence) -> str:
+    """What was still to come when it ended, in words; empty where it waited for its answers."""
+    part = _first_time(evidence)
+    ending, answered, result = part.ending, part.first("goal_answered"), part.first("result")
+    if not asked_for(part) or ending is None or (part.traceback and not meant(part.traceback)):
+        return ""
+    events = list(part.events)
+    took = part.first("feedback") is not None and len(unshown_feedback(part)) < len(part.of("feedback"))
+    if answered is None or (not took and left_at_once(part)):
+        return "it could make anything of the answer"
+    if part.first("result_request") and (result is None or events.index(ending) < events.index(result)):
+        return "the result that it had asked for was there"
+    return ""
+
+
+ENDED_TOO_EARLY = mistake(
+    "ended_too_early",
+    _ended_before,
+    "Your client sent its goal, and ended before {}. An answer may take half a second and more.",
+    "Spin until the answer is there: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), or "
+    "rclpy.spin(node) where callbacks take the answers. A single spin_once takes in one thing only.",
+)
+
+# --- a goal that is refused ---------------------------------------------------------------------------------------
+
+RESULT_OF_REJECTED_GOAL = mistake(
+    "result_of_rejected_goal",
+    lambda evidence: evidence.part(REFUSED).first("result_request"),
+    "The goal was rejected, and your client asked for its result all the same: there is none, and the status that "
+    "comes back is 0, UNKNOWN.",
+    "Look at goal_handle.accepted first. Where it is False, say so and stop.",
+)
 
 
 def crashed_by_refusal(evidence: Evidence) -> Advice | None:
@@ -144,149 +170,122 @@ def crashed_by_refusal(evidence: Evidence) -> Advice | None:
     )
 
 
-def goes_on_after_refusal(evidence: Evidence) -> Advice | None:
-    """It calls a goal accepted that was refused."""
-    claim = called_accepted(evidence)
-    if not claim:
-        return None
-    return Advice(
-        f"The goal was rejected, and your client said “{claim}”: it went on as if the goal had been accepted.",
-        "Stop where `goal_handle.accepted` is False: below the line that says so, end with `return`.",
-    )
+CRASHED_BY_REFUSAL = Mistake("refused_goal_used", crashed_by_refusal)
+GOES_ON_AFTER_REFUSAL = mistake(
+    "refused_goal_used",
+    called_accepted,
+    "The goal was rejected, and your client said “{}”: it went on as if the goal had been accepted.",
+    "Stop where `goal_handle.accepted` is False: below the line that says so, end with `return`.",
+)
+STAYS_AFTER_REFUSAL = mistake(
+    "never_ended",
+    lambda evidence: refused_as_seen(evidence) == "said so, and did not end",
+    "Your client says that the goal was rejected, and then waits for ever for a result that will not come.",
+    "End the program there, too: shut down where you found `not goal_handle.accepted`, or spin until a future of your "
+    "own is complete and set its result.",
+)
 
 
-def never_ended(evidence: Evidence) -> Advice | None:
-    """It says that the goal was refused and stays."""
-    if refused_as_seen(evidence) != "said so, and did not end":
-        return None
-    return Advice(
-        "Your client says that the goal was rejected, and then waits for ever for a result that will not come.",
-        "End the program there, too: shut down where you found `not goal_handle.accepted`, or spin until a future "
-        "of your own is complete and set its result.",
-    )
-
-
-def refusal_not_reported(evidence: Evidence) -> Advice | None:
-    """It does not say that the goal was refused."""
+def _says_nothing_of_refusal(evidence: Evidence) -> str:
     if refused_as_seen(evidence) != "nothing was said of it":
-        return None
-    waits = evidence.part(REFUSED).ending is None
-    return Advice(
-        "The goal was rejected, and your client did not say so"
-        + (": it still waits for what a rejected goal never sends." if waits else "."),
-        "Look at goal_handle.accepted when the answer to the goal is there, and log an error where it is False.",
+        return ""
+    return (
+        ": it still waits for what a rejected goal never sends."
+        if evidence.part(REFUSED).ending is None
+        else "."
     )
 
 
-def feedback_not_shown(evidence: Evidence) -> Advice | None:
-    """Feedback came and was not logged."""
-    part = evidence.part(LATE)
-    missing = unshown_feedback(part)
-    if not missing or part.first("result_request") is None:
-        return None
-    return Advice(
-        f"{len(part.of('feedback'))} feedback messages were sent, and your client showed "
-        f"{len(part.of('feedback')) - len(missing)} of them.",
-        "Give send_goal_async a feedback_callback, and log message.feedback.partial_sequence in it, each time.",
-    )
+REFUSAL_NOT_REPORTED = mistake(
+    "refusal_not_reported",
+    _says_nothing_of_refusal,
+    "The goal was rejected, and your client did not say so{}",
+    "Look at goal_handle.accepted when the answer to the goal is there, and log an error where it is False.",
+)
+REFUSAL_RETURNED = mistake(
+    "result_not_returned",
+    lambda evidence: not refused_as_seen(evidence) and returned_instead(evidence.part(REFUSED), []),
+    "The goal was rejected, your function said so, and then it returned {}.",
+    "Where the goal is rejected there is no sequence: `return []`, an empty list.",
+)
+
+# --- what comes back ----------------------------------------------------------------------------------------------
 
 
-def ended_before_its_answers(evidence: Evidence) -> Advice | None:
-    """It ended while an answer was on its way, or as soon as its goal was accepted."""
-    part = evidence.part(LATE)
-    ending, answered, result = part.ending, part.first("goal_answered"), part.first("result")
-    if not asked_for(part) or ending is None or (part.traceback and not meant(part.traceback)):
-        return None
-    events = list(part.events)
-    took = part.first("feedback") is not None and len(unshown_feedback(part)) < len(part.of("feedback"))
-    if answered is None or (not took and left_at_once(part)):
-        missing = "it could make anything of the answer"
-    elif part.first("result_request") and (result is None or events.index(ending) < events.index(result)):
-        missing = "the result that it had asked for was there"
-    else:
-        return None
-    return Advice(
-        f"Your client sent its goal, and ended before {missing}. An answer may take half a second and more.",
-        "Spin until the answer is there: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), or "
-        "rclpy.spin(node) where callbacks take the answers. A single spin_once takes in one thing only.",
-    )
+def _feedback_not_shown(evidence: Evidence) -> tuple[int, int] | None:
+    """How many feedback messages were sent, and how many of them it showed."""
+    part = _first_time(evidence)
+    sent, missing = len(part.of("feedback")), len(unshown_feedback(part))
+    return (sent, sent - missing) if missing and part.first("result_request") else None
 
 
-def result_not_requested(evidence: Evidence) -> Advice | None:
-    """It never asked for the result."""
-    part = evidence.part(LATE)
-    if not asked_for(part) or part.first("result_request") is not None:
-        return None
-    return Advice(
-        "Your client sent its goal and never asked for the result.",
-        "Call goal_handle.get_result_async() once the goal is accepted, and wait for that future.",
-    )
+FEEDBACK_NOT_SHOWN = mistake(
+    "feedback_not_shown",
+    _feedback_not_shown,
+    "{0[0]} feedback messages were sent, and your client showed {0[1]} of them.",
+    "Give send_goal_async a feedback_callback, and log message.feedback.partial_sequence in it, each time.",
+)
+RESULT_NOT_REQUESTED = mistake(
+    "result_not_reported",
+    lambda evidence: asked_for(_first_time(evidence)) and not _first_time(evidence).first("result_request"),
+    "Your client sent its goal and never asked for the result.",
+    "Call goal_handle.get_result_async() once the goal is accepted, and wait for that future.",
+)
 
 
-def result_repeated(evidence: Evidence) -> Advice | None:
-    """A poll that was never stopped."""
+def _asks_again_and_again(evidence: Evidence) -> int:
     asked = len(evidence.main.of("result_request"))
-    if asked <= MANY_REQUESTS:
-        return None
-    return Advice(
-        f"Your client asked for the result of one goal {asked} times.",
-        "Ask once, when the goal is accepted, and wait for the future that you get. If a timer checks whether the "
-        "result is there, switch the timer off when it is: timer.cancel().",
-    )
+    return asked if asked > MANY_REQUESTS else 0
 
 
-def wrong_result_reported(evidence: Evidence) -> Advice | None:
-    """It says the last feedback once more, and takes it for the result."""
-    part = evidence.part(LATE)
-    result, feedback = part.first("result"), part.of("feedback")
-    if result is None or reports_result(part) or not feedback:
-        return None
-    if not mentions(said_of_result(part), feedback[-1].data["fields"]["partial_sequence"][-1]):
-        return None
-    return Advice(
-        "Your client reported the last feedback as if it were the result; the result was another sequence.",
-        "Take the sequence from the result: future.result().result.sequence.",
-    )
+RESULT_REPEATED = mistake(
+    "result_repeated",
+    _asks_again_and_again,
+    "Your client asked for the result of one goal {} times.",
+    "Ask once, when the goal is accepted, and wait for the future that you get. If a timer checks whether the result "
+    "is there, switch the timer off when it is: timer.cancel().",
+    certain=True,
+)
 
 
-def another_returned(evidence: Evidence) -> Advice | None:
-    """A function says the sequence, and returns something else."""
-    part = evidence.part(LATE)
+def _feedback_for_result(evidence: Evidence) -> bool:
+    part = _first_time(evidence)
+    feedback = part.of("feedback")
+    if part.first("result") is None or reports_result(part) or not feedback:
+        return False
+    return mentions(said_of_result(part), feedback[-1].data["fields"]["partial_sequence"][-1])
+
+
+WRONG_RESULT_REPORTED = mistake(
+    "wrong_result_reported",
+    _feedback_for_result,
+    "Your client reported the last feedback as if it were the result; the result was another sequence.",
+    "Take the sequence from the result: future.result().result.sequence.",
+)
+
+
+def _returns_another(evidence: Evidence) -> str:
+    part = _first_time(evidence)
     result = part.first("result")
-    if result is None or not reports_result(part):
-        return None
-    returned = returned_instead(part, result.data["fields"]["sequence"])
-    if not returned:
-        return None
-    return Advice(
-        f"Your function logged the sequence of the result, and returned {returned}.",
-        "End it with `return list(answer.result.sequence)`: whoever calls it wants the numbers.",
-    )
+    said = result is not None and reports_result(part)
+    return returned_instead(part, result.data["fields"]["sequence"]) if result and said else ""
 
 
-def refusal_returned(evidence: Evidence) -> Advice | None:
-    """A function says that the goal was refused, and does not return an empty list."""
-    returned = returned_instead(evidence.part(REFUSED), [])
-    if refused_as_seen(evidence) or not returned:
-        return None
-    return Advice(
-        f"The goal was rejected, your function said so, and then it returned {returned}.",
-        "Where the goal is rejected there is no sequence: `return []`, an empty list.",
-    )
+RESULT_NOT_RETURNED = mistake(
+    "result_not_returned",
+    _returns_another,
+    "Your function logged the sequence of the result, and returned {}.",
+    "End it with `return list(answer.result.sequence)`: whoever calls it wants the numbers.",
+)
+STATUS_MISREPORTED = mistake(
+    "status_misreported",
+    lambda evidence: miscalled(_first_time(evidence)),
+    "The goal succeeded (status 4), but your client said “{}”.",
+    "Look the number up in GoalStatus (from action_msgs.msg): 4 is SUCCEEDED, 5 is CANCELED, 6 is ABORTED.",
+)
 
 
-def status_misreported(evidence: Evidence) -> Advice | None:
-    """It calls a goal canceled or aborted that has succeeded."""
-    wrong = miscalled(evidence.part(LATE))
-    if not wrong:
-        return None
-    return Advice(
-        f"The goal succeeded (status 4), but your client said “{wrong}”.",
-        "Look the number up in GoalStatus (from action_msgs.msg): 4 is SUCCEEDED, 5 is CANCELED, 6 is ABORTED.",
-    )
-
-
-def result_not_reported(evidence: Evidence) -> Advice | None:
+def _result_not_reported(evidence: Evidence) -> Advice | None:
     """The result came and was not said."""
     part = evidence.part(LATE)
     result = part.first("result")
@@ -310,23 +309,20 @@ def result_not_reported(evidence: Evidence) -> Advice | None:
     )
 
 
-def abort_not_reported(evidence: Evidence) -> Advice | None:
-    """An aborted goal sounds like one that succeeded."""
-    wrong = aborted_as_seen(evidence)
-    if not wrong or evidence.part(ABORTED).first("result_request") is None:
-        return None
-    return Advice(
-        f"The goal was aborted (status 6), but what your client said of it is the same as for a success: {wrong}.",
-        "Look at the status that comes with the result: say its name, ABORTED, or compare it with "
-        "GoalStatus.STATUS_SUCCEEDED (from action_msgs.msg).",
-    )
+RESULT_NOT_REPORTED = Mistake("result_not_reported", _result_not_reported)
 
 
-def silent_end(evidence: Evidence) -> Advice | None:
-    """Without a server it ends, and says nothing."""
-    if given_up(evidence) != "ended without a word" or not asked_for(evidence.part(LATE)):
-        return None
-    return Advice(
-        "When there is no action server, your client ends without a word.",
-        "Log an error (or raise TimeoutError) before you return.",
-    )
+ABORT_NOT_REPORTED = mistake(
+    "abort_not_reported",
+    lambda evidence: evidence.part(ABORTED).first("result_request") and aborted_as_seen(evidence),
+    "The goal was aborted (status 6), but what your client said of it is the same as for a success: {}.",
+    "Look at the status that comes with the result: say its name, ABORTED, or compare it with "
+    "GoalStatus.STATUS_SUCCEEDED (from action_msgs.msg).",
+)
+SILENT_END = mistake(
+    "silent_end",
+    lambda evidence: given_up(evidence) == SILENT and asked_for(_first_time(evidence)),
+    "When there is no action server, your client ends without a word.",
+    "Log an error (or raise TimeoutError) before you return.",
+)
+PATIENCE_NOT_KEPT = patience_not_kept(ABSENT)

@@ -119,26 +119,21 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
     (
         "nested_spin",
         lambda found: any(map(_spins_in_callback, found)),
-        "A callback of yours spins, and waits inside that spin for ever: the executor that called it cannot "
-        "go on.",
-        "Never spin inside a callback. Go on in future.add_done_callback(...), or make the callback async "
-        "and await.",
+        "A callback of yours spins, and waits inside that spin for ever: the executor that called it cannot go on.",
+        "Never spin inside a callback. Go on in future.add_done_callback(...), or make the callback async and await.",
     ),
     (
         "call_in_same_group",
         lambda found: any(_blocks(stack) and _in_callback(stack) for stack in found),
-        "A callback of yours makes a blocking call and waits for ever: the answer would have to come "
-        "through the same "
+        "A callback of yours makes a blocking call and waits for ever: the answer would have to come through the same "
         "callback group, which is busy with this very callback.",
-        "Use the asynchronous call and go on in future.add_done_callback(...); or give the client a "
-        "callback group of "
+        "Use the asynchronous call and go on in future.add_done_callback(...); or give the client a callback group of "
         "its own and spin with several threads.",
     ),
     (
         "rate_never_spun",
         lambda found: any(map(_sleeps_on_rate, found)),
-        "rate.sleep() waits for ever: a rate is a timer, and a timer only fires while something spins the "
-        "node.",
+        "rate.sleep() waits for ever: a rate is a timer, and a timer only fires while something spins the node.",
         "Spin the node in a second thread, or use create_timer and rclpy.spin in place of the loop.",
     ),
     (
@@ -162,10 +157,8 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
         lambda found: (
             any(map(_blocks, found)) and any(_spins(stack) and not _blocks(stack) for stack in found)
         ),
-        "A blocking call waits for ever although a thread of yours spins: that executor no longer has the "
-        "node.",
-        "Spin a node in one place only. rclpy.spin_once or spin_until_future_complete, called beside "
-        "another executor, "
+        "A blocking call waits for ever although a thread of yours spins: that executor no longer has the node.",
+        "Spin a node in one place only. rclpy.spin_once or spin_until_future_complete, called beside another executor, "
         "takes the node away from it.",
     ),
     (
@@ -174,8 +167,7 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
         "A blocking call waits for ever: the answer has come, but nothing spins the node, so the node "
         "does not take it.",
         "Use call_async and rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), or spin the node in a "
-        "background executor "
-        "while you use call().",
+        "background executor while you use call().",
     ),
     (
         "never_spun",

@@ -52,8 +52,7 @@ KNOWN = (
         r"no attribute '_(?:Node__|default_callback_group|parameter|context|logger|handle)"
         r"|rclpy/node\.py\".*\n(?: .*\n){1,2}AttributeError: '\w+' object has no attribute '_"
         r"|descriptor '__init__' (?:requires|of) .*'super'",
-        "The class uses the Node before the Node was set up: super().__init__('a_name') is missing or comes "
-        "too late.",
+        "The class uses the Node before the Node was set up: super().__init__('a_name') is missing or comes too late.",
         "Make super().__init__('your_node_name') the first line of __init__.",
     ),
     Crash(
@@ -95,22 +94,19 @@ KNOWN = (
         "qos_arguments_swapped",
         r"Expected QoSProfile or int",
         "The arguments of create_publisher or create_subscription are in the wrong order.",
-        "The order is create_publisher(Type, 'topic', 10) and create_subscription(Type, 'topic', callback, "
-        "10).",
+        "The order is create_publisher(Type, 'topic', 10) and create_subscription(Type, 'topic', callback, 10).",
     ),
     Crash(
         "qos_depth_missing",
         r"missing \d+ required positional arguments?: .*'?qos_profile",
         "The queue size is missing.",
-        "Add it as the last argument: create_publisher(Type, 'topic', 10), create_subscription(Type, "
-        "'topic', "
+        "Add it as the last argument: create_publisher(Type, 'topic', 10), create_subscription(Type, 'topic', "
         "callback, 10).",
     ),
     Crash(
         "builtin_callback",
         r"no signature found for builtin",
-        "A builtin such as list.append or deque.append was given as a callback; rclpy cannot look at its "
-        "arguments.",
+        "A builtin such as list.append or deque.append was given as a callback; rclpy cannot look at its arguments.",
         "Wrap it: lambda msg: my_list.append(msg).",
     ),
     Crash(
@@ -152,9 +148,8 @@ KNOWN = (
     Crash(
         "callback_signature",
         r"Expected .* callback|[Cc]allback should be either|callback.*(?:takes|missing) .*positional argument",
-        "A callback has the wrong form: it was called at once (cb() instead of cb), or it takes the "
-        "wrong number "
-        "of arguments.",
+        "A callback has the wrong form: it was called at once (cb() instead of cb), or it takes the wrong number of "
+        "arguments.",
         "Pass the function itself, without parentheses after it. Besides self, a timer's callback takes nothing and a "
         "subscription's takes the message.",
     ),
@@ -281,8 +276,7 @@ KNOWN = (
         "executor_not_kept",
         r"'NoneType' object has no attribute '(?:spin\w*|add_node|create_task)'",
         "node.executor is None: a node does not keep its executor, and no variable of yours kept it either.",
-        "Keep the executor in a variable, executor = SingleThreadedExecutor(), and call executor.spin() on "
-        "that.",
+        "Keep the executor in a variable, executor = SingleThreadedExecutor(), and call executor.spin() on that.",
     ),
     Crash(
         "result_read_too_early",

@@ -86,6 +86,26 @@ class Mistake:
     certain: bool = False
 
 
+def mistake(
+    key: str, found: Callable[[Evidence], object], text: str, next_step: str, *, certain: bool = False
+) -> Mistake:
+    """A known mistake that is told in two sentences.
+
+    Args:
+        key: A stable name, listed in ``docs/mistakes.md``.
+        found: Gives what shows the mistake; anything that is false where the evidence does not show it.
+        text: What happened and why; ``{}`` stands for what was found, ``{0[1]}`` for a part of it.
+        next_step: What to do now, with the same places.
+        certain: The evidence proves the failure whatever the machine's load was.
+    """
+
+    def recognise(evidence: Evidence) -> Advice | None:
+        shown = found(evidence)
+        return Advice(text.format(shown), next_step.format(shown)) if shown else None
+
+    return Mistake(key, recognise, certain)
+
+
 class Bench(Protocol):
     """The words of a scenario. Every wait ends at an event or at its limit, and says which."""
 
@@ -99,11 +119,9 @@ class Bench(Protocol):
 
     def part(self, name: str, **inputs: Any) -> None:
         """Begin a part: a fresh run of the subject; ``inputs`` are written into the transcript."""
-        ...
 
     def again(self) -> None:
         """Begin the last part anew: a fresh run, and what was seen of the first one does not count."""
-        ...
 
     def keep(self, name: str) -> bool:
         """In a second look: take over a part of the first one in which the subject came to its own end.
@@ -111,7 +129,6 @@ class Bench(Protocol):
         For parts in which nothing depends on the pace. False where there is nothing to take over, where the subject was
         spared some of its waiting, or was told how long to wait.
         """
-        ...
 
     def start(self, *arguments: Any, **options: Any) -> None:
         """Start the subject; a class is made but not yet spun, a command or function runs at once.
@@ -122,11 +139,9 @@ class Bench(Protocol):
         ``spare`` seconds out of ``wait_for_service`` and ``wait_for_server``, and reports that, in runs in which the
         judge knows that no server comes so soon.
         """
-        ...
 
     def release(self) -> None:
         """Let a held subject spin. Does nothing for a subject that runs already."""
-        ...
 
     def await_endpoint(self, role: str, name: str) -> bool:
         """Wait until the subject's endpoint is on the graph and matched.
@@ -138,11 +153,9 @@ class Bench(Protocol):
                 ``"action_server"``.
             name: The full name of the topic, service or action.
         """
-        ...
 
     def await_node(self) -> bool:
         """Wait until a node of the subject's is on the graph; whether there is one, or was in a subject that ended."""
-        ...
 
     def await_sign_of_life(self, within: float) -> bool:
         """Wait until the subject has said something or has a node on the graph; nothing is written down.
@@ -150,7 +163,6 @@ class Bench(Protocol):
         Args:
             within: Seconds of wall time at most; gives up earlier when the subject has ended.
         """
-        ...
 
     def listen(self, topic: str, type_name: str, *, latched: bool = False) -> None:
         """Subscribe as the course's listener does: reliable, so that a best-effort talker is found out.
@@ -161,11 +173,9 @@ class Bench(Protocol):
             latched: Ask for what was published before, too (transient local). A publisher that keeps nothing for late
                 listeners is not heard at all then, and the mismatch is written down.
         """
-        ...
 
     def speak(self, topic: str, type_name: str) -> Speaker:
         """Create a publisher with the default QoS of the course (reliable, depth 10)."""
-        ...
 
     def serve(
         self,
@@ -183,15 +193,12 @@ class Bench(Protocol):
             answer: From the request's fields to the response's.
             hold: Which request's answer is held back until it is released, from 1 on; 0 for none.
         """
-        ...
 
     def call(self, service: str, type_name: str) -> Caller:
         """Be a client of the subject's service; each call and answer goes into the transcript."""
-        ...
 
     def call_action(self, action: str, type_name: str) -> ActionCaller:
         """Be a client of the subject's action; each goal and what comes back goes into the transcript."""
-        ...
 
     def serve_action(
         self,
@@ -207,38 +214,30 @@ class Bench(Protocol):
 
         The answers to goals and cancel requests are sent so many seconds of wall time after the requests.
         """
-        ...
 
     def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
         """Put a node of the judge's on the graph for the subject to look at; ``{topic: type}`` for each side."""
-        ...
 
     def compare_type(self, service: str, like: str) -> None:
         """Write down whether the type of a service of the subject's has the fields of the type ``like``."""
-        ...
 
     def note_its_log(self) -> None:
         """Write down each text of its log once, for the reference output."""
-        ...
 
     def seen(self) -> Part:
         """The events of this part so far."""
-        ...
 
     def heard(self, topic: str) -> int:
         """The number of messages that arrived on a topic so far in this part."""
-        ...
 
     def doubt(self) -> None:
         """Have this look confirmed in real time."""
-        ...
 
     def settle(self) -> None:
         """Wait until the subject's executors have taken what was sent to them, as far as they turn at all.
 
         Without it a busy machine would make a quick subject look slow.
         """
-        ...
 
     def await_attention(self) -> None:
         """Wait until the nodes that the judge speaks to are spun and know that it does.
@@ -246,18 +245,15 @@ class Bench(Protocol):
         A best-effort subscription loses what is sent before its own side knows the publisher, however long the
         publisher's side has known it.
         """
-        ...
 
     def note_whether_it_spins(self) -> None:
         """Ask the subject's nodes something that any spun node answers; write down when one does not.
 
         Where one does not, the subject is asked where it hangs, which ends a command.
         """
-        ...
 
     def note_where_it_hangs(self) -> None:
         """Write down where the subject's threads are. This ends a command; to be asked last in a part."""
-        ...
 
     def run_time(
         self, seconds: float, *, until: Callable[[], bool] | None = None, quiet: float | None = None
@@ -272,7 +268,6 @@ class Bench(Protocol):
         Returns:
             False where simulated time could not go on, because the subject's executor does not turn any more.
         """
-        ...
 
     def pass_time(self, seconds: float, role: str, name: str) -> None:
         """Let ``seconds`` pass for a subject that lives in real time, so that its timers do what they would do later.
@@ -284,7 +279,6 @@ class Bench(Protocol):
             role: With ``name``: the endpoint whose node is meant.
             name: The full name of a topic, service or action.
         """
-        ...
 
     def wait_until(
         self, condition: Callable[[Evidence], bool], within: float, *, quiet: float | None = None
@@ -296,7 +290,6 @@ class Bench(Protocol):
             within: Seconds of wall time at most.
             quiet: Give up earlier when nothing at all happened for so many seconds.
         """
-        ...
 
     def let_wait(self, seconds: float, *, call: int = 0) -> None:
         """Let the subject wait for a server, or for an answer, that is kept from it; or until it has ended.
@@ -308,11 +301,9 @@ class Bench(Protocol):
             seconds: From now on.
             call: Which of the subject's calls waits for its answer, from 1 on; 0 where it waits for a server.
         """
-        ...
 
     def watch_graph(self, condition: Callable[[Evidence], bool], within: float) -> bool:
         """The same for what the graph tells of, which is asked again and again: endpoints, and whose they are."""
-        ...
 
     def press_ctrl_c(self, within: float) -> bool:
         """Press Ctrl-C, as in the subject's terminal, and wait until it has ended.
@@ -323,15 +314,12 @@ class Bench(Protocol):
         Returns:
             Whether it ended by that; False also where it had ended before, and then nothing is pressed.
         """
-        ...
 
     def await_end(self, within: float) -> bool:
         """Wait until the subject has ended by itself, at most ``within`` seconds of wall time."""
-        ...
 
     def stop(self) -> None:
         """End the subject and take away what the judge put up for this part."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -348,9 +336,7 @@ class Exercise:
         text: What the text of the task says, sentence by sentence -> the names of the criteria that judge it, with
             blanks between them. A sentence that no criterion judges says in the notebook that it is not graded.
         remarks: What is worth a word on the card and costs no points; each gives a sentence, or an empty text.
-        roles: The endpoints that make up the subject's public face, such as ``("publisher",)``; `record`
-            waits
-            for one of them.
+        roles: The endpoints that make up the subject's public face, such as ``("publisher",)``; `record` waits for one.
         limit: Seconds of wall time after which the judge gives up on a check, all looks together. A command, which may
             build first, has more (`autograder/judge/subjects/command.py`).
         arguments: What a command is called with, in words; empty where it takes none.

@@ -1,15 +1,14 @@
-"""A service client as it was seen in its runs, the questions about it, and the common mistakes."""
+"""A service client as it was seen in its runs, and the questions about it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import re2
 
 from autograder.kit import giving_up
-from autograder.kit.hangs import stacks
 from autograder.kit.in_words import counted
 from autograder.kit.model import Advice, Finding
 from autograder.kit.texts_said import mentions
@@ -209,112 +208,6 @@ def how_it_went(part: Part) -> str:
     return f"it {ending.name} after {counted(len(requests(part)), 'call')}"
 
 
-def call_never_spun(evidence: Evidence) -> Advice | None:
-    """It called, was answered and hangs."""
-    for part in Client(evidence).served:
-        if (
-            part.ending is None
-            and part.of("response")
-            and not new_words(part)
-            and len(requests(part)) <= Client(evidence.reference).calls
-        ):
-            return Advice(
-                "The service answered, but your client never took the answer: nothing spins it while it "
-                "waits. "
-                "call() blocks for ever then, and so does any wait inside a callback of the same callback "
-                "group.",
-                "Outside of callbacks, use call_async and "
-                "rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), or spin the node in a "
-                "background executor while you use call().",
-            )
-    return None
-
-
-def awaits_in_vain(evidence: Evidence) -> Advice | None:
-    """It was answered, its threads only spin, and nothing goes on."""
-    stuck = [p for p in Client(evidence).served if p.ending is None and p.of("response") and stacks(p)]
-    if not stuck or new_words(stuck[0]):
-        return None
-    return Advice(
-        "The service answered, and your node spins, but the code that awaits the answer is never resumed: "
-        "it awaits "
-        "inside a callback of the same callback group that the answer needs.",
-        "Give the client a callback group of its own (ReentrantCallbackGroup or another MutuallyExclusive "
-        "one), or go "
-        "on in future.add_done_callback(...).",
-    )
-
-
-def answer_not_awaited(evidence: Evidence) -> Advice | None:
-    """It ended while the answer to a call of its own was still to come."""
-    served, calls = Client(evidence).served, Client(evidence.reference).calls
-    # Who has made all its calls where an answer came just as late waits for answers, and has not liked this one.
-    waits = any(len(requests(part)) >= calls for part in served if part.of("response"))
-    if not any(
-        ended_before_its_answer(part) or (calls > 1 and not waits and _made_nothing_of_its_answer(part))
-        for part in served
-    ):
-        return None
-    return Advice(
-        "Your client called the service and did not wait for the answer, which may take a second.",
-        "Wait for it: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), and look at "
-        "future.done() before you read the result.",
-    )
-
-
-def ended_before_its_answer(part: Part) -> bool:
-    """True if the subject had ended when an answer was given, or a call had not even left it."""
-    if part.ending is None:
-        return False
-    asked = max(len(requests(part)), len(part.of("called")))
-    given = sum(event.t <= part.ending.t for event in part.of("response"))
-    return asked > given
-
-
-def _made_nothing_of_its_answer(part: Part) -> bool:
-    """True if the subject ended with its first answer, and neither called again nor said a number that came of it.
-
-    A process takes its time to end, so the answer may be given while one that has not waited for it is on its way out.
-    """
-    if part.ending is None or len(requests(part)) != 1 or len(part.of("response")) != 1:
-        return False
-    own = {str(abs(number)) for number in part.inputs.get("numbers", ())}
-    told = (number for line in new_words(part) for number in re2.findall(r"\d{3,}", line))
-    return answers(part)[0] != 0 and all(number in own for number in told)
-
-
-def zero_taken_for_failure(evidence: Evidence) -> Advice | None:
-    """All is well but where the service answered 0."""
-    wrong = [part for part in Client(evidence).served if part.ending and not reports(part)]
-    right = [part for part in Client(evidence).served if reports(part)]
-    if not right or not wrong or any(answers(part)[-1:] != [0] for part in wrong):
-        return None
-    if any(ended_before_its_answer(part) for part in wrong):
-        return None
-    return Advice(
-        "The service answered 0, and your client took that for no answer. 0 is a sum like any other.",
-        "`if result:` is False for 0, too. Ask `if future.done():` or `if future.result() is not None:`, which says "
-        "whether there is an answer, whatever it is.",
-    )
-
-
-def not_returned(evidence: Evidence) -> Advice | None:
-    """It says the answer, and returns something else each time."""
-    served = [part for part in Client(evidence).served if part.of("response")]
-    if not served or not all(returns_another(part) and _says_the_answer(part) for part in served):
-        return None
-    return Advice(
-        f"Your function says the sum, but what it returns is {served[0].returned}: code that calls it cannot go on "
-        "with the sum.",
-        "End your function with `return` and the sum itself, a number: what is in the field sum of the answer.",
-    )
-
-
-def _says_the_answer(part: Part) -> bool:
-    said = replace(part, events=[event for event in part.events if event is not part.ending])
-    return mentions(said.said(after=part.of("response")[-1]), answers(part)[-1])
-
-
 def cut_short(client: Client) -> str:
     """The event that ended the judge's runs early, because the client hung; empty where it made all."""
     hung = next((part for part in client.served if part.events and part.ending is None), None)
@@ -325,74 +218,10 @@ def cut_short(client: Client) -> str:
     return f"{made} ({hung.name}), then it hung; the other runs were left out"
 
 
-def fields_never_filled(evidence: Evidence) -> Advice | None:
-    """Every request asks for 0 + 0."""
-    made = [pair(event) for part in Client(evidence).served for event in requests(part)]
-    if not made or any(pair != [0, 0] for pair in made):
-        return None
-    return Advice(
-        "Every call asks for 0 + 0: the fields of the request were never filled.",
-        "A request has the fields a and b. A misspelt keyword in AddTwoInts.Request(...) is ignored "
-        "silently.",
-    )
-
-
-def waits_for_nobody(evidence: Evidence) -> Advice | None:
-    """Without a service it neither stops in time nor says that it waits."""
-    part = evidence.part(ABSENT)
-    if not part.events or part.ending is not None or giving_up.goes_on_waiting(part):
-        return None
-    return Advice(
-        f"When the service is not there, your client is still waiting after {giving_up.GIVE_UP_LIMIT:g} s.",
-        "Give the wait a limit of a few seconds: `if not client.wait_for_service(timeout_sec=5.0):` say so and stop. A "
-        "while loop needs a count.",
-    )
-
-
-def patience_not_kept(evidence: Evidence) -> Advice | None:
-    """Without a service it waits by a limit of its own."""
-    return giving_up.patience_not_kept(evidence.part(ABSENT))
-
-
-def waits_forever(evidence: Evidence) -> Advice | None:
-    """With a service that is there, it neither calls nor ends."""
-    stuck = [
-        p for p in Client(evidence).served if p.endpoints("client") and p.ending is None and not requests(p)
-    ]
-    if not stuck:
-        return None
-    return Advice(
-        "The service was there, but your client never called it and never ended: it goes on waiting.",
-        "Wait with a limit, and call as soon as the service is there: "
-        "`if not client.wait_for_service(timeout_sec=5.0):` say so and stop.",
-    )
-
-
-def gave_up_too_early(evidence: Evidence) -> Advice | None:
-    """It ended before it had met the service."""
-    if not giving_up.gave_up(
-        Client(evidence).served, evidence.part(ABSENT), lambda part: bool(requests(part))
-    ):
-        return None
-    return Advice(
-        "The service was there, or came a moment late, and your client had already given up (or called before it "
-        "had met the service).",
-        "Wait for the service with wait_for_service and a few seconds of patience before the first call.",
-    )
-
-
-def silent_end(evidence: Evidence) -> Advice | None:
-    """Without a service it ends, and says nothing of that."""
-    finding = gives_up_in_time(evidence)
-    value = giving_up.returned_answer(evidence.part(ABSENT))
-    if finding.passed or not (value or finding.seen == giving_up.SILENT):
-        return None
-    if value:
-        return Advice(
-            f"When the service is not there, your function returns {value}: who calls it takes that for the sum.",
-            "Raise TimeoutError instead, with a few words on what was missing.",
-        )
-    return Advice(
-        "When the service is not there, your client ends and does not say so.",
-        "Log an error (or raise TimeoutError) before you return, so that its user knows why there is no sum.",
-    )
+def ended_before_its_answer(part: Part) -> bool:
+    """True if the subject had ended when an answer was given, or a call had not even left it."""
+    if part.ending is None:
+        return False
+    asked = max(len(requests(part)), len(part.of("called")))
+    given = sum(event.t <= part.ending.t for event in part.of("response"))
+    return asked > given

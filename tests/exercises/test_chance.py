@@ -14,7 +14,7 @@ from lab_1_4 import client as action_client
 
 from autograder.kit import common_mistakes as common
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.goal_mistakes import ended_before_its_answers, result_not_requested
+from autograder.kit.goal_mistakes import ENDED_TOO_EARLY, RESULT_NOT_REQUESTED
 from autograder.kit.goal_reports import LATE, left_at_once
 from autograder.kit.texts_said import has_much_of
 
@@ -193,8 +193,8 @@ def test_who_says_something_of_the_answer_and_then_ends_never_asked_for_the_resu
     said = Event(0.9, "output", "stdout", {"text": "Goal accepted"})
     part = Part(LATE, {"order": 20}, [goal, ANSWERED, said, Event(3.8, "subject", "exited")])
     evidence = Evidence([part], Reference("lab_1_4.client", {"action_client": {}}, [part]))
-    assert ended_before_its_answers(evidence) is None
-    assert result_not_requested(evidence) is not None
+    assert ENDED_TOO_EARLY.recognise(evidence) is None
+    assert RESULT_NOT_REQUESTED.recognise(evidence) is not None
 
 
 @pytest.mark.parametrize(("feedbacks", "again"), [(5, False), (6, True), (7, True), (8, False)])

@@ -6,7 +6,7 @@ import pytest
 
 from autograder.kit.crashes import traceback_of
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.goal_mistakes import crashed_by_refusal, goes_on_after_refusal, refusal_not_reported
+from autograder.kit.goal_mistakes import GOES_ON_AFTER_REFUSAL, REFUSAL_NOT_REPORTED, crashed_by_refusal
 from autograder.kit.goal_reports import REFUSED, refused_as_seen
 
 REFERENCE = Reference("exercise_1_3.cancel", {})
@@ -75,7 +75,7 @@ def test_who_calls_a_refused_goal_accepted_has_not_told_of_the_refusal(line: str
     refused = [say("Goal rejected :("), say(line), ASKED, Event(0.5, "subject", "returned")]
     both = evidence(refused, canceled=line)
     assert refused_as_seen(both).startswith(f"“{line}”") is claimed
-    assert (goes_on_after_refusal(both) is not None) is claimed
+    assert (GOES_ON_AFTER_REFUSAL.recognise(both) is not None) is claimed
     assert not refused_as_seen(evidence(refused)), "what is said of no accepted goal is no claim"
 
 
@@ -94,8 +94,8 @@ def test_an_exception_that_only_a_refusal_causes_is_told_with_it() -> None:
 
 def test_who_says_nothing_is_told_whether_it_still_waits() -> None:
     waits, ends = (
-        refusal_not_reported(evidence([])),
-        refusal_not_reported(evidence([Event(0.5, "subject", "returned")])),
+        REFUSAL_NOT_REPORTED.recognise(evidence([])),
+        REFUSAL_NOT_REPORTED.recognise(evidence([Event(0.5, "subject", "returned")])),
     )
     assert waits is not None
     assert "still waits" in waits.text

@@ -15,8 +15,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit import common_mistakes as common
-from autograder.kit import giving_up
-from autograder.kit import service_calls as calls_seen
+from autograder.kit import giving_up, service_mistakes
 from autograder.kit.crashes import OTHER_SLIPS
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.giving_up import GIVE_UP_LIMIT, drawn_patience
@@ -252,22 +251,22 @@ class Calls:
             common.message_type("client"),
             *OTHER_SLIPS,
             common.NOT_BEGUN,
-            common.usage_message(),
-            Mistake("waits_forever", calls_seen.waits_for_nobody, certain=True),
-            Mistake("waits_forever", calls_seen.waits_forever),
+            common.USAGE_MESSAGE,
+            service_mistakes.WAITS_FOR_NOBODY,
+            service_mistakes.WAITS_FOREVER,
             *(replace(hang, certain=True) for hang in HANGS),
-            Mistake("await_in_same_group", calls_seen.awaits_in_vain, certain=True),
-            Mistake("call_never_spun", calls_seen.call_never_spun, certain=True),
-            Mistake("field_typo", calls_seen.fields_never_filled, certain=True),
+            service_mistakes.AWAITS_IN_VAIN,
+            service_mistakes.CALL_NEVER_SPUN,
+            service_mistakes.FIELDS_NEVER_FILLED,
             Mistake("too_many_calls", self._too_many_calls, certain=True),
             OWN,
-            Mistake("zero_taken_for_failure", calls_seen.zero_taken_for_failure, certain=True),
-            Mistake("not_returned", calls_seen.not_returned, certain=True),
-            Mistake("gave_up_too_early", calls_seen.gave_up_too_early),
-            Mistake("result_read_too_early", calls_seen.answer_not_awaited),
+            service_mistakes.ZERO_TAKEN_FOR_FAILURE,
+            service_mistakes.NOT_RETURNED,
+            service_mistakes.GAVE_UP_TOO_EARLY,
+            service_mistakes.ANSWER_NOT_AWAITED,
             OWN_LATE,
-            Mistake("silent_end", calls_seen.silent_end, certain=True),
-            Mistake("patience_not_kept", calls_seen.patience_not_kept),
+            service_mistakes.SILENT_END,
+            service_mistakes.PATIENCE_NOT_KEPT,
             *common.OTHER_CRASHES,
             *common.NOTHING_THERE,
         )

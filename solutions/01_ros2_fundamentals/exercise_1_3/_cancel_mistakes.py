@@ -75,8 +75,7 @@ def never_spun(evidence: Evidence) -> Advice | None:
     return Advice(
         "Your client sent its goal, but it receives no answer: none of its callbacks is called any more.",
         "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future, timeout_sec=5.0), in one "
-        "place, and never "
-        "inside a callback.",
+        "place, and never inside a callback.",
     )
 
 
@@ -114,8 +113,7 @@ def cancel_missing(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         "Your client sent its goal and got its feedback, but it never asked to cancel.",
-        "Count in the feedback callback, and at the third message call goal_handle.cancel_goal_async(). "
-        "Keep the "
+        "Count in the feedback callback, and at the third message call goal_handle.cancel_goal_async(). Keep the "
         "goal_handle from the goal response.",
     )
 
@@ -138,11 +136,9 @@ def cancel_too_late(evidence: Evidence) -> Advice | None:
     if count is None or count <= LAST_FEEDBACK:
         return None
     return Advice(
-        f"Your client asked to cancel only after {count} feedback messages; the task asks for "
-        f"{FIRST_FEEDBACK} to "
+        f"Your client asked to cancel only after {count} feedback messages; the task asks for {FIRST_FEEDBACK} to "
         f"{LAST_FEEDBACK}.",
-        f"Cancel in the feedback callback itself, when the count reaches {FIRST_FEEDBACK}: a timer of a "
-        f"fixed length "
+        f"Cancel in the feedback callback itself, when the count reaches {FIRST_FEEDBACK}: a timer of a fixed length "
         "does not know how fast the server is.",
     )
 
@@ -181,14 +177,11 @@ def status_not_reported(evidence: Evidence) -> Advice | None:
         )
     if part.first("result_request") is None:
         return Advice(
-            "Your client asked to cancel, but it never asked for the result, so it cannot know how the goal "
-            "ended.",
-            "Call goal_handle.get_result_async() once the goal is accepted, and read result.status when it "
-            "is done.",
+            "Your client asked to cancel, but it never asked for the result, so it cannot know how the goal ended.",
+            "Call goal_handle.get_result_async() once the goal is accepted, and read result.status when it is done.",
         )
     return Advice(
-        "The goal ended with the status CANCELED (5), but your client did not say so after it got the "
-        "result.",
+        "The goal ended with the status CANCELED (5), but your client did not say so after it got the result.",
         "When the result is there, log its status: future.result().status, by name or by number.",
     )
 
@@ -217,15 +210,15 @@ MISTAKES = (
     Mistake("cancel_too_early", cancel_too_early),
     Mistake("cancel_too_late", cancel_too_late),
     Mistake("cancel_repeated", cancel_repeated, certain=True),
-    Mistake("result_repeated", goal_mistakes.result_repeated, certain=True),
-    Mistake("status_misreported", only_if_ended(status_misreported), certain=True),
-    Mistake("status_not_reported", only_if_ended(status_not_reported), certain=True),
+    goal_mistakes.RESULT_REPEATED,
+    only_if_ended(Mistake("status_misreported", status_misreported)),
+    only_if_ended(Mistake("status_not_reported", status_not_reported)),
     Mistake("status_misreported", status_misreported),
     Mistake("status_not_reported", status_not_reported),
-    Mistake("refused_goal_used", goal_mistakes.crashed_by_refusal),
-    Mistake("refused_goal_used", goal_mistakes.goes_on_after_refusal),
-    Mistake("result_of_rejected_goal", goal_mistakes.result_of_rejected_goal),
-    Mistake("refusal_not_reported", goal_mistakes.refusal_not_reported),
-    Mistake("never_ended", goal_mistakes.never_ended),
+    goal_mistakes.CRASHED_BY_REFUSAL,
+    goal_mistakes.GOES_ON_AFTER_REFUSAL,
+    goal_mistakes.RESULT_OF_REJECTED_GOAL,
+    goal_mistakes.REFUSAL_NOT_REPORTED,
+    goal_mistakes.STAYS_AFTER_REFUSAL,
 )
 """Most telling first, between those that any client of an action may show."""

@@ -260,7 +260,7 @@ question = Draft(
         *common.CRASHES,
         OWN,
         *OTHER_SLIPS,
-        common.usage_message(),
+        common.USAGE_MESSAGE,
         OWN_LATE,
         *common.OTHER_CRASHES,
         *common.NOTHING_THERE,
@@ -359,8 +359,7 @@ question.knows(
     lambda seen, _: gave_up_at_once(seen.part(LATE)) and not _crashed(seen.part(LATE)),
     "You looked only once. A new node knows almost nothing of the graph, and a service may start later "
     "than your function.",
-    "Look again and again, with a short pause, until the service is there or patience_sec seconds have "
-    "passed.",
+    "Look again and again, with a short pause, until the service is there or patience_sec seconds have passed.",
     certain=True,
 )
 

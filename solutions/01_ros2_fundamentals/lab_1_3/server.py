@@ -97,8 +97,7 @@ server.knows(
     "field_typo",
     lambda seen, _: bool(seen.answers) and not any(answer["sum"] for answer in seen.answers.values()),
     "Every answer is 0: the field sum of the response was never filled.",
-    "Set response.sum = request.a + request.b. A misspelt keyword in AddTwoInts.Response(...) is ignored "
-    "silently.",
+    "Set response.sum = request.a + request.b. A misspelt keyword in AddTwoInts.Response(...) is ignored silently.",
     certain=True,
 )
 

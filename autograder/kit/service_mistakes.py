@@ -1,0 +1,203 @@
+"""Known mistakes of clients that call a service and tell what it answered."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit import giving_up
+from autograder.kit.hangs import stacks
+from autograder.kit.model import Advice, Mistake, mistake
+from autograder.kit.service_calls import (
+    ABSENT,
+    Client,
+    answers,
+    ended_before_its_answer,
+    gives_up_in_time,
+    new_words,
+    pair,
+    reports,
+    requests,
+    returns_another,
+)
+from autograder.kit.texts_said import mentions
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Evidence, Part
+
+
+def _has_no_answer_taken(evidence: Evidence) -> bool:
+    return any(
+        part.ending is None
+        and part.of("response")
+        and not new_words(part)
+        and len(requests(part)) <= Client(evidence.reference).calls
+        for part in Client(evidence).served
+    )
+
+
+CALL_NEVER_SPUN = mistake(
+    "call_never_spun",
+    _has_no_answer_taken,
+    "The service answered, but your client never took the answer: nothing spins it while it waits. call() blocks for "
+    "ever then, and so does any wait inside a callback of the same callback group.",
+    "Outside of callbacks, use call_async and rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), or spin "
+    "the node in a background executor while you use call().",
+    certain=True,
+)
+
+
+def _spins_and_awaits(evidence: Evidence) -> bool:
+    stuck = [p for p in Client(evidence).served if p.ending is None and p.of("response") and stacks(p)]
+    return bool(stuck) and not new_words(stuck[0])
+
+
+AWAITS_IN_VAIN = mistake(
+    "await_in_same_group",
+    _spins_and_awaits,
+    "The service answered, and your node spins, but the code that awaits the answer is never resumed: it awaits inside "
+    "a callback of the same callback group that the answer needs.",
+    "Give the client a callback group of its own (ReentrantCallbackGroup or another MutuallyExclusive one), or go on "
+    "in future.add_done_callback(...).",
+    certain=True,
+)
+
+
+def _does_not_wait_for_answers(evidence: Evidence) -> bool:
+    served, calls = Client(evidence).served, Client(evidence.reference).calls
+    # Who has made all its calls where an answer came just as late waits for answers, and has not liked this one.
+    waits = any(len(requests(part)) >= calls for part in served if part.of("response"))
+    return any(
+        ended_before_its_answer(part) or (calls > 1 and not waits and _made_nothing_of_its_answer(part))
+        for part in served
+    )
+
+
+def _made_nothing_of_its_answer(part: Part) -> bool:
+    """True if the subject ended with its first answer, and neither called again nor said a number that came of it.
+
+    A process takes its time to end, so the answer may be given while one that has not waited for it is on its way out.
+    """
+    if part.ending is None or len(requests(part)) != 1 or len(part.of("response")) != 1:
+        return False
+    own = {str(abs(number)) for number in part.inputs.get("numbers", ())}
+    told = (number for line in new_words(part) for number in re2.findall(r"\d{3,}", line))
+    return answers(part)[0] != 0 and all(number in own for number in told)
+
+
+ANSWER_NOT_AWAITED = mistake(
+    "result_read_too_early",
+    _does_not_wait_for_answers,
+    "Your client called the service and did not wait for the answer, which may take a second.",
+    "Wait for it: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), and look at future.done() before "
+    "you read the result.",
+)
+
+
+def _dislikes_zero(evidence: Evidence) -> bool:
+    """True if all is well but where the service answered 0."""
+    served = Client(evidence).served
+    wrong = [part for part in served if part.ending and not reports(part)]
+    zero = all(answers(part)[-1:] == [0] and not ended_before_its_answer(part) for part in wrong)
+    return bool(wrong) and zero and any(map(reports, served))
+
+
+ZERO_TAKEN_FOR_FAILURE = mistake(
+    "zero_taken_for_failure",
+    _dislikes_zero,
+    "The service answered 0, and your client took that for no answer. 0 is a sum like any other.",
+    "`if result:` is False for 0, too. Ask `if future.done():` or `if future.result() is not None:`, which says "
+    "whether there is an answer, whatever it is.",
+    certain=True,
+)
+
+
+def _returns_another_each_time(evidence: Evidence) -> str | None:
+    served = [part for part in Client(evidence).served if part.of("response")]
+    wrong = bool(served) and all(returns_another(part) and _says_the_answer(part) for part in served)
+    return served[0].returned if wrong else None
+
+
+def _says_the_answer(part: Part) -> bool:
+    said = replace(part, events=[event for event in part.events if event is not part.ending])
+    return mentions(said.said(after=part.of("response")[-1]), answers(part)[-1])
+
+
+NOT_RETURNED = mistake(
+    "not_returned",
+    _returns_another_each_time,
+    "Your function says the sum, but what it returns is {}: code that calls it cannot go on with the sum.",
+    "End your function with `return` and the sum itself, a number: what is in the field sum of the answer.",
+    certain=True,
+)
+
+
+def _asks_for_nothing(evidence: Evidence) -> bool:
+    made = [pair(event) for part in Client(evidence).served for event in requests(part)]
+    return bool(made) and all(pair == [0, 0] for pair in made)
+
+
+FIELDS_NEVER_FILLED = mistake(
+    "field_typo",
+    _asks_for_nothing,
+    "Every call asks for 0 + 0: the fields of the request were never filled.",
+    "A request has the fields a and b. A misspelt keyword in AddTwoInts.Request(...) is ignored silently.",
+    certain=True,
+)
+
+
+def _waits_for_nobody(evidence: Evidence) -> bool:
+    part = evidence.part(ABSENT)
+    return bool(part.events) and part.ending is None and not giving_up.goes_on_waiting(part)
+
+
+WAITS_FOR_NOBODY = mistake(
+    "waits_forever",
+    _waits_for_nobody,
+    f"When the service is not there, your client is still waiting after {giving_up.GIVE_UP_LIMIT:g} s.",
+    "Give the wait a limit of a few seconds: `if not client.wait_for_service(timeout_sec=5.0):` say so and stop. A "
+    "while loop needs a count.",
+    certain=True,
+)
+WAITS_FOREVER = mistake(
+    "waits_forever",
+    lambda evidence: any(
+        part.endpoints("client") and part.ending is None and not requests(part)
+        for part in Client(evidence).served
+    ),
+    "The service was there, but your client never called it and never ended: it goes on waiting.",
+    "Wait with a limit, and call as soon as the service is there: "
+    "`if not client.wait_for_service(timeout_sec=5.0):` say so and stop.",
+)
+GAVE_UP_TOO_EARLY = mistake(
+    "gave_up_too_early",
+    lambda evidence: giving_up.gave_up(
+        Client(evidence).served, evidence.part(ABSENT), lambda part: bool(requests(part))
+    ),
+    "The service was there, or came a moment late, and your client had already given up (or called before it had met "
+    "the service).",
+    "Wait for the service with wait_for_service and a few seconds of patience before the first call.",
+)
+PATIENCE_NOT_KEPT = giving_up.patience_not_kept(ABSENT)
+
+
+def _silent_end(evidence: Evidence) -> Advice | None:
+    """Without a service it ends, and says nothing of that."""
+    finding = gives_up_in_time(evidence)
+    value = giving_up.returned_answer(evidence.part(ABSENT))
+    if finding.passed or not (value or finding.seen == giving_up.SILENT):
+        return None
+    if value:
+        return Advice(
+            f"When the service is not there, your function returns {value}: who calls it takes that for the sum.",
+            "Raise TimeoutError instead, with a few words on what was missing.",
+        )
+    return Advice(
+        "When the service is not there, your client ends and does not say so.",
+        "Log an error (or raise TimeoutError) before you return, so that its user knows why there is no sum.",
+    )
+
+
+SILENT_END = Mistake("silent_end", _silent_end, certain=True)
