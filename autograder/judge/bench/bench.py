@@ -6,17 +6,15 @@ import contextlib
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from autograder.judge.bench import clock, graph, type_hashes
-from autograder.judge.bench.action_client import RecordedActionClient
-from autograder.judge.bench.action_server import ScriptedActionServer
+from autograder.judge.bench import graph
+from autograder.judge.bench.actions import RecordedActionClient, ScriptedActionServer
 from autograder.judge.bench.announcements import Announcements, process_of
 from autograder.judge.bench.decoy_nodes import DecoyNodes
-from autograder.judge.bench.interfaces import service_fields
+from autograder.judge.bench.interfaces import expected_hashes, served_hashes, service_fields
 from autograder.judge.bench.presence import GRAPH_POLL, MATCH, Presence
 from autograder.judge.bench.recorder import Recorder, usable
-from autograder.judge.bench.service_client import RecordedCaller
-from autograder.judge.bench.service_server import Answer, RecordedServer
-from autograder.judge.bench.subject_time import SubjectTime
+from autograder.judge.bench.services import Answer, RecordedCaller, RecordedServer
+from autograder.judge.bench.subject_time import SubjectTime, answers
 from autograder.judge.bench.topics import LogReader, RecordedPublisher, RecordedSubscription
 from autograder.judge.bench.wire import JudgeFailed, Wire
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part, Reference
@@ -361,7 +359,7 @@ class TestBench:
             # A program that has destroyed its nodes is on its way out: how it ends says more than their silence.
             self.await_end(MATCH)
         for node in nodes:
-            if not self._subject.ended and not clock.answers(self.wire, self._recorder, node):
+            if not self._subject.ended and not answers(self.wire, self._recorder, node):
                 self._recorder.record("unanswered", node.full)
                 self.note_where_it_hangs()
 
@@ -395,11 +393,11 @@ class TestBench:
     def compare_type(self, service: str, like: str) -> None:
         """Write down whether a service's type has the fields of the type ``like``, by its hashes on the graph."""
         made = self._presence.survey()["service"].get(service, "")
-        expected = type_hashes.expected_hashes(like, made.partition("/")[0])
+        expected = expected_hashes(like, made.partition("/")[0])
         seen: dict[str, str] = {}
 
         def hashes_known() -> bool:
-            seen.update(type_hashes.served_hashes(self.wire.node, service))
+            seen.update(served_hashes(self.wire.node, service))
             return len(seen) == len(expected) or self._subject.ended
 
         self._recorder.wait(hashes_known, MATCH, poll=GRAPH_POLL)

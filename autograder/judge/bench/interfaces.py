@@ -1,13 +1,26 @@
-"""ROS interfaces by name, and messages as plain data."""
+"""ROS interfaces by name, messages as plain data, and type hashes.
+
+A type hash is what DDS discovery says of the fields of an interface, whatever its package is called (REP-2016).
+"""
 
 from __future__ import annotations
 
 import array
+import hashlib
 import importlib
+import json
+import os
 from collections.abc import Mapping
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import re2
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+_SIDES = {"request": "rq{service}Request", "response": "rr{service}Reply"}
+"""The DDS topics of a service (rmw_fastrtps), which carry the hash of one side each."""
 
 
 class UnknownInterface(LookupError):
@@ -69,3 +82,61 @@ def _element_type(message: Any, field: str) -> Any:
     """The class of the messages in a field, such as ``sequence<rcl_interfaces/Parameter>``."""
     package, name = re2.findall(r"(\w+)/(\w+)", message.get_fields_and_field_types()[field])[0]
     return interface(f"{package}/msg/{name}")
+
+
+# --- type hashes ---------------------------------------------------------------------------------------------------
+
+
+def served_hashes(judge: Node, service: str) -> dict[str, str]:
+    """The type hashes of a service's request and response, as its server announces them."""
+    readers = judge.get_subscriptions_info_by_topic(_SIDES["request"].format(service=service), no_mangle=True)
+    writers = judge.get_publishers_info_by_topic(_SIDES["response"].format(service=service), no_mangle=True)
+    found = {"request": readers, "response": writers}
+    return {
+        side: str(info.topic_type_hash)
+        for side, infos in found.items()
+        for info in infos
+        if info.node_name != judge.get_name()
+    }
+
+
+def expected_hashes(type_name: str, package: str) -> dict[str, str]:
+    """The hashes that a service type would have in another package.
+
+    Args:
+        type_name: An installed service type, such as ``"my_robot_interfaces/srv/AddTwoInts"``.
+        package: The package it is thought to be in.
+
+    Raises:
+        LookupError: The type is not installed.
+    """
+    home, kind, name = type_name.split("/")
+    parts = _description(home, kind, name)["type_description_msg"]["referenced_type_descriptions"]
+    hashes = {}
+    for side, suffix in (("request", "_Request"), ("response", "_Response")):
+        described = next(part for part in parts if part["type_name"] == f"{type_name}{suffix}")
+        if any(field["type"]["nested_type_name"] for field in described["fields"]):
+            raise LookupError(
+                f"{type_name} holds other interfaces, whose descriptions would belong into the hash"
+            )
+        moved = {**described, "type_name": f"{package}/{kind}/{name}{suffix}"}
+        hashes[side] = type_hash({"type_description": moved, "referenced_type_descriptions": []})
+    return hashes
+
+
+def type_hash(description: dict[str, Any]) -> str:
+    """The RIHS01 hash of a type description: its JSON without default values, digested with SHA-256."""
+    described = description["type_description"]
+    fields = [{key: value for key, value in f.items() if key != "default_value"} for f in described["fields"]]
+    bare = {**description, "type_description": {**described, "fields": fields}}
+    return f"RIHS01_{hashlib.sha256(json.dumps(bare, separators=(', ', ': ')).encode()).hexdigest()}"
+
+
+def _description(package: str, kind: str, name: str) -> Any:
+    for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
+        file = Path(prefix, "share", package, kind, f"{name}.json")
+        if file.is_file():
+            return json.loads(file.read_text(encoding="utf-8"))
+    raise LookupError(
+        f"no description of {package}/{kind}/{name} in AMENT_PREFIX_PATH: is the package built?"
+    )

@@ -42,37 +42,6 @@ LEFTOVERS = 1.0
 """Seconds in which what a command has left behind must have ended."""
 
 
-class Process(Protocol):
-    """The part of ``subprocess.Popen`` that is used here."""
-
-    @property
-    def pid(self) -> int:
-        """The process and, as it leads a group, its group."""
-        ...
-
-    @property
-    def stdout(self) -> IO[bytes] | None:
-        """Its standard output."""
-        ...
-
-    @property
-    def stderr(self) -> IO[bytes] | None:
-        """Its standard error."""
-        ...
-
-    def poll(self) -> int | None:
-        """Its exit code, or None while it runs."""
-        ...
-
-    def wait(self) -> int:
-        """Wait for its end; its exit code."""
-        ...
-
-    def send_signal(self, sig: int, /) -> None:
-        """Send a signal."""
-        ...
-
-
 class Box(Protocol):
     """A place where commands are shut off from the user's files and network; this process is on the same network."""
 
@@ -82,15 +51,12 @@ class Box(Protocol):
         Raises:
             OSError: That is not possible here.
         """
-        ...
 
     def start_of(self, command: Sequence[str], environment: Mapping[str, str]) -> tuple[list[str], list[int]]:
         """The command to start in place of another, and the descriptors to hand down, which the caller closes."""
-        ...
 
     def limit(self) -> None:
         """Take the limits of a box; called in the child."""
-        ...
 
 
 class CommandSubject(InOwnProcesses):
@@ -101,7 +67,7 @@ class CommandSubject(InOwnProcesses):
         self._box = box
         self._cwd = cwd
         self._domain_id = 0
-        self._process: Process | None = None
+        self._process: subprocess.Popen[bytes] | None = None
         self._done = threading.Event()
         self._dying = threading.Event()
         self._last_words: list[str] = []
@@ -130,7 +96,7 @@ class CommandSubject(InOwnProcesses):
         follow = (recorder.in_this_part(), recorder.end_of_this_part(), self._process, self._done)
         threading.Thread(target=self._follow, args=follow, daemon=True).start()
 
-    def _spawn(self, command: Sequence[str], environment: Mapping[str, str]) -> Process:
+    def _spawn(self, command: Sequence[str], environment: Mapping[str, str]) -> subprocess.Popen[bytes]:
         descriptors: list[int] = []
         if self._box is not None:
             command, descriptors = self._box.start_of(command, environment)
@@ -200,16 +166,13 @@ class CommandSubject(InOwnProcesses):
             signal_group(self._process.pid, signal.SIGINT)
             self._done.wait(POLITE)
         signal_group(self._process.pid, signal.SIGKILL)
-        end_descendants(LEFTOVERS, spare=self._helpers)
+        end_descendants(LEFTOVERS)
         self._process.wait()
         self._process = None
 
-    @property
-    def _helpers(self) -> Sequence[int]:
-        """Children of this process that are no part of the subject."""
-        return ()
-
-    def _follow(self, record: Record, end: Record, process: Process, done: threading.Event) -> None:
+    def _follow(
+        self, record: Record, end: Record, process: subprocess.Popen[bytes], done: threading.Event
+    ) -> None:
         budget = _Budget(MAX_OUTPUT)
         readers = [
             threading.Thread(target=self._read, args=(record, stream, name, budget), daemon=True)

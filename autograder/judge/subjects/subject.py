@@ -23,11 +23,9 @@ class Subject(Protocol):
 
     def begin(self, domain_id: int) -> None:
         """Called once, before the first run, with the domain of this check."""
-        ...
 
     def renew(self) -> None:
         """Begin the next run with a fresh participant: an old one would meet the judge's new one only slowly."""
-        ...
 
     def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
         """Wait until the participant of the next run sees what the judge serves, and nothing of what it has taken away.
@@ -38,44 +36,35 @@ class Subject(Protocol):
         Returns:
             False where that did not come within a generous limit: nothing can be said about the subject then.
         """
-        ...
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
         """Start a run."""
-        ...
 
     def release(self) -> None:
         """Let a held run spin."""
-        ...
 
     def interrupt(self) -> None:
         """Ctrl-C, as a terminal sends it. What ends by that has ended by itself."""
-        ...
 
     @property
     def ended(self) -> bool:
         """True if this run has ended by itself."""
-        ...
 
     @property
     def marker(self) -> str | None:
         """A topic that appears on the graph after everything the subject made; None where nobody can know."""
-        ...
 
     def processes(self) -> frozenset[int]:
         """The ids of the processes that it has started and that live; none where nobody can tell."""
-        ...
 
     def stack(self) -> str:
         """The stack of each of its threads, innermost call first, as faulthandler says it; empty where unknown.
 
         This may end the run, which does not count as ending by itself.
         """
-        ...
 
     def stop(self) -> None:
         """End the run, whatever it takes. Afterwards nothing of it lives."""
-        ...
 
 
 class InOwnProcesses:

@@ -1,4 +1,4 @@
-"""The clock of a subject's node: when the judge goes on to the next step, the timers of this one have been called."""
+"""The time of a subject: when the judge goes on to the next step, the timers of this one have been called."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from rclpy.executors import SingleThreadedExecutor
 
-from autograder.judge.bench import clock as subject_clocks
-from autograder.judge.bench.clock import BorrowedTime, NodeClock
+from autograder.judge.bench import subject_time
 from autograder.judge.bench.graph import NodeName
 from autograder.judge.bench.recorder import Recorder
+from autograder.judge.bench.subject_time import NodeClock
 from autograder.judge.bench.wire import Wire
 from autograder.judge.serving import domain
 
@@ -73,7 +73,7 @@ class QuestionFirst(SingleThreadedExecutor):
 def test_the_timers_of_a_step_are_called_before_the_next_one_where_a_question_overtakes_the_time(
     subject_node: SubjectNode, spun: Spun, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(subject_clocks, "ANSWER_LIMIT", 30.0)
+    monkeypatch.setattr(subject_time, "ANSWER_LIMIT", 30.0)
     fired: list[float] = []
     with domain.lease() as domain_id, Wire(domain_id) as wire, subject_node(domain_id) as node:
         executor = QuestionFirst(context=node.context)
@@ -101,9 +101,9 @@ def test_timers_fire_as_they_would_later_on_and_the_clock_is_given_back(
         node.create_timer(20.0, lambda: fired.append(node.get_clock().now().nanoseconds / 1e9))
         with spun(SingleThreadedExecutor(context=node.context), node):
             began = time.time()
-            with closing(BorrowedTime(wire, Recorder(), NodeName("subject", "/"))) as borrowed:
+            with closing(NodeClock(wire, Recorder(), NodeName("subject", "/"))) as borrowed:
                 # A machine that is busy for half a second ends it before its time; the judge then waits instead.
-                assert any(borrowed.let_pass(50.0, lambda: False) for _ in range(20))
+                assert any(borrowed.lend(50.0, lambda: False) for _ in range(20))
             assert len(fired) >= 2
             assert all(moment - began >= 19.0 for moment in fired)
             assert not node.get_parameter("use_sim_time").value
@@ -115,6 +115,6 @@ def test_who_is_not_spun_does_not_go_along(subject_node: SubjectNode) -> None:
         domain.lease() as domain_id,
         Wire(domain_id) as wire,
         subject_node(domain_id),
-        closing(BorrowedTime(wire, Recorder(), NodeName("subject", "/"))) as borrowed,
+        closing(NodeClock(wire, Recorder(), NodeName("subject", "/"))) as borrowed,
     ):
-        assert not borrowed.let_pass(5.0, lambda: False)
+        assert not borrowed.lend(5.0, lambda: False)

@@ -1,22 +1,26 @@
-"""An action server that does only what the scenario tells it to, and writes every request down.
+"""Actions: a server that does only what the scenario tells it to, and a client that sends goals; all is written down.
 
-It is made of the three services and two topics that an action consists of (design.ros2.org, "Actions"), not of rclpy's
-ActionServer: that one does not call back for a second cancel of one goal and decides by itself when to answer, and here
-each cancel request counts.
+Both are made of the three services and two topics that an action consists of (design.ros2.org, "Actions"), not of
+rclpy's ActionServer and ActionClient. The server would not call back for a second cancel of one goal and decides by
+itself when to answer, and here each cancel request counts. The client sees each answer as it was sent, a refused cancel
+request among them.
 """
 
 from __future__ import annotations
 
 import threading
+import time
 import uuid
 from typing import TYPE_CHECKING, Any
 
 from action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
 from action_msgs.srv import CancelGoal
 from rclpy.qos import QoSProfile, qos_profile_action_status_default
+from unique_identifier_msgs.msg import UUID
 
 from autograder.judge.bench.answering import LateAnswers, once_it_is_set, patiently
 from autograder.judge.bench.interfaces import filled, interface, to_data
+from autograder.judge.bench.services import Client
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -225,3 +229,92 @@ class ScriptedActionServer:
 def goal_text(goal_id: Any) -> str:
     """A goal's id (``unique_identifier_msgs/msg/UUID``) as text."""
     return str(uuid.UUID(bytes=bytes(bytearray(int(b) & 0xFF for b in goal_id.uuid))))
+
+
+class RecordedActionClient(Client):
+    """Implements :class:`autograder.kit.counterparts.ActionCaller`."""
+
+    def __init__(
+        self,
+        wire: Wire,
+        recorder: Recorder,
+        action: str,
+        type_name: str,
+        *,
+        server_is_gone: Callable[[], bool],
+    ) -> None:
+        super().__init__(wire, recorder, action, f"{action}/_action/send_goal", server_is_gone)
+        self._goals: list[UUID] = []
+        node, self._parts = wire.node, interface(type_name).Impl
+        # Made first: endpoints are announced in order, so a server that can answer the services knows this one, too,
+        # and no first feedback is lost.
+        self._feedback = node.create_subscription(
+            self._parts.FeedbackMessage,
+            f"{action}/_action/feedback",
+            self._hear,  # type: ignore[arg-type]  # rclpy gives the message info to whoever takes two arguments
+            QoSProfile(depth=100),
+        )
+        self._send = node.create_client(self._parts.SendGoalService, f"{action}/_action/send_goal")
+        self._cancel = node.create_client(CancelGoal, f"{action}/_action/cancel_goal")
+        self._result = node.create_client(self._parts.GetResultService, f"{action}/_action/get_result")
+
+    def send_goal(self, **fields: Any) -> int:
+        """Send a goal; its number."""
+        number = len(self._goals)
+        self._goals.append(UUID(uuid=list(uuid.uuid4().bytes)))
+        request = self._parts.SendGoalService.Request(goal_id=self._goals[number])
+        filled(request.goal, fields)
+        self._recorder.record("goal_sent", self._name, goal=number, fields=dict(fields))
+        future = self._send.call_async(request)
+        future.add_done_callback(lambda done: self._take_answer(number, done.result()))
+        return number
+
+    def cancel(self, goal: int) -> None:
+        """Ask to cancel a goal."""
+        self._recorder.record("cancel_sent", self._name, goal=goal)
+        request = CancelGoal.Request(goal_info=GoalInfo(goal_id=self._goals[goal]))
+        future = self._cancel.call_async(request)
+        future.add_done_callback(lambda done: self._take_cancel_answer(goal, done.result()))
+
+    def close(self) -> None:
+        """Take the client away."""
+        for client in (self._send, self._cancel, self._result):
+            self._wire.node.destroy_client(client)
+        self._wire.node.destroy_subscription(self._feedback)
+
+    def _ready(self) -> bool:
+        clients = (self._send, self._cancel, self._result)
+        talks = self._wire.node.count_publishers(f"{self._name}/_action/feedback") > 0
+        return talks and all(client.service_is_ready() for client in clients)
+
+    def _take_answer(self, number: int, response: Any) -> None:
+        self._note("goal_answer", number, accepted=bool(response.accepted))
+        if response.accepted:
+            request = self._parts.GetResultService.Request(goal_id=self._goals[number])
+            future = self._result.call_async(request)
+            future.add_done_callback(lambda done: self._take_result(number, done.result()))
+
+    def _take_result(self, number: int, response: Any) -> None:
+        self._note_servers()
+        fields = to_data(response.result)
+        self._note("result_heard", number, status=int(response.status), fields=fields)
+
+    def _take_cancel_answer(self, number: int, response: Any) -> None:
+        named = {goal_text(info.goal_id) for info in response.goals_canceling}
+        accepted = goal_text(self._goals[number]) in named
+        code = int(response.return_code)
+        self._note("cancel_answer", number, accepted=accepted, return_code=code)
+
+    def _note(self, kind: str, goal: int, **data: Any) -> None:
+        """Write down what the server answered; what has a later time of sending was surely sent after it."""
+        self._recorder.record(kind, self._name, goal=goal, arrived=time.time(), **data)
+
+    def _hear(self, message: Any, info: Any) -> None:
+        known = [goal_text(goal) for goal in self._goals]
+        heard = goal_text(message.goal_id)
+        number = known.index(heard) if heard in known else -1
+        # When it was sent is not blurred by how busy this process is (rmw_message_info_t).
+        sent = info["source_timestamp"] / 1e9
+        self._recorder.record(
+            "feedback_heard", self._name, goal=number, fields=to_data(message.feedback), sent=sent
+        )

@@ -1,0 +1,179 @@
+"""Services: the judge serves as the scenario says, and calls what the subject serves; both halves are written down."""
+
+from __future__ import annotations
+
+import threading
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from rclpy.qos import qos_profile_parameters
+
+from autograder.judge.bench.answering import once_it_is_set, patiently
+from autograder.judge.bench.interfaces import filled, interface, to_data
+from autograder.judge.bench.presence import GRAPH_POLL
+
+if TYPE_CHECKING:
+    from autograder.judge.bench.recorder import Recorder
+    from autograder.judge.bench.wire import Wire
+
+Answer = Callable[[Mapping[str, Any]], Mapping[str, Any]]
+"""From the request's fields to the response's."""
+
+
+class RecordedServer:
+    """Serves until it is closed; one of its answers may be held back until it is released.
+
+    Attributes:
+        services: The full names of what it serves.
+    """
+
+    def __init__(
+        self, wire: Wire, recorder: Recorder, service: str, type_name: str, answer: Answer, *, hold: int = 0
+    ) -> None:
+        """Serve.
+
+        Args:
+            wire: The judge's participant.
+            recorder: Takes down requests and responses.
+            service: The full name.
+            type_name: Such as ``"std_srvs/srv/Empty"``.
+            answer: Gives the response to a request.
+            hold: Which request's answer is held back, from 1 on; 0 for none.
+        """
+        self._wire = wire
+        self._recorder = recorder
+        self._name = service
+        self.services = (service,)
+        self._answer = answer
+        self._hold, self._count = hold, 0
+        self._held: list[tuple[Any, Any]] = []
+        self._holding = threading.Lock()
+        made = threading.Event()
+        self._service = wire.node.create_service(
+            interface(type_name), service, once_it_is_set(made, self._serve)
+        )
+        self._send = patiently(self._service)
+        self._service.send_response = self._answer_or_hold  # type: ignore[method-assign]
+        made.set()
+
+    def _serve(self, request: Any, response: Any) -> Any:
+        fields = to_data(request)
+        self._recorder.record("request", self._name, fields=fields)
+        return filled(response, dict(self._answer(fields)))
+
+    def _answer_or_hold(self, response: Any, header: Any) -> None:
+        with self._holding:
+            self._count += 1
+            if self._count == self._hold:
+                self._held.append((response, header))
+                return
+        self._answer_now(response, header)
+
+    def _answer_now(self, response: Any, header: Any) -> None:
+        self._recorder.record("response", self._name, fields=to_data(response))
+        self._send(response, header)
+
+    def release(self) -> None:
+        """Give the answer that was held back; the next one is not held any more."""
+        with self._holding:
+            self._hold = 0
+            held, self._held = self._held, []
+        for response, header in held:
+            self._answer_now(response, header)
+
+    def close(self) -> None:
+        """Take the service away."""
+        self._wire.node.destroy_service(self._service)
+
+
+ROOM_FOR_ALL = qos_profile_parameters
+"""The profile of services with a queue of 1,000 (rclpy, ``qos.py``) instead of 10. Where two servers share a name, more
+than ten answers come at once, and those that find no room would be lost by chance."""
+
+
+class Client(ABC):
+    """What a client of a service and one of an action have in common: a server to wait for, and to count.
+
+    Args:
+        wire: The judge's participant.
+        recorder: Takes down what is sent and what comes back.
+        name: The full name of the service or action.
+        service: The name of the service whose servers are counted.
+        server_is_gone: Whether nobody is to be waited for any more.
+    """
+
+    def __init__(
+        self, wire: Wire, recorder: Recorder, name: str, service: str, server_is_gone: Callable[[], bool]
+    ) -> None:
+        self._wire = wire
+        self._recorder = recorder
+        self._name = name
+        self._service = service
+        self._server_is_gone = server_is_gone
+
+    def await_server(self, within: float) -> bool:
+        """Wait until a server is matched, and write down how many there are."""
+        self._recorder.wait(lambda: self._ready() or self._server_is_gone(), within, poll=GRAPH_POLL)
+        self._note_servers()
+        return self._ready()
+
+    @abstractmethod
+    def _ready(self) -> bool:
+        """True if a server is matched."""
+
+    def _note_servers(self) -> None:
+        count = self._wire.node.count_services(self._service)
+        self._recorder.record("servers", self._name, count=count)
+
+
+class RecordedCaller(Client):
+    """Implements :class:`autograder.kit.counterparts.Caller`."""
+
+    def __init__(
+        self,
+        wire: Wire,
+        recorder: Recorder,
+        service: str,
+        type_name: str,
+        *,
+        server_is_gone: Callable[[], bool],
+    ) -> None:
+        super().__init__(wire, recorder, service, service, server_is_gone)
+        self._type = interface(type_name)
+        self._calls = 0
+        self._client = wire.node.create_client(self._type, service, qos_profile=ROOM_FOR_ALL)
+
+    def _ready(self) -> bool:
+        return bool(self._client.service_is_ready())
+
+    def ask(self, *requests: Mapping[str, Any]) -> None:
+        """Send requests, one right after the other."""
+        numbered = list(enumerate(requests, self._calls))
+        self._calls += len(numbered)
+        # All are written down before the first is sent, so that a recording does not depend on who is faster.
+        for number, fields in numbered:
+            self._recorder.record("asked", self._name, call=number, fields=dict(fields))
+        for number, fields in numbered:
+            future = self._client.call_async(filled(self._type.Request(), fields))
+            future.add_done_callback(lambda done, number=number: self._take(number, done.result()))
+
+    def await_answers(self, quiet: float) -> bool:
+        """Wait until every call is answered, as long as anything happens."""
+        self._recorder.wait(
+            lambda: self._all_answered() or self._server_is_gone(), self._calls * quiet, quiet=quiet
+        )
+        if not self._all_answered():
+            return False
+        self._note_servers()
+        return True
+
+    def close(self) -> None:
+        """Take the client away."""
+        self._wire.node.destroy_client(self._client)
+
+    def _all_answered(self) -> bool:
+        return len(self._recorder.part().of("answered", self._name)) >= self._calls
+
+    def _take(self, number: int, response: Any) -> None:
+        self._recorder.record("answered", self._name, call=number, fields=to_data(response))
