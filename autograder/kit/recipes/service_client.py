@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from autograder.kit import common_mistakes as common
 from autograder.kit import giving_up, service_mistakes
 from autograder.kit.crashes import OTHER_SLIPS
-from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.draft import OWN, OWN_LATE, Judge
 from autograder.kit.giving_up import GIVE_UP_LIMIT, drawn_patience
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import again_while, meets_late, meets_present, was_patient_with_an_answer
@@ -27,9 +27,11 @@ from autograder.kit.service_calls import (
     HANGS_AFTER,
     LATE,
     Client,
+    cut_short,
     has_reported,
     how_it_went,
     new_words,
+    pair,
     reports,
     requests,
 )
@@ -196,6 +198,7 @@ class Calls:
         runs: Draws the runs with a service: the late one, the surprising one, the one with large numbers.
         kinds: Each draws numbers of a kind that the runs have; those of the run without a service are of one of them.
         too_many: What one is told who calls ``{count}`` times, and what to do then.
+        right: The numbers of each right call, from a run with as many calls as there should be.
     """
 
     roles = ("client",)
@@ -207,8 +210,10 @@ class Calls:
         kinds: Sequence[Callable[[Random], Sequence[int]]],
         *,
         too_many: tuple[str, str],
+        right: Callable[[Part], Sequence[Sequence[int]]] = lambda part: [part.inputs["numbers"]],
     ) -> None:
         self._calls, self._runs, self._kinds, self._many = calls, runs, kinds, too_many
+        self._right = right
 
     def scenario(self, bench: Bench) -> None:
         """Four runs: a late service, a surprising one, large numbers, and none at all."""
@@ -224,15 +229,44 @@ class Calls:
         """The reference solution, as it was recorded."""
         return Client(evidence.reference)
 
-    def waits(self, seen: Client, *, called: bool) -> Finding:
-        """With a service that comes late it does its work all the same.
+    def is_right(self, part: Part) -> bool:
+        """True if a run has as many calls as it should have, each with the right numbers."""
+        made = requests(part)
+        return len(made) == self._calls and list(map(pair, made)) == list(map(sorted, self._right(part)))
+
+    def right_calls(self, wanted: str, *, given: str = " and ", asked: str = ", ") -> Judge[Client]:
+        """A criterion: each run has the right calls.
 
         Args:
-            seen: The client.
-            called: Whether it made its calls in that run.
+            wanted: What is expected, in words.
+            given: What stands between the numbers that a run was given.
+            asked: What stands between two calls.
         """
-        done = called and (seen.late.ending is not None or reports(seen.late))
-        return Finding(done, "waits, then calls", "it did" if done else how_it_went(seen.late))
+
+        def judge(seen: Client, _: Client) -> Finding:
+            wrong = next((part for part in seen.served if not self.is_right(part)), None)
+            if wrong is None:
+                return Finding(True, wanted, wanted)
+            if not wrong.events and (hung := cut_short(seen)):
+                return Finding(False, wanted, hung)
+            made = [f"{e.data['fields']['a']} + {e.data['fields']['b']}" for e in requests(wrong)[:3]]
+            numbers = given.join(map(str, wrong.inputs.get("numbers", ())))
+            return Finding(
+                False, wanted, (f"for {numbers}: " if numbers else "") + (asked.join(made) or "no call")
+            )
+
+        return judge
+
+    def waits(self, evidence: Evidence) -> Finding:
+        """With a service that comes late it calls all the same; how often and with what is another criterion."""
+        late = self.seen(evidence).late
+        done = bool(requests(late)) and (late.ending is not None or reports(late))
+        return Finding(done, "waits, then calls", "it did" if done else how_it_went(late))
+
+    def unreported(self, seen: Client) -> Part | None:
+        """A run with the right calls whose last answer is not said."""
+        answered = (part for part in seen.served if part.of("response"))
+        return next((part for part in answered if self.is_right(part) and not reports(part)), None)
 
     def _too_many_calls(self, evidence: Evidence) -> Advice | None:
         """More calls than the reference solution makes."""

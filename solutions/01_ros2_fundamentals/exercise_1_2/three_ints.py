@@ -63,6 +63,12 @@ def extreme(random: Random) -> tuple[int, int, int]:
     )
 
 
+def chained(part: Part) -> tuple[tuple[int, int], ...]:
+    """The first call adds the first two numbers, the second its answer and the third number."""
+    a, b, c = part.inputs["numbers"]
+    return (a, b), (answers(part)[0], c)
+
+
 recipe = Calls(
     2,
     runs,
@@ -72,6 +78,7 @@ recipe = Calls(
         "Your client called the service {count} times; two calls are enough.",
         "Call once with a and b, once with the first answer and c, and no more.",
     ),
+    right=chained,
 )
 adder = Draft(
     "exercise_1_2.three_ints",
@@ -89,39 +96,11 @@ def calls(seen: Client, expected: Client) -> Finding:
     return Finding(seen.called(expected.calls), f"{expected.calls} calls in each run", found)
 
 
-@adder.criterion("chain", 3, "Builds the second call on the first answer")
-def chain(seen: Client, expected: Client) -> Finding:
-    """The first call adds the first two numbers, the second its answer and the third number."""
-    wrong = next((part for part in seen.served if not is_chained(part, expected)), None)
-    wanted = "first a + b, then that answer + c"
-    if wrong is None:
-        return Finding(True, wanted, wanted)
-    if not wrong.events and (hung := service_calls.cut_short(seen)):
-        return Finding(False, wanted, hung)
-    made = [f"{e.data['fields']['a']} + {e.data['fields']['b']}" for e in requests(wrong)[:3]]
-    numbers = wrong.inputs.get("numbers")
-    found = (f"for {', '.join(map(str, numbers))}: " if numbers else "") + (", then ".join(made) or "no call")
-    return Finding(False, wanted, found)
-
-
-def is_chained(part: Part, expected: Client) -> bool:
-    """True if a run made the reference's calls."""
-    made = requests(part)
-    if len(made) != expected.calls:
-        return False
-    a, b, c = part.inputs["numbers"]
-    return pair(made[0]) == sorted((a, b)) and pair(made[1]) == sorted((answers(part)[0], c))
-
-
+chain = adder.criterion("chain", 3, "Builds the second call on the first answer")(
+    recipe.right_calls("first a + b, then that answer + c", given=", ", asked=", then ")
+)
 adder.asks("sum", 3, "Reports the final sum", service_calls.reports_the_sum)
-
-
-@adder.criterion("late", 1, "Waits for a service that comes late")
-def late(seen: Client, _: Client) -> Finding:
-    """With a service that comes late it calls all the same; how often and with which numbers is asked elsewhere."""
-    return recipe.waits(seen, called=seen.calls > 0)
-
-
+adder.asks("late", 1, "Waits for a service that comes late", recipe.waits)
 adder.asks("limit", 1, "Ends clearly when there is no service", service_calls.gives_up_in_time)
 
 

@@ -11,7 +11,7 @@ import re2
 
 from autograder.kit import service_calls
 from autograder.kit.draft import Draft
-from autograder.kit.model import Advice, Finding
+from autograder.kit.model import Advice
 from autograder.kit.recipes.service_client import Calls, Run, hidden
 from autograder.kit.service_calls import (
     BIASED,
@@ -19,16 +19,12 @@ from autograder.kit.service_calls import (
     LATE,
     Client,
     answers,
-    pair,
-    reports,
     requests,
 )
 from autograder.kit.texts_said import mentions
 
 if TYPE_CHECKING:
     from random import Random
-
-    from autograder.kit.evidence import Part
 
 
 def runs(random: Random) -> tuple[Run, ...]:
@@ -76,35 +72,11 @@ client = Draft(
 )
 
 
-@client.criterion("call", 4, "Calls once, with the two numbers")
-def call(seen: Client, expected: Client) -> Finding:
-    """In each run it calls once, with the two numbers."""
-    wrong = next((part for part in seen.served if not is_right(part, expected)), None)
-    wanted = "one call with the two numbers, in each run"
-    if wrong is None:
-        return Finding(True, wanted, wanted)
-    if not wrong.events and (hung := service_calls.cut_short(seen)):
-        return Finding(False, wanted, hung)
-    made = [f"{e.data['fields']['a']} + {e.data['fields']['b']}" for e in requests(wrong)[:3]]
-    numbers = " and ".join(map(str, wrong.inputs.get("numbers", ())))
-    return Finding(False, wanted, (f"for {numbers}: " if numbers else "") + (", ".join(made) or "no call"))
-
-
-def is_right(part: Part, expected: Client) -> bool:
-    """True if a run made as many calls as the reference solution, with its numbers."""
-    made = requests(part)
-    return len(made) == expected.calls and pair(made[0]) == sorted(part.inputs["numbers"])
-
-
+call = client.criterion("call", 4, "Calls once, with the two numbers")(
+    recipe.right_calls("one call with the two numbers, in each run")
+)
 client.asks("sum", 4, "Reports the sum that the service answered", service_calls.reports_the_sum)
-
-
-@client.criterion("late", 1, "Waits for a service that comes late")
-def late(seen: Client, _: Client) -> Finding:
-    """With a service that comes late it makes its call all the same; how often and with what is asked elsewhere."""
-    return recipe.waits(seen, called=seen.calls > 0)
-
-
+client.asks("late", 1, "Waits for a service that comes late", recipe.waits)
 client.asks("limit", 1, "Ends clearly when there is no service", service_calls.gives_up_in_time)
 
 
@@ -134,22 +106,12 @@ def no_call(seen: Client, _: Client) -> bool:
 
 
 @client.mistake("wrong_sum_reported", late=True, certain=Client.ended_each_time)
-def wrong_sum_reported(seen: Client, expected: Client) -> Advice | None:
+def wrong_sum_reported(seen: Client, _: Client) -> Advice | None:
     """The call is right, and another number is said."""
-    part = unreported(seen, expected)
+    part = recipe.unreported(seen)
     lines = part.said(after=part.of("response")[-1]) if part else []
-    told = (
-        next(
-            (
-                line
-                for line in reversed(lines)
-                if re2.search(r"\d", line) and not mentions([line], answers(part)[-1])
-            ),
-            None,
-        )
-        if part
-        else None
-    )
+    others = [line for line in lines if part and not mentions([line], answers(part)[-1])]
+    told = next((line for line in reversed(others) if re2.search(r"\d", line)), None)
     if part is None or told is None:
         return None
     return Advice(
@@ -165,16 +127,10 @@ def wrong_sum_reported(seen: Client, expected: Client) -> Advice | None:
     says="The call is right, but the sum is never said.",
     next_step="Log or print the sum of the answer (in the notebook, return it too): future.result().sum.",
 )
-def sum_not_reported(seen: Client, expected: Client) -> bool | Advice:
+def sum_not_reported(seen: Client, _: Client) -> bool | Advice:
     """The call is right, and the answer is never said."""
-    part = unreported(seen, expected)
+    part = recipe.unreported(seen)
     return part is not None and (service_calls.braces_left(part) or True)
-
-
-def unreported(seen: Client, expected: Client) -> Part | None:
-    """A run with a right call whose answer is not said."""
-    answered = (part for part in seen.served if part.of("response"))
-    return next((part for part in answered if is_right(part, expected) and not reports(part)), None)
 
 
 EXERCISE = client.exercise(

@@ -6,14 +6,11 @@ from typing import TYPE_CHECKING
 
 from autograder.kit import service_calls
 from autograder.kit.draft import Draft
-from autograder.kit.model import Finding
 from autograder.kit.recipes.service_client import Calls, Run, hidden
-from autograder.kit.service_calls import BIASED, EXTREME, LATE, Client, pair, reports, requests
+from autograder.kit.service_calls import BIASED, EXTREME, LATE, Client
 
 if TYPE_CHECKING:
     from random import Random
-
-    from autograder.kit.evidence import Part
 
 
 def runs(random: Random) -> tuple[Run, ...]:
@@ -33,37 +30,20 @@ def far(random: Random) -> tuple[int, int]:
     return 2**63 - 1 - random.randint(5000, 9999), random.randint(1, 4999)
 
 
+recipe = Calls(
+    1, runs, (distances, far), too_many=("Your client called {count} times for one sum.", "Call once.")
+)
 odometer = Draft(
     "service_client.odometer",
     "A service client · The odometer",
     "Have the service add_distances add two distances, and report its answer.",
-    Calls(
-        1, runs, (distances, far), too_many=("Your client called {count} times for one sum.", "Call once.")
-    ),
+    recipe,
 )
 
 
-@odometer.criterion("call", 4, "Calls once, with the two distances")
-def call(seen: Client, expected: Client) -> Finding:
-    """In each run it calls once, with the two numbers."""
-    wrong = next((part for part in seen.served if not is_right(part, expected)), None)
-    shown = (
-        "once with both, in each run" if wrong is None else f"{len(requests(wrong))} calls: {asked(wrong)}"
-    )
-    return Finding(wrong is None, "once with both, in each run", shown)
-
-
-def asked(part: Part) -> str:
-    """The numbers of the first calls."""
-    return ", ".join(" + ".join(map(str, pair(event))) for event in requests(part)[:3]) or "none"
-
-
-def is_right(part: Part, expected: Client) -> bool:
-    """True if a run made as many calls as the reference solution, with its numbers."""
-    made = requests(part)
-    return len(made) == expected.calls and pair(made[0]) == sorted(part.inputs["numbers"])
-
-
+odometer.criterion("call", 4, "Calls once, with the two distances")(
+    recipe.right_calls("one call with the two distances, in each run")
+)
 odometer.asks("sum", 4, "Reports the sum that the service answered", service_calls.reports_the_sum)
 odometer.asks("limit", 2, "Ends clearly when there is no service", service_calls.gives_up_in_time)
 
@@ -75,10 +55,9 @@ odometer.asks("limit", 2, "Ends clearly when there is no service", service_calls
     says="The call is right, but the sum is never said.",
     next_step="Log or print the sum of the answer (in the notebook, return it too): future.result().sum.",
 )
-def sum_not_reported(seen: Client, expected: Client) -> bool:
+def sum_not_reported(seen: Client, _: Client) -> bool:
     """The call is right, and the answer is never said."""
-    answered = (part for part in seen.served if part.of("response"))
-    return any(is_right(part, expected) and not reports(part) for part in answered)
+    return recipe.unreported(seen) is not None
 
 
 EXERCISE = odometer.exercise(
