@@ -119,12 +119,12 @@ def test_the_environment_never_imports_the_package() -> None:
     assert not wrong
 
 
-def circles(folder: Path) -> list[list[str]]:
-    """Modules below a folder that import each other in a circle when they run, also from within a function.
+def circles(folder: Path, *, types: bool = False) -> list[list[str]]:
+    """Modules below a folder that import each other in a circle, also from within a function.
 
-    What is imported for types alone is left out: it does not run.
+    What is imported for types alone counts where it is asked for: it does not run.
     """
-    graph = {module: _runs(path, module) for module, path in _modules(folder).items()}
+    graph = {module: _runs(path, module, types=types) for module, path in _modules(folder).items()}
     reach = {module: _reached(module, graph) for module in graph}
     found = {tuple(sorted(other for other in reach[m] if m in reach[other])) for m in graph if m in reach[m]}
     return sorted(map(list, found))
@@ -135,7 +135,7 @@ def _modules(folder: Path) -> dict[str, Path]:
     return {".".join(parts).removesuffix(".__init__"): path for path, parts in names.items()}
 
 
-def _runs(path: Path, module: str) -> set[str]:
+def _runs(path: Path, module: str, *, types: bool) -> set[str]:
     """The full names of what a module imports when it runs; each may be a module or something in one."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     for_types = {
@@ -148,7 +148,7 @@ def _runs(path: Path, module: str) -> set[str]:
     package = module.split(".") if path.name == "__init__.py" else module.split(".")[:-1]
     found: set[str] = set()
     for node in ast.walk(tree):
-        if id(node) in for_types:
+        if id(node) in for_types and not types:
             continue
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
@@ -177,11 +177,16 @@ def test_no_modules_import_each_other_in_a_circle(folder: str) -> None:
     assert not circles(ROOT / folder)
 
 
+def test_modules_of_the_sandbox_do_not_even_name_each_others_types_in_a_circle() -> None:
+    found = circles(PACKAGE, types=True)
+    assert not [circle for circle in found if any(name.startswith("autograder.boxes.") for name in circle)]
+
+
 def test_a_circle_is_found_wherever_the_import_stands(tmp_path: Path) -> None:
     texts = {
         "a.py": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import pkg.c\nfrom pkg.b import one\n",
         "b.py": "one = 1\n\ndef use():\n    from . import c\n",
-        "c.py": "import pkg.b\n",
+        "c.py": "from typing import TYPE_CHECKING\nimport pkg.b\nif TYPE_CHECKING:\n    import pkg.a\n",
         "d.py": "from pkg import a\n",
         "__init__.py": "",
     }
@@ -189,6 +194,7 @@ def test_a_circle_is_found_wherever_the_import_stands(tmp_path: Path) -> None:
     for name, text in texts.items():
         (tmp_path / "pkg" / name).write_text(text)
     assert circles(tmp_path / "pkg") == [["pkg.b", "pkg.c"]]
+    assert circles(tmp_path / "pkg", types=True) == [["pkg.a", "pkg.b", "pkg.c"]]
 
 
 def test_dask_is_imported_where_it_is_shut_in_and_where_it_executes() -> None:
