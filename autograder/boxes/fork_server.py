@@ -28,6 +28,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from autograder.boxes.channel import Channel
+from autograder.boxes.entering import enter
 from autograder.boxes.environment import base_environment
 from autograder.boxes.limits import raise_own
 from autograder.boxes.scratch import HeldFolder
@@ -136,8 +137,6 @@ def _child(mode: str, module: Any, listener: socket.socket, connection: socket.s
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         channel = Channel(connection)
         if mode == INSIDE:
-            from autograder.boxes.entering import enter
-
             enter(channel, module.run)
         else:
             module.run(channel)
