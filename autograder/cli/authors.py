@@ -35,7 +35,8 @@ def build(only_check: bool) -> None:
 def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) -> None:
     """Run every notebook: masters must earn full marks, chapters none, without an error."""
     from autograder import course
-    from autograder.execution import NothingToExecuteError, execute_command
+    from autograder.execution.execute_command import execute_command
+    from autograder.execution.plan import NothingToExecuteError
     from autograder.masters.master_errors import MasterError
 
     try:

@@ -11,9 +11,8 @@ from rich.console import Console
 
 from autograder.boxes.execution import CellType
 from autograder.boxes.scratch import HeldFolder
-from autograder.execution.failure_page import write_report
 from autograder.execution.plan import Planned, plan
-from autograder.execution.problems import Problem, problems_of
+from autograder.execution.problems import Problem, problems_of, write_report
 from autograder.grading.running import engine
 from autograder.grading.running.progress import BatchProgress
 from autograder.grading.running.worker import JUDGE

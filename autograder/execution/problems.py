@@ -1,16 +1,23 @@
-"""Problems of an executed notebook of the course."""
+"""Problems of an executed notebook of the course, and the page on which they stand above all of its cells."""
 
 from __future__ import annotations
 
+import html
 import re  # noqa: TID251  (the course's own notebooks)
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from autograder.boxes.execution import Ended
+from nbconvert import HTMLExporter
+
+from autograder.boxes.execution import CellType, Ended
 from autograder.execution.plan import NotebookKind
+from autograder.grading.rebuilding import nodes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from nbformat import NotebookNode
 
     from autograder.boxes.execution import Cell, CellRun, Execution
     from autograder.execution.plan import Planned
@@ -102,3 +109,62 @@ def _is_number(text: str, number: float) -> bool:
 
 def _text(output: dict[str, Any]) -> str:
     return str(output.get("text", "")) + str(output.get("data", {}).get("text/plain", ""))
+
+
+def write_report(folder: Path, planned: Planned, execution: Execution, found: Sequence[Problem]) -> Path:
+    """Write the page.
+
+    Args:
+        folder: Made where it is not there.
+        planned: The notebook.
+        execution: What came of it.
+        found: What is wrong with it.
+
+    Returns:
+        The page's path.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{planned.task.notebook}-{planned.kind}.html"
+    exporter = HTMLExporter()
+    exporter.anchor_link_text = ""
+    page, _ = exporter.from_notebook_node(
+        _with_outputs(planned, execution, found), {"metadata": {"name": planned.label}}
+    )
+    path.write_text(page, encoding="utf-8")
+    return path
+
+
+def _with_outputs(planned: Planned, execution: Execution, found: Sequence[Problem]) -> NotebookNode:
+    notebook = nodes.copied(planned.notebook)
+    cells = []
+    for index, cell in enumerate(notebook.cells):
+        if cell.cell_type == CellType.CODE and index < len(execution.cells):
+            cell.outputs = [nodes.output(**output) for output in execution.cells[index].outputs]
+            cell.execution_count = None
+        wrong = [problem.text for problem in found if problem.cell == index]
+        if wrong:
+            cells.append(_box(f'<p id="problem-{index}"><b>The next cell {_join(wrong)}.</b></p>'))
+        cells.append(cell)
+    notebook.cells = [_box(_summary(planned, found)), *cells]
+    return notebook
+
+
+def _summary(planned: Planned, found: Sequence[Problem]) -> str:
+    lines = "".join(f"<li>{_line(problem)}</li>" for problem in found)
+    return f"<p><b>{html.escape(planned.label)}</b> failed:</p><ul>{lines}</ul>"
+
+
+def _line(problem: Problem) -> str:
+    text = html.escape(problem.text)
+    if problem.cell is None:
+        return text
+    return f'<a href="#problem-{problem.cell}">cell {problem.cell + 1}</a> {text}'
+
+
+def _join(texts: Sequence[str]) -> str:
+    return " and ".join(html.escape(text) for text in texts)
+
+
+def _box(text: str) -> NotebookNode:
+    style = "border-left: 6px solid #c62828; padding: 0.5em 1em; background: #fdecea; color: #5f1414"
+    return nodes.cell(CellType.MARKDOWN, f'<div style="{style}">\n{text}\n</div>')

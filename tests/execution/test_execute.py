@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 from rich.console import Console
 
-from autograder.execution import NothingToExecuteError, execute_command
+from autograder.execution.execute_command import execute_command
+from autograder.execution.plan import NothingToExecuteError
 from autograder.masters.chapters import build
 from autograder.masters.parsing import HEADER
 
