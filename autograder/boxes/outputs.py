@@ -15,7 +15,8 @@ from typing import Any
 IMAGES = ("image/png", "image/jpeg")
 TRACEBACK_LINES = 200
 OUTPUT_BYTES = 32
-"""Bytes that each output and each update of one takes, however little is in it: a million empty ones fill a memory."""
+"""Bytes that each output, each update of one and each line of a traceback takes, however little is in it: a million
+empty ones fill a memory, and keep whoever makes the page busy."""
 
 
 class Budget:
@@ -120,9 +121,8 @@ class OutputCollector:
             return
         self._clear_if_due()
         lines = content.get("traceback")
-        traceback = (
-            [self._afford(_text(line)) for line in lines[:TRACEBACK_LINES]] if isinstance(lines, list) else []
-        )
+        lines = lines[:TRACEBACK_LINES] if isinstance(lines, list) else []
+        traceback = [self._afford(_text(line)) for line in lines if self._has_room()]
         self._outputs.append(
             {
                 "output_type": "error",
