@@ -225,13 +225,13 @@ def _scratch_of(first: int) -> int:
 
 
 def _memory_of(process: str) -> tuple[int, int]:
-    """Pages that are shared by a fork count in each process.
+    """Pages that are shared by a fork count in each process, and so do the tables of pages, which only reading fills.
 
     ``VmHWM`` is the most that a process has had since it was forked or has become another program, pages of files
     included (proc_pid_status(5)).
     """
     sizes = _sizes_in(Path(process, "status"))
-    now = sizes["RssAnon"] + sizes["RssShmem"]
+    now = sizes["RssAnon"] + sizes["RssShmem"] + sizes["VmPTE"]
     return now, max(now, sizes["VmHWM"] - sizes["RssFile"])
 
 
@@ -242,7 +242,7 @@ def _exact_memory_of(process: str) -> tuple[int, int]:
     except PermissionError:
         # It has hidden itself (PR_SET_DUMPABLE, prctl(2)): then all that it shares counts, too.
         return _memory_of(process)
-    now = sizes["Pss_Anon"] + sizes["Pss_Shmem"]
+    now = sizes["Pss_Anon"] + sizes["Pss_Shmem"] + _sizes_in(Path(process, "status"))["VmPTE"]
     return now, now
 
 

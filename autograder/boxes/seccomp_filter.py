@@ -3,9 +3,10 @@
 The namespaces decide what a box can reach. The filter takes away what no answer to an exercise needs and where kernels
 had their holes: tracing other processes, mounting, namespaces in namespaces, keys, BPF, io_uring. Watching files
 (inotify) is among it because a user has 128 of such watches for all boxes and programs together; programs that watch
-look now and then instead where they cannot. A call that is refused fails with EPERM, as it does for any user without
-the right to it; ``clone3`` does not exist (ENOSYS), because its flags are in memory that a filter cannot read, and
-libraries then use ``clone``.
+look now and then instead where they cannot. Semaphores and messages of System V are among it because the kernel gives
+some thousand calls gigabytes that no process is seen to have. A call that is refused fails with EPERM, as it does for
+any user without the right to it; ``clone3`` does not exist (ENOSYS), because its flags are in memory that a filter
+cannot read, and libraries then use ``clone``.
 
 Numbers are those of the kernel's own tables (asm/unistd_64.h, asm-generic/unistd.h), which no kernel ever changes.
 """
@@ -25,7 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 _X86_64: Mapping[str, int] = {
-    "ioctl": 16, "shmget": 29, "socket": 41, "socketpair": 53, "clone": 56, "ptrace": 101, "syslog": 103,
+    "ioctl": 16, "shmget": 29, "socket": 41, "socketpair": 53, "clone": 56, "semget": 64,
+    "msgget": 68, "ptrace": 101, "syslog": 103,
     "uselib": 134, "vhangup": 153, "modify_ldt": 154, "pivot_root": 155, "chroot": 161, "acct": 163,
     "settimeofday": 164, "mount": 165, "umount2": 166, "swapon": 167, "swapoff": 168, "reboot": 169,
     "sethostname": 170, "setdomainname": 171, "iopl": 172, "ioperm": 173, "init_module": 175,
@@ -40,8 +42,8 @@ _AARCH64: Mapping[str, int] = {
     "chroot": 51, "vhangup": 58,
     "quotactl": 60, "acct": 89, "unshare": 97, "kexec_load": 104, "init_module": 105, "delete_module": 106,
     "clock_settime": 112, "syslog": 116, "ptrace": 117, "reboot": 142, "sethostname": 161,
-    "setdomainname": 162, "settimeofday": 170, "shmget": 194, "socket": 198, "socketpair": 199,
-    "add_key": 217, "request_key": 218, "keyctl": 219, "clone": 220, "swapon": 224, "swapoff": 225,
+    "setdomainname": 162, "settimeofday": 170, "msgget": 186, "semget": 190, "shmget": 194, "socket": 198,
+    "socketpair": 199, "add_key": 217, "request_key": 218, "keyctl": 219, "clone": 220, "swapon": 224, "swapoff": 225,
     "perf_event_open": 241, "fanotify_init": 262, "name_to_handle_at": 264, "open_by_handle_at": 265,
     "setns": 268, "process_vm_readv": 270, "process_vm_writev": 271, "kcmp": 272, "finit_module": 273,
     "memfd_create": 279, "bpf": 280, "userfaultfd": 282, "kexec_file_load": 294,

@@ -96,6 +96,14 @@ def test_memory_that_a_process_hides_by_its_name(tmp_path: Path) -> None:
         assert guards._memory_of(str(tmp_path)) == (2000 * 1024, 8000 * 1024)
 
 
+def test_tables_of_pages_are_memory(tmp_path: Path) -> None:
+    # Whoever reads what nobody has written has no page of it, and two bytes of a table for each thousand.
+    tmp_path.joinpath("status").write_text("VmHWM:\t  10 kB\nVmPTE:\t  3000000 kB\nRssAnon:\t  8 kB\n")
+    tmp_path.joinpath("smaps_rollup").write_text("Pss_Anon:\t  8 kB\nPss_Shmem:\t  0 kB\n")
+    for measure in (guards._memory_of, guards._exact_memory_of):
+        assert measure(str(tmp_path)) == (3_000_008 * 1024,) * 2
+
+
 def test_memory_that_many_processes_take_together(run: Run) -> None:
     fork = (
         "import os, time\nfor _ in range(5):\n    if os.fork() == 0:\n"
