@@ -17,6 +17,9 @@ _CANNOT_BE_READ = ("SyntaxError", "IndentationError", "TabError")
 """Errors that Python tells without a traceback, as nothing of the program has run."""
 _SCRIPT = re2.compile(r"/lib/[^/]+/[^/.]+$")
 """The file that a build makes of an entry point, which ``ros2 run`` starts: nobody wrote its lines."""
+_CALLED_WITH = "Invoked with: "
+_FORM_OF_CALL = re2.compile(r"\d+\. \(")
+"""The last lines of an error of pybind11: what was called with, and above that the forms that it has."""
 _CELLS = ("/ipykernel_", "<ipython-input")
 
 
@@ -35,13 +38,19 @@ class Place:
     error: str
 
 
+def last_error(detail: str) -> str:
+    """The last line of a text that is not empty: at the end of a traceback, what was raised."""
+    told = (line.strip() for line in reversed(detail.splitlines()) if not line.startswith(_CALLED_WITH))
+    return next((line for line in told if line and not _FORM_OF_CALL.match(line)), "")
+
+
 def place(detail: str) -> Place | None:
     """The last line of the student's in the last traceback of a text.
 
     None where there is none, and where that line only spins: the mistake is in what it calls back.
     """
     lines = detail.splitlines()
-    error = next((line for line in reversed(lines) if line.strip()), "").strip()
+    error = last_error(detail)
     starts = [number for number, line in enumerate(lines) if line.startswith(TRACEBACK)]
     if not starts and error.startswith(_CANNOT_BE_READ):
         starts = [0]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from autograder.cards.readable import one_line
-from autograder.cards.tracebacks import TRACEBACK
+from autograder.cards.tracebacks import TRACEBACK, last_error
 from autograder.verdict import State
 
 if TYPE_CHECKING:
@@ -145,9 +145,8 @@ def duration(seconds: float) -> str:
 
 def detail_heading(detail: str) -> str:
     """The heading of the detail, with its most telling line: the exception at the end of a traceback."""
-    last = next((line for line in reversed(detail.splitlines()) if line.strip()), "").strip()
     if TRACEBACK in detail:
-        return f"The traceback, ending in: {last}"
+        return f"The traceback, ending in: {last_error(detail)}"
     return "The last lines of output"
 
 
@@ -155,7 +154,7 @@ def traffic_notes(shown: Traffic) -> str:
     """Notes on the traffic that is shown: its kind of time, and what is left out."""
     notes = []
     if shown.simulated:
-        notes.append("Simulated time: the checker moved your node's clock, so these seconds pass faster.")
+        notes.append("Simulated time: the judge moved your node's clock, so these seconds pass faster.")
     if shown.left_out:
         count = f"{shown.left_out} {'moment' if shown.left_out == 1 else 'moments'}"
         notes.append(f"Too much to show it all: {count} in between left out.")

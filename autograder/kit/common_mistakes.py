@@ -66,8 +66,8 @@ def endpoint_name(role: str) -> Mistake:
         near = difflib.get_close_matches(missing[0], strange, n=1, cutoff=0.0) or sorted(strange)
         return Advice(
             f"Your node {verb} {near[0]}; the {noun} is called {missing[0]}.",
-            f"Correct the name. `ros2 {noun} list` shows what is on the graph: two nodes meet only where the names are "
-            "the same to the letter.",
+            f"Correct the name. `ros2 {noun} list` shows the names on the graph: two nodes are connected only if the "
+            "names are equal, letter by letter.",
         )
 
     return Mistake(_KEY[noun], recognise, certain=True)
@@ -83,7 +83,8 @@ def message_type(role: str) -> Mistake:
             return None
         expected = wanted[name]
         return Advice(
-            f"On {name} your node uses {made[name]}; the other side uses {expected}. Two types on one name never meet.",
+            f"On {name} your node uses {made[name]}; the other side uses {expected}. With two types for one name, "
+            "nothing is connected.",
             f"Import and use {expected.split('/')[-1]} from {expected.split('/')[0]}.{expected.split('/')[1]}.",
         )
 
@@ -102,7 +103,7 @@ def one_is_missing(*roles: str) -> Mistake:
             return None
         role, name = missing[0]
         return Advice(
-            f"Nothing of your node {_WORD[role][0]} {name}, and the rest is there.",
+            f"Your node has nothing that {_WORD[role][0]} {name}; the rest is there.",
             "Find the TODO in your solution cell and write that step; the hints below it open one at a time.",
         )
 
@@ -121,8 +122,8 @@ def qos_mismatch(role: str) -> Mistake:
             return None
         policy = mismatch.data["policy"]
         return Advice(
-            f"Your node and the other side are both on {mismatch.name}, but their {policy} does not fit, so nothing is "
-            "exchanged.",
+            f"Your node and the other side are both on {mismatch.name}, but their {policy} is not compatible, so "
+            "no message arrives.",
             "Use the queue depth 10 in place of the QoS profile: that is reliable and volatile, as the other side is.",
         )
 
@@ -281,7 +282,7 @@ def _returned_silently(evidence: Evidence) -> Advice | None:
     if not evidence.main.events:
         return None
     return Advice(
-        "Your function comes back at once, with nothing, and called no server: a step is not written yet.",
+        "Your function returns nothing, at once, and calls no server: a step is not written yet.",
         "Find the TODO in your solution cell and write that step; the hints below it open one at a time.",
     )
 
@@ -295,7 +296,7 @@ def _returned_at_once(evidence: Evidence) -> Advice | None:
 NEVER_CONSTRUCTED = mistake(
     "never_ended",
     lambda evidence: any(part.first("subject", "never_constructed") for part in evidence),
-    "Making your node never comes to an end: its __init__ goes on and on, or waits for something.",
+    "Your node is never finished: its __init__ has a loop without an end, or waits for something.",
     "Let __init__ only make what the node needs, and leave the work to callbacks: no loop and no wait in it.",
     certain=True,
 )

@@ -49,7 +49,9 @@ def _recogniser(crash: Crash) -> Mistake:
 
 def what_and_where(traceback: str) -> str:
     """The exception that was raised, and the line of the student's that led to it."""
-    last = [line for line in traceback.splitlines() if line[:1].strip()][-1:]
+    # pybind11 says below its error what the function was called with.
+    told = (line for line in traceback.splitlines() if not line.startswith("Invoked with: "))
+    last = [line for line in told if line[:1].strip()][-1:]
     frames = [found for found in _FRAME.finditer(traceback) if not _is_a_library(found["file"])]
     where = f" (line {frames[-1]['line']}, in {frames[-1]['function']})" if frames else ""
     if not last or last[0].startswith("Traceback"):
@@ -88,9 +90,7 @@ def _exception_in_callback(evidence: Evidence) -> Advice | None:
     spun = any(p.first("subject", "constructed") for p in evidence if p.ending and p.ending.name == "raised")
     if not traceback or not (spun or "rclpy/executors.py" in traceback):
         return None
-    return raised(
-        "A callback raised an exception, which ends the spinning and with it everything else", traceback
-    )
+    return raised("A callback raised an exception, and that ended the spinning of the node", traceback)
 
 
 def _cut_off(evidence: Evidence) -> Advice | None:

@@ -219,9 +219,9 @@ def patience_not_kept(absent: str) -> Mistake:
     return mistake(
         "patience_not_kept",
         lambda evidence: broken_patience(evidence.part(absent)),
-        "When there is no server, your function {}: it waits by a limit of its own.",
-        f"Use {PATIENCE} as the limit of the wait: `wait_for_service(timeout_sec={PATIENCE})`, "
-        f"`wait_for_server(timeout_sec={PATIENCE})`, or a loop that ends {PATIENCE} seconds after it began.",
+        "When there is no server, your function {}.",
+        f"Use {PATIENCE} as the limit, once: `if not client.wait_for_service(timeout_sec={PATIENCE}):` (or "
+        f"`wait_for_server`), and below it say so and end. A loop has to end {PATIENCE} seconds after it began.",
     )
 
 

@@ -68,7 +68,7 @@ GAVE_UP_TOO_EARLY = mistake(
     lambda evidence: gave_up(
         [evidence.part(name) for name in SERVED], evidence.part(ABSENT), lambda part: bool(asked_for(part))
     ),
-    "The server was there, or came a moment late, and your client had already given up.",
+    "The server was there, or started a moment late, and your client had already given up.",
     "Wait for it with wait_for_server and a few seconds of patience before you send the goal.",
 )
 

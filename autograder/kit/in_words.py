@@ -18,7 +18,7 @@ def first_difference(said: str, wanted: str) -> str:
     same = said[
         : next((n for n, (a, b) in enumerate(zip(said, wanted, strict=False)) if a != b), len(wanted))
     ]
-    place = f"Behind “{same[-SHOWN:]}”" if same else "At the beginning"
+    place = f"After “{same[-SHOWN:]}”" if same else "At the beginning"
     return f"{place} the task has {_next(wanted, same)}, and yours has {_next(said, same)}."
 
 

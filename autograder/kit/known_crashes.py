@@ -41,6 +41,12 @@ KNOWN = (
     ),
     Crash(
         "not_initialized",
+        r"load_entry_point.*\n(?:[ ~^]*\n)? +File .*, in __init__\n(?:.*\n)*.*NotInitializedException",
+        "The entry point names the class of your node, so nothing has called rclpy.init().",
+        "In setup.py, let the entry point end in :main. This function starts ROS, makes the node and spins it.",
+    ),
+    Crash(
+        "not_initialized",
         r"NotInitializedException|rclpy\.init has not been called|context (?:must be initialized|is not valid)"
         # An executor that was made before: spinning makes one.
         r"|guard_condition\.py\".*\n.*self\._context\.handle",
@@ -58,9 +64,10 @@ KNOWN = (
     Crash(
         "super_init_missing",
         r"TypeError: Node\.__init__\(\) missing 1 required positional argument: 'node_name'",
-        "The node got no name: its class has no __init__ yet that gives it one, or super().__init__() is called with "
-        "nothing between its parentheses.",
-        "Write def __init__(self): into the class, and super().__init__('your_node_name') as its first line.",
+        "The node has no name: its class has no method __init__, or super().__init__() is called with nothing between "
+        "its parentheses.",
+        "Write def __init__(self): in the class, indented by four spaces, with two underscores on each side of init. "
+        "Its first line is super().__init__('your_node_name').",
     ),
     Crash(
         "newer_api",
@@ -99,7 +106,7 @@ KNOWN = (
     Crash(
         "qos_depth_missing",
         r"missing \d+ required positional arguments?: .*'?qos_profile",
-        "The queue size is missing.",
+        "The depth is missing: how many messages wait in the queue of a slow subscriber.",
         "Add it as the last argument: create_publisher(Type, 'topic', 10), create_subscription(Type, 'topic', "
         "callback, 10).",
     ),
@@ -120,7 +127,7 @@ KNOWN = (
         r"^ +.*(?:add_done_callback|create_(?:timer|subscription|service)|ActionServer|\w*callback=).*\.\w+\(\)[,)].*\n"
         r"(?:[ ~^]*\n)?TypeError: (?:[\w.<>]+\.)?(?P<method>\w+)\(\) missing \d+ required positional arguments?: ",
         "The parentheses after {method} call it at once, without the arguments that ROS would give it.",
-        "Write the name without parentheses, as in add_done_callback(self.{method}): ROS calls it when it is time.",
+        "Write only its name, self.{method}, without parentheses: ROS calls the method when it is time.",
     ),
     Crash(
         "callback_signature",
@@ -163,21 +170,21 @@ KNOWN = (
         "message_type",
         r"The (?P<kind>service|message) type provided is not valid \(<class '[\w.]+\.(?P<type>\w+?)"
         r"(?P<part>_(?:Request|Response|Goal|Result|Feedback))?'>",
-        "{type}{part} is no type of a {kind}.",
+        "{type}{part} is not the type of a {kind}.",
         "For a service write the service itself, such as AddTwoInts, without .Request or .Response. A topic takes a "
         "message, such as String.",
     ),
     Crash(
         "message_type",
         r"AttributeError: type object '(?P<got>\w+)' has no attribute '_TYPE_SUPPORT'",
-        "Where the type of a message or a service belongs, there is a value of the type {got}.",
+        "The type of a message or a service is needed here, and your code gives a value of the type {got}.",
         "Import the type, and write its name without quotation marks: create_publisher(String, 'topic', 10).",
     ),
     Crash(
         "request_not_instantiated",
         r"(?:Service|Action|Interface)\w* classes can not be instantiated",
-        "A service or action type itself cannot be made: it is only the name for its parts.",
-        "Make its part: AddTwoInts.Request(), Fibonacci.Goal().",
+        "The type of a service or an action only holds its parts together: no object can be made of it.",
+        "Make the part that you need, such as AddTwoInts.Request() or Fibonacci.Goal().",
     ),
     Crash(
         "raw_value_published",
@@ -242,20 +249,20 @@ KNOWN = (
     Crash(
         "field_typo",
         r"^NameError: name '(?P<name>linear|angular)' is not defined",
-        "{name} is a part of your message, and Python does not know it by itself.",
+        "{name} is a part of your message, and Python knows it only together with this message.",
         "Write the message before it, with a dot: command.{name}, as in command.linear.x = 0.5.",
     ),
     Crash(
         "field_typo",
         r"AttributeError: 'Twist' object has no attribute '(?P<name>\w+)'",
-        "A Twist has no field of the name {name}: it has two parts, linear and angular, and each has the numbers x, y "
+        "A Twist has no field called {name}: it has two parts, linear and angular, and each has the numbers x, y "
         "and z.",
         "Name the part, too: command.linear.x is the speed straight ahead, command.angular.z the turn to the left.",
     ),
     Crash(
         "field_typo",
         r"AttributeError: '\w+_FeedbackMessage' object has no attribute '(?P<name>\w+)'",
-        "The message has no field of the name {name}.",
+        "The message has no field called {name}.",
         "In an action's feedback callback the fields are one level down: msg.feedback.partial_sequence.",
     ),
     Crash(
@@ -263,8 +270,8 @@ KNOWN = (
         r"AttributeError: '(?:String|U?Int\d+|Vector3"
         r"|\w+_(?:Request|Response|Goal|Result|Feedback))' object has no attribute '(?P<name>\w+)'"
         r"|Invalid arguments passed to constructor: '?(?P<keyword>\w+(?:, \w+)*)",
-        "The message has no field of the name {name}{keyword}.",
-        "Look the fields up with `ros2 interface show` and spell the name exactly so.",
+        "The message has no field called {name}{keyword}.",
+        "`ros2 interface show` lists the fields of a type: write the name exactly as it is there.",
     ),
     Crash(
         "callback_returned_none",
@@ -297,7 +304,7 @@ KNOWN = (
         "module_not_found",
         r"ModuleNotFoundError: No module named '(?P<name>[\w.]+)'",
         "Python does not find the module {name}.",
-        "Is the name right? Compare it with the import in the lab's text (.msg, .srv, .action). "
+        "Compare the name with the import in the lab's text (.msg, .srv, .action), letter by letter. "
         "Packages of your own workspace need `colcon build` and `source install/setup.bash` first.",
     ),
     Crash(

@@ -73,7 +73,8 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
         return Advice(
             f"The package is built, but it has no program {entry.program}: "
             + (f"setup.py names only {named}." if named else "setup.py names no entry point."),
-            f"In setup.py, 'console_scripts' must hold {entry.line if named else FORM}. {_again(evidence)}",
+            f"In setup.py, the list 'console_scripts' has to contain {entry.line if named else FORM}. "
+            f"{_again(evidence)}",
         )
     tracebacks = "\n".join(part.traceback for part in evidence)
     found = re2.search(
@@ -86,7 +87,7 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
     what = f"the module {found['module']}" if found["module"] else f"the function {found['name']}"
     return Advice(
         f"The entry point in setup.py leads to {what}, which is not there.",
-        f"It must read {entry.line}, with a comma behind it: the file without .py, a colon, and the function. "
+        f"Write {entry.line}, with a comma after it: the file without .py, a colon, and the function. "
         f"{_again(evidence)}",
         tracebacks,
     )
@@ -115,8 +116,8 @@ def _unknown_module(tracebacks: str, entry: Entry, again: str) -> Advice | None:
     if found is None or found["module"] == entry.package:
         return None
     return Advice(
-        f"The entry point in setup.py names the module {found['module']}, which is not there. A module of the package "
-        "is named with the package before it.",
+        f"The entry point in setup.py names the module {found['module']}, which is not there. The name of a module "
+        "begins with its package.",
         f"Write package, dot, file, without .py: {entry.line}. {again}",
         tracebacks,
     )

@@ -99,7 +99,8 @@ READING: Sequence[Row] = (
     (
         rf"{_READS}.*forgot a comma",
         "Two values are side by side, and nothing joins them.",
-        "Write a comma between them, or close the bracket or the quotation mark before.",
+        "Put a string in quotation marks, write a comma between two values, or close the bracket or the quotation mark "
+        "before that place.",
     ),
     (
         rf"{_READS}Missing parentheses in call to 'print'",
@@ -147,10 +148,17 @@ RUNNING: Sequence[Row] = (
         "If that is what you mean, write {meant}. If {name} is a value of your own, set self.{name} in __init__.",
     ),
     (
+        r"^ +.*\bspin\w*\((?P<what>\w+)[,)].*\n(?:.*\n)*AttributeError: '(?P<class>Client|ActionClient|Publisher"
+        r"|Service|Timer|Future)' object has no attribute",
+        "Only a node can be spun, and {what} is a {class}.",
+        "Give the spin your node: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0).",
+    ),
+    (
         r"AttributeError: '(?P<class>list|dict|tuple|set|str|bytes|bool|int|float|\w+GoalHandle|Publisher|Subscription"
         r"|Timer|Client|Service|ActionClient|ActionServer|RcutilsLogger)' object has no attribute '(?P<name>\w+)'",
         "The value before .{name} is a {class} here, which has nothing called {name}.",
-        "Look where it gets its value: is it the value that you mean? Then compare the name, letter by letter.",
+        "Look at the line that sets it: it may be another value than you mean. If it is the right one, compare the "
+        "name, letter by letter.",
     ),
     (
         r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>(?:create|declare|get)_\w+)'",
@@ -161,8 +169,8 @@ RUNNING: Sequence[Row] = (
     (
         rf"^ +.*(?:create_\w+|ActionServer|ActionClient|\w*callback\w*)\(?.*self\..*{_MARKS}{_OWN}",
         "{class} has no method {name} at this line.",
-        "Is def {name} in the class, spelled the same? Indent it by four spaces, like def __init__: indented further, "
-        "it is only a part of the method above.",
+        "Write def {name} in the class, spelled the same and indented by four spaces, like def __init__: indented "
+        "further, it is only a part of the method above.",
     ),
     (
         r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute 'publish'",
@@ -174,12 +182,12 @@ RUNNING: Sequence[Row] = (
         rf"^{_OWN}",
         "Nothing has set self.{name} so far.",
         "Set it in __init__, above the line that needs it, and write self. before it there, too: a variable without "
-        "self. is forgotten at the end of its method. Is it a method? Then compare its name, and its indentation.",
+        "self. is forgotten at the end of its method. If it is a method, compare its name and its indentation.",
     ),
     (
         r"AttributeError: '(?:builtin_function_or_method|function|method)' object has no attribute '(?P<name>\w+)'",
-        "Before .{name} is a method that was not called.",
-        "Write the parentheses after it, as in self.get_logger().info(...).",
+        "What is before .{name} is a method without its parentheses, so it was not called.",
+        "Write the parentheses after the method's name, as in self.get_logger().info(...).",
     ),
     (
         r"AttributeError: 'NoneType' object has no attribute '(?P<name>\w+)'",
@@ -199,7 +207,7 @@ RUNNING: Sequence[Row] = (
     (
         r"^(?:UnboundLocalError: )(?:cannot access local variable|local variable) '(?P<name>\w+)'",
         "Without self. before it, {name} is a variable of this method alone, and has no value yet.",
-        "Is it a value of the node? Then write self.{name}, here and wherever it is used.",
+        "If it is a value of the node, write self.{name}, here and in all other lines that use it.",
     ),
     (
         r"^NameError: name '(?P<name>[A-Z]\w*)' is not defined",
@@ -207,22 +215,34 @@ RUNNING: Sequence[Row] = (
         "Compare the spelling. Run the notebook's cells from the top; a program needs the import in its own file.",
     ),
     (
+        rf"^ +.*\bcreate_\w+\(.*\w\(.*\b(?:request|response|message|msg|goal_handle|future)\b.*\).*{_MARKS}"
+        r"NameError: name '(?P<name>request|response|message|msg|goal_handle|future)' is not defined",
+        "Your code calls the method in this line, but only ROS can give it {name}, when it calls the method later.",
+        "Write only the name of the method, without parentheses and arguments, as in self.on_message.",
+    ),
+    (
+        r"^NameError: name '(?P<name>a|b|c|order)' is not defined",
+        "Python does not know {name}.",
+        "If {name} is a field of the request or the goal, write what it belongs to before it, with a dot: "
+        "request.{name}, or goal_handle.request.{name} in an action. Otherwise give {name} a value above that line.",
+    ),
+    (
         r"^NameError: name '(?P<name>\w+)' is not defined",
         "Python does not know {name}.",
-        "Does it belong to your node, a value or a method of its own? Then write self.{name}. Otherwise compare the "
-        "spelling. In a notebook, run the cells from the top: one of them may define it; in a program, copy it into "
-        "this file, above the line.",
+        "If it belongs to your node, as a value or a method, write self.{name}. If a cell above defines it, run that "
+        "cell; in a program, copy it into this file, above the line. If it is neither, compare the spelling.",
     ),
     (
         r"^TypeError: (?:can only concatenate str|unsupported operand type\(s\) for \+=?: '(?:int|float|str)' and "
         r"'(?:int|float|str)')",
         "A string and a number are added.",
-        "To join them to a string, write f'... {{number}}'. To add numbers, make one of the string first: int(...).",
+        "To join them to a string, write f'... {{number}}'. To add numbers, turn the string into a number "
+        "first: int(...).",
     ),
     (
         r"^TypeError: '[<>]=?' not supported between instances of '\w+' and '\w+'",
         "Two things that have no order are compared, such as a string with a number.",
-        "Make a number of the string first: int(...) or float(...).",
+        "Turn the string into a number first: int(...) or float(...).",
     ),
     (
         r"^TypeError: float\(\) argument must be a string or a real number, not '(?:method|function)'",
@@ -249,6 +269,37 @@ RUNNING: Sequence[Row] = (
         r"|\w+_(?:Request|Response|Goal|Result|Feedback))\.__init__\(\) takes 1 positional argument",
         "A message takes its fields by their names.",
         "Name the field between the parentheses, as in String(data='hello'), or set it in the next line.",
+    ),
+    (
+        r"^TypeError: isinstance\(\) arg 2 must be a type",
+        "The publisher was made with an object, such as String(), where the type itself is needed.",
+        "Leave out the parentheses after the type: create_publisher(String, 'topic', 10).",
+    ),
+    (
+        r"rclpy_resolve_name\(\): incompatible function arguments",
+        "A name is needed here as a string, and something else was given: perhaps name and type are swapped.",
+        "First the type, then the name in quotation marks: create_publisher(String, 'topic', 10).",
+    ),
+    (
+        r"^TypeError: (?:Node\.)?get_logger\(\) takes 1 positional argument",
+        "get_logger() takes nothing: it gives you the logger, and the logger has the method info.",
+        "Write self.get_logger().info(...), with the string between the second parentheses.",
+    ),
+    (
+        r"^TypeError: Node\.(?P<method>create_\w+)\(\) takes (?:from \d+ to )?\d+ positional arguments? but \d+ were",
+        "{method} got more arguments than it takes.",
+        "Compare with the lab: create_publisher(type, topic, depth), create_subscription(type, topic, method, depth), "
+        "create_timer(seconds, method), create_service(type, name, method), create_client(type, name).",
+    ),
+    (
+        r"^TypeError: (?:Client\.)?call(?:_async)?\(\) takes .*positional argument",
+        "A call takes one thing, the request.",
+        "Put the numbers into the request first: client.call_async(AddTwoInts.Request(a=a, b=b)).",
+    ),
+    (
+        r"^TypeError: (?P<what>AddTwoInts|SetBool|Trigger|Fibonacci|WalkTo)\.__init__\(\) got an unexpected keyword",
+        "{what} itself only holds its parts together: the fields are in a part.",
+        "Make the part that you need, such as AddTwoInts.Request(a=a, b=b) or Fibonacci.Goal(order=order).",
     ),
     (
         r"^TypeError: spin\(\) missing 1 required positional argument: 'node'",
@@ -278,7 +329,7 @@ RUNNING: Sequence[Row] = (
     (
         r"^IndexError: pop from (?:an )?empty (?P<kind>list|deque|set)",
         "The {kind} has no element left to take.",
-        "A callback is called again and again: what it takes one by one is used up. Ask `if` there is one left.",
+        "A callback is called again and again: what it takes one by one is used up. Check with `if` that one is left.",
     ),
     (
         r"^(?:RuntimeError: (?:coroutine|generator) raised )?StopIteration",
@@ -293,14 +344,14 @@ RUNNING: Sequence[Row] = (
     ),
     (
         r"^ValueError: (?:invalid literal for int\(\) with base \d+|could not convert string to float): (?P<text>.+)",
-        "{text} is no number.",
+        "{text} is not a number.",
         "Look where it comes from. On a command line the arguments begin with sys.argv[1]; sys.argv[0] is the program "
         "itself.",
     ),
     (
         r"^ZeroDivisionError",
         "What is right of the / or % is 0.",
-        "0 may come as well: ask `if` before you divide, or leave the division out.",
+        "A 0 may arrive, too: check with `if` before you divide, or leave the division out.",
     ),
     (
         r"^TypeError: '(?P<kind>\w+)' object cannot be interpreted as an integer",

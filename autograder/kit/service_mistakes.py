@@ -176,8 +176,8 @@ GAVE_UP_TOO_EARLY = mistake(
     lambda evidence: giving_up.gave_up(
         Client(evidence).served, evidence.part(ABSENT), lambda part: bool(requests(part))
     ),
-    "The service was there, or came a moment late, and your client had already given up (or called before it had met "
-    "the service).",
+    "The service was there, or started a moment late, and your client had already given up (or it called before it had "
+    "discovered the service).",
     "Wait for the service with wait_for_service and a few seconds of patience before the first call.",
 )
 PATIENCE_NOT_KEPT = giving_up.patience_not_kept(ABSENT)

@@ -58,3 +58,14 @@ def test_output_that_is_no_traceback_has_no_place() -> None:
     assert place("Hello, world! 0\nTerminated") is None
     assert place("") is None
     assert place("Traceback (most recent call last):") is None
+
+
+def test_an_error_of_compiled_code_is_told_without_the_arguments_below_it() -> None:
+    detail = (
+        'Traceback (most recent call last):\n  File "talker.py", line 7, in __init__\n    make("chatter", String)\n'
+        "TypeError: resolve(): incompatible function arguments. The following argument types are supported:\n"
+        "    1. (name: str) -> str\n\nInvoked with: <class 'String'>, False"
+    )
+    found = place(detail)
+    assert found
+    assert found.error.startswith("TypeError: resolve(): incompatible function arguments")

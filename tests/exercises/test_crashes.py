@@ -163,6 +163,21 @@ PUBLISHED = "TypeError: Expected <class 'std_msgs.msg._string.String'>, got <cla
         ),
         ("callback_signature", [line.format("None") for line in HANDED], "at once", "Besides self", "X"),
         (
+            "not_initialized",
+            [
+                "    sys.exit(load_entry_point('my-robot-pkg==0.0.0', 'console_scripts', 'simple_node')())",
+                "             ^^^^^",
+                '  File "/x/my_robot_pkg/simple_node.py", line 10, in __init__',
+                '    super().__init__("simple_node")',
+                '  File "/x/rclpy/node.py", line 184, in __init__',
+                "    raise NotInitializedException('cannot create node')",
+                "rclpy.exceptions.NotInitializedException: rclpy.init() has not been called",
+            ],
+            "entry point names the class",
+            "end in :main",
+            "start_ros",
+        ),
+        (
             "callback_signature",
             [*EXECUTED, "TypeError: TalkerNode.tick() missing 1 required positional argument: 'msg'"],
             "arguments: TalkerNode.tick() missing 1",

@@ -20,13 +20,13 @@ def test_one_is_not_many(number: int, words: str) -> None:
         (LINE, ""),
         (
             "Hello, ROS 2! from SimpleNode.",
-            "Behind “Hello, ROS 2! ” the task has “From SimpleNode.”, and yours has “from SimpleNode.”.",
+            "After “Hello, ROS 2! ” the task has “From SimpleNode.”, and yours has “from SimpleNode.”.",
         ),
         (
             "Hello, ROS 2! From SimpleNode",
-            "Behind “ From SimpleNode” the task has “.”, and yours has nothing more.",
+            "After “ From SimpleNode” the task has “.”, and yours has nothing more.",
         ),
-        (LINE + "!", "Behind “From SimpleNode.” the task has nothing more, and yours has “!”."),
+        (LINE + "!", "After “From SimpleNode.” the task has nothing more, and yours has “!”."),
         ("hello", "At the beginning the task has “Hello, ROS 2! Fr”, and yours has “hello”."),
     ],
 )

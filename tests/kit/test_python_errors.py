@@ -11,9 +11,9 @@ SAID = {
     "AttributeError: 'Talker' object has no attribute 'count'": "Set it in __init__",
     "AttributeError: 'Talker' object has no attribute 'cuont'. Did you mean: 'count'?": "write count.",
     "AttributeError: 'Talker' object has no attribute 'create_timr'": "Compare the spelling: create_publisher",
-    "AttributeError: 'function' object has no attribute 'info'": "Write the parentheses after it",
-    "NameError: name 'count' is not defined": "Then write self.count",
-    "NameError: name 'count' is not defined. Did you mean: 'self.count'?": "Then write self.count",
+    "AttributeError: 'function' object has no attribute 'info'": "Write the parentheses after the method's name",
+    "NameError: name 'count' is not defined": "write self.count",
+    "NameError: name 'count' is not defined. Did you mean: 'self.count'?": "write self.count",
     "NameError: name 'String' is not defined": "Write `from std_msgs.msg import String` at the top",
     "NameError: name 'Talker' is not defined": "Run the notebook's cells from the top",
     "AttributeError: 'ClientGoalHandle' object has no attribute 'is_done'": "is a ClientGoalHandle here",
@@ -33,13 +33,21 @@ SAID = {
     "ZeroDivisionError: division by zero": "before you divide",
     "ValueError: not enough values to unpack (expected 2, got 1)": "Left of the = are 2 names",
     "ValueError: too many values to unpack (expected 2)": "Left of the = are 2 names",
-    "ValueError: invalid literal for int() with base 10: '{five}'": "'{five}' is no number",
-    "ValueError: could not convert string to float: 'five'": "'five' is no number",
+    "ValueError: invalid literal for int() with base 10: '{five}'": "'{five}' is not a number",
+    "ValueError: could not convert string to float: 'five'": "'five' is not a number",
     "TypeError: 'str' object cannot be interpreted as an integer": "Leave out the str(...)",
     "TypeError: ActionServer.__init__() got an unexpected keyword argument 'done'": "ActionServer takes no argument",
     "TypeError: spin() got an unexpected keyword argument 'nod'": "spin takes no argument called nod",
     "IndexError: list assignment index out of range": "The list is shorter than that",
     "StopIteration": "and none was left",
+    "NameError: name 'a' is not defined": "request.a, or goal_handle.request.a",
+    "TypeError: isinstance() arg 2 must be a type, a tuple of types, or a union": "Leave out the parentheses",
+    "TypeError: rclpy_resolve_name(): incompatible function arguments. Supported are:": "First the type, then the name",
+    "TypeError: Node.get_logger() takes 1 positional argument but 2 were given": "self.get_logger().info(...)",
+    "TypeError: Node.create_service() takes 4 positional arguments but 5 were given": "create_service(type, name",
+    "TypeError: call_async() takes 2 positional arguments but 3 were given": "Put the numbers into the request first",
+    "TypeError: Client.call_async() takes 2 positional arguments but 3 were given": "AddTwoInts.Request(a=a, b=b)",
+    "TypeError: AddTwoInts.__init__() got an unexpected keyword argument 'a'": "Make the part that you need",
     "OSError: [Errno 28] No space left on device": "Read the traceback from the bottom",
 }
 
@@ -51,11 +59,34 @@ def test_the_card_names_what_to_mend(last: str) -> None:
     assert "{" not in words.replace("{number}", "").replace("{five}", "")
 
 
+@pytest.mark.parametrize(
+    ("code", "last", "advice"),
+    [
+        (
+            "self.create_service(AddTwoInts, 'add_two_ints', self.add(request, response))",
+            "NameError: name 'request' is not defined",
+            "without parentheses and arguments",
+        ),
+        (
+            "rclpy.spin_until_future_complete(client, future, timeout_sec=5.0)",
+            "AttributeError: 'Client' object has no attribute 'subscriptions'",
+            "Give the spin your node",
+        ),
+        ("self.log(message)", "NameError: name 'message' is not defined", "write self.message"),
+    ],
+)
+def test_the_line_that_raised_tells_what_to_write(code: str, last: str, advice: str) -> None:
+    frames = (
+        f'Traceback (most recent call last):\n  File "talker.py", line 3, in __init__\n    {code}\n    ^^^^\n'
+    )
+    assert advice in told(f"{frames}{last}")
+
+
 def test_a_method_that_is_not_found_where_it_is_handed_over_may_be_indented_too_far() -> None:
     code = "self.timer = self.create_timer(0.5, self.tick)\n                                        ^^^^^^^^^"
     frames = f'Traceback (most recent call last):\n  File "talker.py", line 3, in __init__\n    {code}\n'
     words = told(f"{frames}AttributeError: 'Talker' object has no attribute 'tick'")
-    assert "Indent it by four spaces, like def __init__" in words
+    assert "indented by four spaces, like def __init__" in words
 
 
 def told(traceback: str) -> str:

@@ -315,10 +315,10 @@ class Hears:
         if len(seen.claims(self.expected(evidence))) < 4 and part.of("unanswered"):
             return None
         return Advice(
-            "Your node is at work and has its publisher, but nothing is published on it while the check listens.",
-            f"Is there a timer, and is its period in seconds: {reference_period(evidence.reference):g}, and not "
-            f"{1000 * reference_period(evidence.reference):g}? Then look into its callback, or your loop: does it come "
-            "to publish(msg)? A log line is no message.",
+            "Your node is there with its publisher, but no message arrives while the judge listens.",
+            "If your cell still has its TODO, begin there. Give the timer its period in seconds, "
+            f"{reference_period(evidence.reference):g} and not {1000 * reference_period(evidence.reference):g}, and "
+            "let its method call publish(...), with the message between the parentheses. A log line is not a message.",
         )
 
     def _wrong_rate(self, evidence: Evidence) -> Advice | None:

@@ -223,8 +223,9 @@ def _returned_none(evidence: Evidence) -> Advice | None:
     if traceback.strip() != "TypeError":
         return None
     return Advice(
-        "The service callback did not return the response: rclpy cannot send what came back, and the client waits in "
-        "vain. A program ends with this error.",
-        "End the callback with `return response`, on every way out.",
+        "The service callback did not return the response. rclpy cannot send anything else, so the client waits for an "
+        "answer that never comes. A program ends with this error.",
+        "Fill in the field of the response that you get, as in `response.sum = ...`, and end the callback with "
+        "`return response`: the whole response, and also after an `if` or an `except`.",
         traceback,
     )

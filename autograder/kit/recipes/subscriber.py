@@ -6,6 +6,8 @@ from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+import re2
+
 from autograder.kit import common_mistakes as common
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.hangs import HANGS
@@ -388,7 +390,10 @@ def _invented_text(evidence: Evidence) -> Advice | None:
     made_up = invented(evidence.main, _sent_texts(evidence))
     if not made_up:
         return None
+    braces = re2.search(r"\{[\w.]+\}", made_up[0])
     return Advice(
         f"Your node said “{made_up[0]}”, but no node sent that.",
-        "Log only in the subscription's callback, and only the string of the message that it was given.",
+        "Write an f before the opening quotation mark: f'I heard: {msg.data}'. Python then replaces the braces."
+        if braces
+        else "Log only in the subscription's callback, and only the string of the message that it was given.",
     )

@@ -6,8 +6,10 @@ repeat the advice on old code, and a ``NameError`` would blame the check's own c
 
 from __future__ import annotations
 
+import dis
 import re  # noqa: TID251  (a student's cells, in their own kernel)
 from dataclasses import dataclass
+from types import CodeType, FunctionType
 from typing import Any
 
 from autograder.notebook.cells.cell_output import last_student_line, notebook_shell
@@ -45,7 +47,7 @@ class FailedCells:
         failure = self._failures.get(name)
         if failure is None:
             return ""
-        return f"Your cell that defines {name} did not run to its definition: {failure.error}."
+        return f"Your cell that defines {name} stopped before {name} was defined: {failure.error}."
 
     def _cell_begins(self, info: Any) -> None:
         self._source = info.raw_cell or ""
@@ -117,11 +119,24 @@ def raise_if_stale(subject: Any) -> None:
     """End a check of old code with words that say so; nothing happens outside a notebook.
 
     Raises:
-        StaleCodeError: The cell that defines the subject anew ended with an error.
+        StaleCodeError: The cell that defines the subject anew, or what it uses, ended with an error.
     """
-    name = getattr(subject, "__name__", "")
-    why = _cells.why_missing(name) if _cells is not None else ""
-    if why:
-        raise StaleCodeError(
-            f"{why} The {name} that is there is older code. Fix that cell and run it, then check again."
-        )
+    if _cells is None:
+        return
+    for name in (getattr(subject, "__name__", ""), *sorted(_names_read(subject))):
+        if why := _cells.why_missing(name):
+            raise StaleCodeError(
+                f"{why} The notebook still has an older {name}. Correct that cell and run it, then check again."
+            )
+
+
+def _names_read(subject: Any) -> set[str]:
+    """The names of the notebook that a function reads, or the methods of a class."""
+    own = vars(subject).values() if isinstance(subject, type) else (subject,)
+    codes = [one.__code__ for one in own if isinstance(one, FunctionType)]
+    found = set()
+    while codes:
+        code = codes.pop()
+        found |= {str(step.argval) for step in dis.get_instructions(code) if step.opname == "LOAD_GLOBAL"}
+        codes += [inner for inner in code.co_consts if isinstance(inner, CodeType)]
+    return found

@@ -148,9 +148,10 @@ class ShorterWaits:
 
 
 def _seem_to_be_in(module: ModuleType, *functions: Any) -> None:
-    """Let the stack of a hung subject name the functions as if they were rclpy's, which the judge knows."""
+    """Let stacks and errors name the functions as if they were rclpy's, which the judge and the student know."""
     for function in functions:
         function.__code__ = function.__code__.replace(co_filename=str(module.__file__))
+        function.__qualname__ = function.__name__
 
 
 QUESTIONS = ("get_service_names_and_types", "get_service_names_and_types_by_node")

@@ -78,7 +78,7 @@ first_move.asks("rate", 4, "Keeps telling it", keeps_telling)
 @first_move.mistake(
     "no_movement",
     certain=True,
-    says="Your commands arrive, but all their numbers are 0: the robot is told to stand still.",
+    says="Your commands arrive, but all their numbers are 0: the robot is told not to move.",
     next_step="Set command.linear.x = 0.5 before you publish the command.",
 )
 def no_movement(seen: Publisher, _: Publisher) -> bool:

@@ -211,7 +211,7 @@ mismatched.asks("type_subscribed", 2.5, "Finds the listener's type", _finds("typ
 @mismatched.mistake(
     "looked_too_early",
     before="syntax_error",
-    says="Your function asked the graph before it had met the two nodes: a new node knows no other node yet.",
+    says="Your function asked the graph before it had discovered the two nodes: a new node knows no other node yet.",
     next_step="Wait, with a limit, until both names are in node.get_node_names_and_namespaces(); then ask what they "
     "have.",
 )

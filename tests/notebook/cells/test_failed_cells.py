@@ -55,10 +55,26 @@ def test_a_class_whose_newest_code_did_not_run_is_not_judged(said: Callable[...,
     }
     told = said(*((RIGHT, cell, CHECK) for cell in broken))
     for number, (words, error) in enumerate(zip(told, broken.values(), strict=True)):
-        assert f"Your cell that defines Talker{number} did not run to its definition: {error}" in words
-        assert "Fix that cell and run it" in words
+        assert (
+            f"Your cell that defines Talker{number} stopped before Talker{number} was defined: {error}"
+            in words
+        )
+        assert "Correct that cell and run it" in words
         assert "the judge was asked" not in words
         assert "Traceback" not in words
+
+
+def test_a_class_that_the_checked_function_uses_must_not_be_older_than_its_cell(
+    said: Callable[..., list[str]],
+) -> None:
+    broken = "class Talker:\n    if x = 3:\n        pass"
+    uses = {
+        "make": "def make():\n    return Talker()",
+        "Maker": "class Maker:\n    def make(self):\n        return [Talker for _ in range(2)]",
+    }
+    told = said(*((RIGHT, use, broken, f"check('lab', {name})") for name, use in uses.items()))
+    for number, words in enumerate(told):
+        assert f"Your cell that defines Talker{number} stopped before Talker{number} was defined" in words
 
 
 def test_any_other_class_is_judged(said: Callable[..., list[str]]) -> None:
@@ -67,6 +83,11 @@ def test_any_other_class_is_judged(said: Callable[..., list[str]]) -> None:
         "error below the class": (RIGHT + "\n1 / 0",),
         "another class": (RIGHT, "class Listener:\n    1 +"),
         "another cell": (RIGHT, "Talker.tick()"),
+        "an attribute of that name": (
+            "class Talker:\n    def talk(self):\n        return self.tell()",
+            "def tell(): pass",
+            "def tell():\n    1 +",
+        ),
         "text of a file": (RIGHT, "%%nothing\nclass Talker:\n    1 +"),
         # The last one: it holds for all checks behind it.
         "a grader's kernel": (
