@@ -14,6 +14,7 @@ from autograder.grading.rebuilding import task_making
 from autograder.grading.running import engine
 
 sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parent / "collecting"))
 sys.path.insert(0, str(Path(__file__).parent / "day"))
 from tiny_class import LISTENER, MASTER, QUIET, TALKER, FakeEngine, TinyClass, make_tiny_class, write_master
 
