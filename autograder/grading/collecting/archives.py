@@ -41,7 +41,7 @@ _LEFT_BY_PROGRAMS = ("__MACOSX", ".git", ".ipynb_checkpoints", "__pycache__", ".
 """Files that systems and editors leave beside a student's work."""
 _LEADS_OUT = "its name leads out of the archive"
 _LONGEST_NAME = 1_000
-"""Characters of a path; a zip may have 65,535, whose printing alone would be a flood."""
+"""Characters of a path; a zip may have paths of 65,535, too many to print."""
 _TOO_LONG = f"its name has more than {_LONGEST_NAME} characters"
 
 
@@ -220,10 +220,10 @@ def _read_file(path: Path) -> bytes:
 
 
 class _Bounded:
-    """A file of which nobody reads more at once than a limit.
+    """A file that gives no more bytes at once than a limit.
 
-    An archive may say several times how long its list of files is, and programs differ in which they believe. So the
-    limit is on what is really read.
+    An archive may give several lengths for its list of files, and programs differ in the one that they believe. So the
+    limit is on the bytes that are really read.
 
     Attributes:
         most: Bytes that may be read at once.
@@ -246,7 +246,7 @@ class _Bounded:
         return data
 
     def seekable(self) -> bool:
-        """It can be read from any place."""
+        """True: it can be read from any place."""
         return True
 
 

@@ -354,7 +354,7 @@ class _Collecting:
         )
 
     def _assignment_of(self, file: File, owners: Owners) -> str:
-        """The assignment that the name speaks of which the student gave to a file."""
+        """The assignment that a file's name, as the student gave it, speaks of."""
         own_name = owners.found.file if owners.found and owners.members and not file.inner else file.name
         return self._assignment_from.named(own_name)
 
@@ -376,7 +376,7 @@ def _alone(one: Outcome) -> Outcome:
 
 
 def _depth(files: Sequence[File]) -> int:
-    """The number of folders, from the top, whose names may say a student: two where all files are in one folder.
+    """The number of folders, from the top, with names that may say a student: two where all files are in one folder.
 
     Below them, students have chosen the names.
     """

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     _Who = Callable[[Mapping[str, str]], tuple[Identity, tuple[Identity, ...]]]
-    """Tells from the groups of a pattern who is meant, and who may be where the name can be read in several ways."""
+    """Tells from the groups of a pattern the student, and the student of each way to read the name."""
 
 _MOST_MARKS = 10
-"""Of a name that can be read in several ways; nobody's has more."""
+"""In a name that can be read in several ways; no real name has more."""
 # What browsers, Canvas and Drive add to a name that is there already, and file managers to a copy.
 _COPY_OF = "Copy of "
 _MARK = r" ?\((\d{1,6})\)|-(\d{1,6})| - [Cc]opy"
@@ -98,7 +98,7 @@ def plain(parts: Sequence[str]) -> list[Found]:
 
 
 def read_time(text: str) -> datetime | None:
-    """A time as a name or a list has it, in whatever zone that is; None where nobody can read it.
+    """A time as a name or a list has it, in whatever zone that is; None where it cannot be read.
 
     Beside ISO 8601, systems write what Blackboard does (``2025-10-03-14-05-06``) and dates in English words, as Moodle
     (``Friday, 3 October 2025, 2:05 PM``) and Brightspace (``Oct 3, 2025 205 PM``: a folder's name can have no colon).
@@ -257,5 +257,5 @@ _READERS = {
     "gradescope": _in_one_part(r"^submission_(?P<number>\d+)$", _gradescope, where=slice(2), says_file=True),
 }
 FORMS = tuple(_READERS)
-"""In the order in which they are tried: the one whose names say most about themselves goes first."""
+"""In the order in which they are tried: the form with the most particular names goes first."""
 _BRANCHES = ("-main", "-master")

@@ -180,5 +180,5 @@ def _word(value: object) -> str:
 
 
 def is_unread(entry: Entry) -> bool:
-    """True if a list says when, and nobody could read it."""
+    """True if a list has a time that could not be read."""
     return entry.when is None and entry.time not in _NO_TIME

@@ -118,7 +118,7 @@ class Waiting:
 
 
 class WaitingList:
-    """The files that have no place, for whoever grades, reports and exports after collecting.
+    """The files that have no place, for the commands that grade, report and export after collecting.
 
     Args:
         directory: The class.
@@ -137,7 +137,7 @@ class WaitingList:
         return [one for one in known if not one.assignment or one.there == self._there(one)]
 
     def note(self, outcomes: Sequence[Outcome]) -> None:
-        """Write down what has no place now, in place of what was written of the same files before.
+        """Write down the files that have no place now; what was written of the same files before is replaced.
 
         Raises:
             OSError: It could not be written.
@@ -162,7 +162,7 @@ class WaitingList:
         return Waiting(outcome.label, outcome.reason, outcome.student, outcome.assignment, there, now)
 
     def _there(self, one: Outcome | Waiting) -> str:
-        """A digest of what is at the place of a file of which it is known."""
+        """A digest of the notebooks at a file's place; empty where its place is not known."""
         if not one.student or not one.assignment:
             return ""
         folder = self._directory.path / "submitted" / one.student / one.assignment

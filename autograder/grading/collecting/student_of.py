@@ -1,4 +1,4 @@
-"""The owner of a file: its name compared with the list of students and the lists of the download."""
+"""Finds a file's student: compares its name with the list of students and with the lists of the download."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Owners:
 
     @property
     def only(self) -> Student | None:
-        """The one student; None where it is nobody's, a group's or may be several's."""
+        """The student; None where the file is of no student, of a group, or may be of several."""
         students = [student for members in self.members for student in members]
         return students[0] if len(students) == 1 else None
 
@@ -61,7 +61,7 @@ class StudentOf:
         return None
 
     def _of(self, identity: Identity) -> tuple[tuple[Student, ...], ...]:
-        """The students who may be meant; without any list of students, whoever is named in the LMS's own form."""
+        """The students who may be meant; in a class without a list of students, the one that the LMS names."""
         known = self._by_number.get((identity.lms, identity.number or identity.login))
         if known is not None:
             sure = tuple(student for names in known.members if (student := self._first(names)))
@@ -74,11 +74,11 @@ class StudentOf:
         return (found,) if found else ()
 
     def _first(self, names: Iterable[Identity]) -> Student | None:
-        """The student of whom the first of several names is sure."""
+        """The student of the first of several names that is one student's alone."""
         return next((hit[0] for name in names if len(hit := self._roster.find(name)) == 1), None)
 
     def reason_against(self, owners: Owners) -> str:
-        """The reason why a file is nobody's work, and what to do; empty where it is somebody's."""
+        """The reason why a file cannot be taken as a student's, and what to do; empty where it can."""
         if owners.found is None:
             return _NO_ID
         identity = owners.found.identity
@@ -114,7 +114,7 @@ class StudentOf:
 
     @property
     def strangers(self) -> list[str]:
-        """Those whom a list of times names, and who are nobody in the class."""
+        """The names in a list of times that are no student's of the class."""
         return [
             str(names[0])
             for entry in self._told

@@ -227,7 +227,7 @@ def _newest(group: list[Candidate]) -> tuple[Candidate | None, _Others]:
 
 
 def _people(group: Iterable[Candidate]) -> str:
-    """The numbers of the people whose files have come in one download as one student's; empty where it is one."""
+    """The numbers of several people in one download who are all read as one student; empty where it is one person."""
     numbers: dict[Path, set[str]] = defaultdict(set)
     for one in group:
         if one.collected.lms in _ONE_NUMBER:
@@ -264,7 +264,7 @@ def _best(
 
 
 def _has_news(newest: Collected, known: Collected) -> bool:
-    """True if the same notebook comes with a later time, or with the first one."""
+    """True if the same notebook comes with a later time, or has its first one now."""
     return newest.when is not None and (known.when is None or newest.when > known.when)
 
 

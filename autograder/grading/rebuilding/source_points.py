@@ -1,4 +1,4 @@
-"""The cells with points in the sources of a class, and whether the gradebook has the same.
+"""The cells with points in the sources of a class, compared with those in the gradebook.
 
 Reading a source means running nbgrader's steps on it, which takes a second for a chapter; what came of it is kept.
 """
@@ -72,7 +72,7 @@ def read_released(directory: ClassDirectory, store: ClassStore, fingerprints: Fi
 
 
 def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, ...]]) -> None:
-    """See that the gradebook knows the cells that the sources have, with the same points.
+    """Check that the gradebook knows the cells that the sources have, with the same points.
 
     Raises:
         ClassIncomplete: There is no assignment, or the gradebook has it otherwise.

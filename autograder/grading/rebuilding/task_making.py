@@ -1,4 +1,4 @@
-"""From a submission to a task, in the same way for a run, a dry run and the conversion."""
+"""Makes a task of a submission, in the same way for a run, a dry run and the conversion."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ _NOTHING_JUDGED = (NOT_SUBMITTED, NOT_GRADED, EXCUSED, State.NOT_CHECKED)
 
 
 def total(rows: Iterable[Row]) -> float | None:
-    """The points of several rows together; None where nobody has judged any of them."""
+    """The points of several rows together; None where none of them is judged."""
     scores = [score for row in rows if (score := row.shown_score) is not None]
     return round(sum(scores), 4) if scores else None
 
@@ -95,7 +95,7 @@ class Row:
 
     @property
     def is_blank(self) -> bool:
-        """True if nobody has judged anything: such a row has no points, which is not zero points."""
+        """True if nothing is judged yet: such a row has no points, which is not zero points."""
         return self.state in _NOTHING_JUDGED and self.by_hand is None and not self.extra
 
     @property

@@ -80,7 +80,7 @@ class Remembered:
 
 
 class PageExporter(HTMLExporter):
-    """nbgrader's feedback page without scripts, for notebooks that nobody vouches for.
+    """nbgrader's feedback page without scripts, for notebooks that cannot be trusted.
 
     nbgrader's own page loads MathJax from the network. Without it, formulas are shown as TeX. The parts that many
     students share are rendered once. Nbconvert copies and validates a notebook twice on its way to the template, for
@@ -186,7 +186,7 @@ _NBCONVERTS = HTMLExporter()
 
 @functools.lru_cache(maxsize=8)
 def _highlighter(lexer: str | None) -> Any:
-    """Nbconvert's highlighter, which is not asked again about the same code."""
+    """Nbconvert's highlighter, with a memory of the code that it has seen."""
     make: Any = Highlight2HTML
     highlight = make(pygments_lexer=lexer)
 
@@ -202,7 +202,7 @@ def _highlighter(lexer: str | None) -> Any:
 
 @pass_context
 def _markdown_to_html(context: Any, source: str) -> str:
-    """The filter of :func:`markdown_to_html`, which is not asked again about the same text."""
+    """The filter :func:`markdown_to_html`, with a memory of the texts that it has seen."""
     cell = context.get("cell", {})
     if cell.get("attachments"):
         return markdown_to_html(context, source)

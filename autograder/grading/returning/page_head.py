@@ -49,10 +49,8 @@ def with_summary(body: str, notebook: NotebookNode, names: Mapping[str, Any]) ->
         for name, points, words in _lines(notebook, names)
     )
     student, name = str(names.get("student", "")), str(names.get("name", ""))
-    whose = f"{name} ({student})" if name else student
-    return (
-        f"{before}{begin}<p><strong>{escape(printable(whose))}</strong></p><table>{lines}</table>{end}{after}"
-    )
+    heading = f"{name} ({student})" if name else student
+    return f"{before}{begin}<p><strong>{escape(printable(heading))}</strong></p><table>{lines}</table>{end}{after}"
 
 
 def mark_waiting(notebook: NotebookNode, cells: Mapping[str, CellEntry]) -> None:

@@ -1,4 +1,4 @@
-"""A submission's texts and outputs, made harmless for the browser of whoever reads them.
+"""Makes a submission's texts and outputs harmless for the browser in which they are read.
 
 nbconvert hands raw HTML, Mermaid diagrams and any address through to the page, in nbgrader's feedback and in
 formgrader alike. So a student's text is looked at with nbconvert's own Markdown parser before it is written
@@ -35,7 +35,7 @@ SHOWN = (*IMAGES, "text/plain")
 """The types of output that a cell of a submission may show; none can carry code."""
 
 _FORMATTING = frozenset(("a", "b", "code", "em", "i", "s", "small", "strike", "strong", "tt", "u"))
-"""Elements that a parser of HTML opens anew in each block, as long as nobody has closed them."""
+"""Elements that a parser of HTML opens anew in each block, until they are closed."""
 _TAGS = _FORMATTING | {
     *("abbr", "blockquote", "br", "caption", "center", "dd", "del", "details", "div", "dl", "dt"),
     *("h1", "h2", "h3", "h4", "h5", "h6", "hr", "img", "input", "ins", "kbd", "li", "mark", "ol", "p", "pre"),
@@ -194,13 +194,14 @@ def clean(page: str) -> str:
 
 
 def _may_open(page: str) -> int:
-    """At most how many elements nh3 makes of formatting that stays open: with gigabytes of them, nobody can stop it.
+    """A limit on the number of elements that nh3 makes of formatting that stays open.
 
-    At each tag, it opens anew each kind of formatting that is still open, three of a kind at most.
+    At each tag, it opens anew each kind of formatting that is still open, three of a kind at most. A text of 50,000
+    characters can have it make gigabytes of them, and it cannot be interrupted.
     """
     tags = list(_TAG.finditer(page))
     formatting = [tag[0] for tag in tags if tag[1].lower() in _FORMATTING]
-    # Nobody reads here what is quoted: each of these tags is a kind of its own.
+    # A tag is not read beyond a quotation mark, so each tag with one counts as a kind of its own.
     kinds = {tag for tag in formatting if tag[-1] not in "\"'"}
     return len(tags) * (3 * len(kinds) + sum(tag not in kinds for tag in formatting))
 

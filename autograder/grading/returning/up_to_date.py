@@ -47,7 +47,7 @@ class UpToDate:
         self._feedback = feedback
 
     def bring(self, work: Work, entry: SubmissionEntry) -> None:
-        """Bring a submission up to date whose grades were in the gradebook already, as ``entry``."""
+        """Bring a submission up to date that was in the gradebook before this run, as ``entry``."""
         self._make_pages(work, self._keep_time(work, entry))
 
     def bring_graded(self, work: Work) -> None:

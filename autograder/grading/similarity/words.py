@@ -61,7 +61,7 @@ def words(text: str) -> Iterator[Word]:
 
 
 def chosen_names(code: Sequence[Word]) -> set[str]:
-    """The names that whoever wrote this has chosen: of variables, functions, classes, parameters and attributes."""
+    """The names that the writer has chosen: of variables, functions, classes, parameters and attributes."""
     chosen: set[str] = set()
     depth, in_head, in_loop = 0, False, False
     for place, word in enumerate(code):
