@@ -22,7 +22,7 @@ from autograder.grading.rebuilding.submission import MAX_BYTES, UnreadableSubmis
 from autograder.regular_files import name_as_text
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
 MOST_FILES = 20_000
 """In one folder of a download: a student whose folder is full, such as a repository, harms nobody else."""
@@ -89,6 +89,18 @@ class Room:
 
     files: int = 5_000
     unpacked: int = 1_000_000_000
+
+    def take(self, entries: Sequence[zipfile.ZipInfo]) -> str:
+        """Take room for the files of one more archive; the reason why there is none, or an empty text."""
+        size = sum(entry.file_size for entry in entries)
+        if len(entries) > self.files or size > self.unpacked:
+            return (
+                f"it has {len(entries)} files that unpack to {size / 1e6:.0f} MB: with the student's other archives, "
+                f"more than {Room.files} files or {Room.unpacked / 1e6:.0f} MB. Ask for the notebook alone"
+            )
+        self.files -= len(entries)
+        self.unpacked -= size
+        return ""
 
 
 def files_of(source: Path, *, opened: bool = True) -> Iterator[File]:
@@ -168,17 +180,9 @@ def _of_zip(outer: File, data: BinaryIO, largest_list: int, room: Room | None = 
     except (NotTaken, zipfile.BadZipFile, ValueError, NotImplementedError, OSError, EOFError) as error:
         yield replace(outer, read=_refusing(f"it is no zip file that can be read: {error}"))
         return
-    if room is not None:
-        size = sum(entry.file_size for entry in entries)
-        if len(entries) > room.files or size > room.unpacked:
-            reason = (
-                f"it has {len(entries)} files that unpack to {size / 1e6:.0f} MB: with the student's other archives, "
-                f"more than {Room.files} files or {Room.unpacked / 1e6:.0f} MB. Ask for the notebook alone"
-            )
-            yield replace(outer, read=_refusing(reason))
-            return
-        room.files -= len(entries)
-        room.unpacked -= size
+    if room is not None and (reason := room.take(entries)):
+        yield replace(outer, read=_refusing(reason))
+        return
     for entry in entries:
         name = _name_of(entry)
         parts = tuple(part for part in name.replace("\\", "/").split("/") if part not in ("", "."))
