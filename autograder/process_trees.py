@@ -223,21 +223,6 @@ def end_processes_in(folder: Path) -> None:
     kill(known(pid for pid in _processes() if pid != os.getpid() and _mentions(pid, place)))
 
 
-def end_session(leader: int, began: str) -> None:
-    """Kill what is left of a session, also where its leader is gone, and wait until it is.
-
-    Args:
-        leader: The process that the session began with.
-        began: When that process began (:func:`started_at`). Its number is not given away while one of its session
-            lives; afterwards it may be another program's, which nothing happens to.
-    """
-    if started_at(leader) not in ("", began):
-        return
-    members = [pid for pid in _processes() if pid != os.getpid() and _session(pid) == leader]
-    for process in known(members):
-        _signal(process, signal.SIGKILL, wait=True)
-
-
 def _signal(process: Known, number: int, *, wait: bool = False) -> bool:
     """Send a signal to a process that is still there; wait for its end where that is wanted.
 
@@ -286,14 +271,6 @@ def _fields(pid: int) -> list[str]:
         return Path(f"/proc/{pid}/stat").read_text(errors="replace").rpartition(")")[2].split()
     except OSError:
         return []
-
-
-def _session(pid: int) -> int:
-    """The session of a process; 0 where it is gone or in another PID namespace."""
-    try:
-        return os.getsid(pid)
-    except (ProcessLookupError, PermissionError):
-        return 0
 
 
 def _mentions(pid: int, place: bytes) -> bool:

@@ -11,7 +11,7 @@ import re2
 
 from autograder.workspaces.failures import telling_line
 from autograder.workspaces.install_folder import entry_points, package_prefixes, programs
-from autograder.workspaces.packages import needed, survey
+from autograder.workspaces.packages import find_packages, needed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -93,7 +93,7 @@ def look(workspace: Path) -> Build:
     src = workspace / "src"
     if not src.is_dir():
         return Build(workspace, ok=False, trouble="no_workspace", line=_no_workspace(workspace))
-    packages, unusable = survey(src)
+    packages, unusable = find_packages(src)
     found = Build(workspace, ok=False, packages=tuple(packages), unusable=tuple(unusable))
     if packages:
         return found

@@ -97,20 +97,8 @@ class Package:
         return tuple(_entry_points(_text(self.folder / "setup.py")))
 
 
-def find_packages(src: Path) -> list[Package]:
-    """The packages below ``src`` that colcon would build, in the order of their names.
-
-    Raises:
-        BadPackage: A package.xml cannot be read.
-    """
-    packages, unusable = survey(src)
-    if unusable:
-        raise BadPackage(unusable[0])
-    return packages
-
-
-def survey(src: Path) -> tuple[list[Package], list[str]]:
-    """The packages below ``src`` in the order of their names, and what is wrong with those that cannot be used."""
+def find_packages(src: Path) -> tuple[list[Package], list[str]]:
+    """The packages below ``src`` that colcon would build, by name, and what is wrong with those that cannot be used."""
     packages, unusable = [], []
     files = sorted(islice(_package_files(src), MAX_PACKAGES + 1))
     if len(files) > MAX_PACKAGES:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from autograder.workspaces.packages import Package, find_packages
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -85,3 +87,10 @@ def interface_package(folder: Path, comment: str = "") -> Path:
     (folder / "package.xml").write_text(INTERFACE_PACKAGE_XML)
     (folder / "LICENSE").write_text(comment)
     return folder
+
+
+def packages_in(src: Path) -> list[Package]:
+    """The packages below a folder, all of which can be used."""
+    packages, unusable = find_packages(src)
+    assert not unusable
+    return packages

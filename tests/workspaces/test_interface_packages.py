@@ -16,11 +16,11 @@ from autograder.workspaces.interface_packages import (
     simple_package_xml,
     simplified,
 )
-from autograder.workspaces.packages import find_packages, sources_of
+from autograder.workspaces.packages import sources_of
 from autograder.workspaces.sources import Tree
 
 sys.path.insert(0, str(Path(__file__).parent))
-from made_workspaces import CMAKE, DEFINITION, INTERFACE_PACKAGE_XML, interface_package
+from made_workspaces import CMAKE, DEFINITION, INTERFACE_PACKAGE_XML, interface_package, packages_in
 
 
 @pytest.mark.parametrize(
@@ -141,7 +141,7 @@ def test_a_package_xml_that_says_something_else_stays_different(text: str) -> No
 def test_two_packages_that_differ_in_comments_have_one_key(tmp_path: Path) -> None:
     for name in "ab":
         interface_package(tmp_path / name / "my_robot_interfaces", comment=f"# {name}\n")
-    one, other = (sources_of(tmp_path / name, find_packages(tmp_path / name)) for name in "ab")
+    one, other = (sources_of(tmp_path / name, packages_in(tmp_path / name)) for name in "ab")
     assert one != other
     assert simplified(one) == simplified(other)
 
@@ -152,10 +152,10 @@ def test_two_packages_that_differ_in_comments_have_one_key(tmp_path: Path) -> No
 )
 def test_a_package_with_more_in_it_is_none(tmp_path: Path, file: str, text: str) -> None:
     folder = interface_package(tmp_path / "my_robot_interfaces")
-    assert all(map(holds_only_interfaces, find_packages(tmp_path)))
+    assert all(map(holds_only_interfaces, packages_in(tmp_path)))
     (folder / file).parent.mkdir(exist_ok=True)
     (folder / file).write_text(text)
-    assert not any(map(holds_only_interfaces, find_packages(tmp_path)))
+    assert not any(map(holds_only_interfaces, packages_in(tmp_path)))
 
 
 @pytest.mark.parametrize("name", ["CMakeLists.txt", "srv/AddTwoInts.srv"])

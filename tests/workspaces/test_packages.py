@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import shutil
-from typing import TYPE_CHECKING
+import sys
+from pathlib import Path
 
 import pytest
 
@@ -11,12 +12,12 @@ from autograder.workspaces import builds, packages
 from autograder.workspaces.interface_packages import simple_package_xml
 from autograder.workspaces.sources import BadSources
 
-if TYPE_CHECKING:
-    from pathlib import Path
+sys.path.insert(0, str(Path(__file__).parent))
+from made_workspaces import packages_in
 
 
 def test_a_package_is_read_and_not_run(workspace: Path) -> None:
-    (package,) = packages.find_packages(workspace / "src")
+    (package,) = packages_in(workspace / "src")
     assert (package.name, package.build_type) == ("tiny_pkg", "ament_python")
     assert package.programs == ("hello = tiny_pkg.hello:main",)
 
@@ -25,7 +26,7 @@ def test_a_line_inside_a_comment_is_no_dependency_and_is_told(workspace: Path) -
     file = workspace / "src" / "tiny_pkg" / "package.xml"
     hidden = "<!--\n <depend> rclpy </depend>\n <member_of_group>a_group</member_of_group> -->"
     file.write_text(file.read_text().replace("</package>", f"{hidden}</package>"))
-    (package,) = packages.find_packages(workspace / "src")
+    (package,) = packages_in(workspace / "src")
     assert package.commented == ("rclpy", "a_group")
     assert "a_group" not in package.dependencies
 
@@ -34,11 +35,18 @@ def test_an_ignored_package_is_none(workspace: Path) -> None:
     ignored = workspace / "src" / "ignored_pkg"
     shutil.copytree(workspace / "src" / "tiny_pkg", ignored)
     (ignored / "COLCON_IGNORE").touch()
-    assert [package.name for package in packages.find_packages(workspace / "src")] == ["tiny_pkg"]
+    assert [package.name for package in packages_in(workspace / "src")] == ["tiny_pkg"]
+
+
+def trouble_in(src: Path) -> str:
+    """What is wrong with the one package below a folder."""
+    found, (trouble,) = packages.find_packages(src)
+    assert found == []
+    return trouble
 
 
 def key_of(src: Path) -> str:
-    return builds.key(packages.sources_of(src, packages.find_packages(src)))
+    return builds.key(packages.sources_of(src, packages_in(src)))
 
 
 def test_the_key_is_of_bytes_names_and_bits(workspace: Path) -> None:
@@ -87,8 +95,7 @@ def test_far_too_much_is_refused(workspace: Path, monkeypatch: pytest.MonkeyPatc
 )
 def test_an_odd_package_file_is_the_packages_own_fault(workspace: Path, content: bytes) -> None:
     (workspace / "src" / "tiny_pkg" / "package.xml").write_bytes(content)
-    with pytest.raises(packages.BadPackage, match="is not valid"):
-        list(packages.find_packages(workspace / "src"))
+    assert "is not valid" in trouble_in(workspace / "src")
     assert simple_package_xml(content.decode("utf-8", "replace"))
 
 
@@ -97,8 +104,7 @@ def test_a_package_file_is_not_longer_than_it_looks(workspace: Path) -> None:
     many = f"""<!ENTITY a "<depend>x</depend>"><!ENTITY b "{"&a;" * 400}">"""
     content = f"<!DOCTYPE package [{many}]><package><name>tiny_pkg</name>{'&b;' * 300}</package>"
     (workspace / "src" / "tiny_pkg" / "package.xml").write_text(content)
-    with pytest.raises(packages.BadPackage, match="declares an entity"):
-        packages.find_packages(workspace / "src")
+    assert "declares an entity" in trouble_in(workspace / "src")
 
 
 def test_a_package_file_with_thousands_of_dependencies_is_not_validated(workspace: Path) -> None:
@@ -106,16 +112,14 @@ def test_a_package_file_with_thousands_of_dependencies_is_not_validated(workspac
     depends = "".join(f"<depend>p{number}</depend>" for number in range(1_000))
     content = f"<package><name>tiny_pkg</name>{depends}</package>"
     (workspace / "src" / "tiny_pkg" / "package.xml").write_text(content)
-    with pytest.raises(packages.BadPackage, match="larger than 20 kB"):
-        list(packages.find_packages(workspace / "src"))
+    assert "larger than 20 kB" in trouble_in(workspace / "src")
 
 
 def test_nobody_looks_at_hundreds_of_packages(workspace: Path) -> None:
     for number in range(60):
         (folder := workspace / "src" / f"p{number}").mkdir()
         (folder / "package.xml").write_text("<package/>")
-    with pytest.raises(packages.BadPackage, match="more than 50 packages below src"):
-        packages.find_packages(workspace / "src")
+    assert "more than 50 packages below src" in trouble_in(workspace / "src")
 
 
 @pytest.mark.parametrize(
@@ -129,5 +133,5 @@ def test_nobody_looks_at_hundreds_of_packages(workspace: Path) -> None:
 )
 def test_a_setup_too_deep_to_be_read_has_no_programs(workspace: Path, deep: str) -> None:
     (workspace / "src" / "tiny_pkg" / "setup.py").write_text(deep)
-    (package,) = packages.find_packages(workspace / "src")
+    (package,) = packages_in(workspace / "src")
     assert package.programs == ()

@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import os
 import socket
+import sys
 import unicodedata
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -13,12 +15,14 @@ import pytest
 from autograder.messages.lines import Lines, NotUnderstood, encode
 from autograder.messages.workspaces import Source
 from autograder.workspaces import sources
-from autograder.workspaces.packages import find_packages, sources_of
+from autograder.workspaces.packages import sources_of
 from autograder.workspaces.sources import BadSources, Tree, read
+
+sys.path.insert(0, str(Path(__file__).parent))
+from made_workspaces import packages_in
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
 TWIN = unicodedata.normalize("NFC", "ä.py"), unicodedata.normalize("NFD", "ä.py")
 
@@ -192,7 +196,7 @@ def test_what_is_collected_builds_the_same(workspace: Path, tmp_path: Path) -> N
     sent = [sent_over(encode(source)) for source in sources.collect_workspace(workspace)]
     Tree(tuple(sources.checked(sent))).write(tmp_path / "there")
     here, there = workspace / "src", tmp_path / "there" / "ros2_ws" / "src"
-    assert sources_of(there, find_packages(there)) == sources_of(here, find_packages(here))
+    assert sources_of(there, packages_in(there)) == sources_of(here, packages_in(here))
 
 
 def test_links_pipes_and_what_tools_leave_are_left_out(workspace: Path) -> None:

@@ -107,18 +107,14 @@ class Background:
         nodes: At least one; they have been checked.
         threads: How many callbacks may run at a time.
         name: What the student calls it, if anything.
-        shown: Whether errors in callbacks and other news are printed.
     """
 
-    def __init__(
-        self, nodes: Sequence[Node], *, threads: int = 1, name: str | None = None, shown: bool = True
-    ) -> None:
+    def __init__(self, nodes: Sequence[Node], *, threads: int = 1, name: str | None = None) -> None:
         self.name = name
         self.run: CellRun | None = _cells.current
-        self._shown = shown
         self._size = threads
         self._label = ", ".join(node_label(node) for node in nodes)
-        self._errors = CallbackErrors(shown=shown)
+        self._errors = CallbackErrors()
         self._threads = SpinThreads(
             nodes, threads=threads, on_failure=self._errors.record, on_end=self._when_ended
         )
@@ -168,8 +164,7 @@ class Background:
             # An impatient second interrupt must not leave threads behind.
             self._threads.stop(grace=0.0)
             raise
-        if self._shown:
-            let_log_lines_arrive()
+        let_log_lines_arrive()
 
     def drop(self, node: Node) -> None:
         """Part with one node for good; with the last one the background ends."""
@@ -197,8 +192,6 @@ class Background:
         with _lock:
             if self in _running:
                 _running.remove(self)
-        if not self._shown:
-            return
         if ending is Ending.ROS_SHUT_DOWN:
             say(
                 f"ROS was shut down, so {self._label} spins no longer. "
@@ -210,8 +203,6 @@ class Background:
             say(f"The executor failed, so {self._label} spins no longer. Run the cell again.")
 
     def _when_taken(self, taken: Taken) -> None:
-        if not self._shown:
-            return
         name = node_label(taken.node)
         if self._threads.is_own_thread() and taken.caller:
             say(

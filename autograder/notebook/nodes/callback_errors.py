@@ -68,14 +68,9 @@ class CallbackFailedError(PlainlyShownError, RuntimeError):
 
 
 class CallbackErrors:
-    """Collects the errors of one background's callbacks.
+    """Collects the errors of one background's callbacks, and shows each new one in the notebook."""
 
-    Args:
-        shown: Whether each new error is shown in the notebook. A check, which shows a card, wants them quiet.
-    """
-
-    def __init__(self, *, shown: bool = True) -> None:
-        self._shown = shown
+    def __init__(self) -> None:
         self._lock = threading.Lock()
         self._errors: dict[Any, CallbackError] = {}
 
@@ -89,8 +84,6 @@ class CallbackErrors:
             else:
                 seen = replace(known, count=known.count + 1)
             self._errors[key] = seen
-        if not self._shown:
-            return
         if known is None:
             say(_report(seen, failure))
         elif _is_milestone(seen.count):
@@ -105,7 +98,7 @@ class CallbackErrors:
     def show_counts(self) -> None:
         """Say how often each error came that came more than once."""
         for seen in self.all:
-            if self._shown and seen.count > 1:
+            if seen.count > 1:
                 say(f"Error in {seen}")
 
 
