@@ -63,7 +63,7 @@ def appeal(folder: Path, student: str, exercise: str, output: Path | None) -> No
     What the student wrote, what was expected, what the judge saw, what it decided, and with which course. The file is
     JSON to read, and `./course replay` judges it again.
     """
-    from autograder.grading.appealing.appeal import write_appeal
+    from autograder.grading.appeal import write_appeal
 
     with grading_errors():
         click.echo(write_appeal(folder, student, exercise, output))

@@ -67,7 +67,7 @@ def new_class(folder: Path, assignments: tuple[str, ...]) -> None:
 def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
     """Bring the sources of the class FOLDER to what the course says now; the old ones are kept."""
     from autograder import course
-    from autograder.grading.following.renewing import renew
+    from autograder.grading.classes.new_class import renew
 
     with grading_errors():
         for line in renew(folder, course.root(), assignments):

@@ -17,16 +17,14 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from autograder.grading.asked_for import AskedFor, check_known
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Refused, Submission
 from autograder.grading.classes.configuration import check_configuration
-from autograder.grading.classes.timestamps import handed_in_at, is_not_believed
-from autograder.grading.collecting.outcomes import WaitingList
+from autograder.grading.classes.origins import news
+from autograder.grading.classes.timestamps import handed_in_at
 from autograder.grading.collecting.tidying import Tidied, tidy
-from autograder.grading.entering import gradebook
+from autograder.grading.entering import gradebook_reading
 from autograder.grading.errors import MasterUnusable, is_disk_full
-from autograder.grading.following.origins import news
 from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import check_release, read_released
@@ -40,7 +38,7 @@ from autograder.grading.table.entries import SubmissionEntry, read_entries
 from autograder.grading.table.roster import enter_roster, read_roster
 from autograder.grading.table.true_rows import true_rows
 from autograder.grading.table.what_counts import read_what_counts
-from autograder.grading.work import Work, without_grade, would_change
+from autograder.grading.work import AskedFor, Work, find_work, without_grade, would_change
 
 # What only a class with something to grade needs is imported where it is used: nbgrader alone takes a second.
 
@@ -82,8 +80,8 @@ def grade(
         jobs: Notebooks executed at once; as many as processors and memory allow by default.
         again: Execute everything anew, also what is unchanged.
         feedback: Make the pages that go back to the students.
-        console: Where progress is shown; standard error by default.
-        judge: What makes a judge, as ``module:class``; the real one by default.
+        console: The console for progress; standard error by default.
+        judge: The class that makes a judge, as ``module:class``; the real one by default.
         scheduler: The address of a Dask scheduler whose workers execute the notebooks; this machine by default.
         dry_run: Enter nothing: execute what would be executed and say who would get other points. What was executed
             is kept for the run that enters it.
@@ -147,9 +145,8 @@ class _Batch:
         self._entered: dict[tuple[str, str], Entered] = {}
         self._console = console
         self._fingerprints = Fingerprints(directory)
-        released = read_released(directory, store, self._fingerprints)
+        self._released = released = read_released(directory, store, self._fingerprints)
         self._cells: dict[str, tuple[GradedCell, ...]] = released.cells
-        self._not_usable = released.unusable
         self._what_counts = read_what_counts(directory, released.cells)
         if not released.cells and released.unusable:
             raise MasterUnusable(next(iter(released.unusable.values())))
@@ -179,8 +176,9 @@ class _Batch:
 
         Raises:
             ClassIncomplete: The gradebook does not know an assignment that was asked for.
+            GradingError: There is no assignment or student of a name that was asked for.
         """
-        assignments, students = self._asked.assignments, self._asked.students
+        assignments = self._asked.assignments
         asked = {name: found for name, found in self._cells.items() if not assignments or name in assignments}
         if asked or not assignments:
             check_release(self._directory, asked)
@@ -192,54 +190,16 @@ class _Batch:
         for text in news(self._directory, self._store, assignments or self._cells):
             self._notices.append(text)
             self._console.print(f"note: {text}", markup=False, highlight=False, soft_wrap=True)
-        found, refused = self._directory.submissions()
-        refused += [*tidied.refused, *self._unusable(assignments), *self._unplaced()]
-        found = [submission for submission in found if submission.assignment in self._cells]
-        check_known(assignments, self._directory.assignments(), "assignment")
-        there = {submission.student for submission in found}
-        # Who asks for a folder that was refused is told why, further down.
-        there |= {one.path.name for one in refused if one.path.parent == self._directory.path / "submitted"}
-        check_known(students, sorted(there | self._roster.students.keys()), "student")
-        self._refused = refused
-        names = {assignment: self._directory.notebooks(assignment) for assignment in self._cells}
-        for submission in found:
-            work = Work(submission, self._fingerprints.of(submission), names[submission.assignment])
-            if is_not_believed(submission.folder):
-                self._notices.append(
-                    f"{submission.student}/{submission.assignment}: its timestamp.txt was not written by "
-                    "`./course collect`, as the others of this class were, and is not believed: say when it was handed "
-                    "in with ./course collect --times FILE"
-                )
-            chosen = self._asked.has(submission.student, submission.assignment)
-            (self._works if chosen else self._others).append(work)
-
-    def _unusable(self, assignments: Sequence[str]) -> Iterator[Refused]:
-        """The assignments that cannot be graded, which hold up no other.
-
-        Raises:
-            MasterUnusable: It was asked for by name.
-        """
-        for name, reason in self._not_usable.items():
-            if name in assignments:
-                raise MasterUnusable(reason)
-            if not assignments:
-                yield Refused(
-                    self._directory.path / "source" / name, f"{reason} The other assignments are graded."
-                )
-
-    def _unplaced(self) -> Iterator[Refused]:
-        """Collected files without a place, named to the instructor until they have one."""
-        for one in WaitingList(self._directory).read():
-            if self._asked.has(one.student or "", one.assignment or "") or not (
-                one.student and one.assignment
-            ):
-                whose = f"{one.student}: " if one.student else ""
-                yield Refused(Path(one.label), f"not placed: {whose}{one.reason}")
+        found = find_work(
+            self._directory, self._asked, self._released, self._roster, self._fingerprints, tidied.refused
+        )
+        self._works, self._others, self._refused = found.works, found.others, found.refused
+        self._notices += found.notices
 
     def plan(self, again: bool) -> None:
         """Find the submissions whose grades are in the gradebook already; the others are graded."""
         in_gradebook = {
-            assignment: gradebook.scores(self._directory.gradebook_url, assignment)
+            assignment: gradebook_reading.scores(self._directory.gradebook_url, assignment)
             for assignment in sorted({work.submission.assignment for work in [*self._works, *self._others]})
         }
         self._entries = read_entries(self._directory.gradebook_url)
@@ -345,8 +305,10 @@ class _Batch:
             timings=self._timings,
         )
 
-    def _settle(self, work: Work, in_gradebook: dict[str, dict[str, dict[str, gradebook.Scores]]]) -> None:
-        """Find out whether the gradebook has the grades of exactly this submission."""
+    def _settle(
+        self, work: Work, in_gradebook: dict[str, dict[str, dict[str, gradebook_reading.Scores]]]
+    ) -> None:
+        """Mark a submission as written if the gradebook has the grades of exactly this work."""
         entered = self._entered.get(work.key)
         scores = in_gradebook[work.submission.assignment].get(work.submission.student, {})
         if entered is None or not entered.is_in(scores):

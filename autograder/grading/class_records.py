@@ -1,4 +1,4 @@
-"""What the store of a class keeps (:mod:`autograder.grading.class_store`), as plain data."""
+"""The records in the store of a class (:mod:`autograder.grading.class_store`), as plain data."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from autograder.boxes.execution import Execution
-    from autograder.grading.entering.gradebook import Scores
+    from autograder.grading.entering.gradebook_reading import Scores
     from autograder.grading.task import Task
 
 
@@ -25,7 +25,7 @@ class Attempt:
     """One time that a submission was graded and entered.
 
     Attributes:
-        at: When, in UTC.
+        at: The time in UTC.
         assignment: The assignment's name.
         work: Stands for what was handed in and all that it was graded with: equal for the same once more.
         course: Stands for the version of the course.
@@ -53,7 +53,7 @@ class Attempt:
 
 @dataclass(frozen=True)
 class Entered:
-    """What was entered into the gradebook of a submission; from it the next run knows which grades are still right.
+    """The last entry of a submission into the gradebook, by which the next run knows the grades that are still right.
 
     Attributes:
         fingerprint: Of all that it was made from.
@@ -100,7 +100,7 @@ class RunCell(msgspec.Struct, frozen=True, array_like=True):
 
     Attributes:
         name: Its grade_id; empty for a cell that the student has added.
-        text: What the student wrote; empty for a check cell.
+        text: The student's text; empty for a check cell.
         checks: The exercise that it checks; empty for any other cell.
     """
 
@@ -111,7 +111,7 @@ class RunCell(msgspec.Struct, frozen=True, array_like=True):
 
 @dataclass(frozen=True)
 class KeptEvidence:
-    """What the judge saw of a student's notebook, and what was run. It is no grade.
+    """The evidence of a student's notebook, with the cells that were run. It is no grade.
 
     Attributes:
         assignment: The assignment's name.
@@ -131,7 +131,7 @@ class KeptEvidence:
 
     @classmethod
     def of(cls, task: Task, execution: Execution) -> Self:
-        """What there is to keep of a task that was executed."""
+        """The evidence of a task that was executed."""
         run = [
             RunCell(cell.name, "" if cell.check else cell.source, cell.check.exercise if cell.check else "")
             for cell in task.cells

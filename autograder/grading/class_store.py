@@ -76,7 +76,7 @@ _Decoded = TypeVar("_Decoded")
 
 
 class ClassStore:
-    """What the grader knows of one class. A context manager, which closes the file.
+    """The store of one class. A context manager, which closes the file.
 
     The first step that writes makes the file. Where there is none every answer is empty, as for an unknown student. An
     entry that cannot be decoded and can be made again counts as none.
@@ -147,7 +147,7 @@ class ClassStore:
             book.executemany("DELETE FROM result WHERE (student, assignment) = (?, ?)", names)
 
     def evidence(self, student: str, exercise: str) -> KeptEvidence | None:
-        """What the judge saw of a student in an exercise last; None where nothing of it is kept."""
+        """The last evidence of a student's check; None where none is kept."""
         for assignment, notebook, task, course, checks, cells in self._rows(
             "SELECT assignment, notebook, task, course, checks, cells FROM evidence WHERE student = ?"
             " ORDER BY assignment, notebook",
@@ -188,7 +188,7 @@ class ClassStore:
                 )
 
     def note_fingerprint(self, submission: Submission, fingerprint: str) -> None:
-        """Note that what was entered is right for other bytes, too."""
+        """Note that the entry of a submission is right for other bytes, too."""
         self._note(submission, "fingerprint", fingerprint)
 
     def note_shown(self, submission: Submission, shown: str) -> None:
@@ -196,13 +196,13 @@ class ClassStore:
         self._note(submission, "shown", shown)
 
     def forget_entered(self, submissions: Iterable[Submission]) -> None:
-        """From now on nothing is known of what the gradebook has of these submissions."""
+        """Drop the entries of submissions, before their grades are taken back."""
         with self._step() as book:
             names = ((one.student, one.assignment) for one in submissions)
             book.executemany("DELETE FROM entered WHERE (student, assignment) = (?, ?)", names)
 
     def entered(self) -> dict[tuple[str, str], Entered]:
-        """What was entered of all submissions, by student and assignment."""
+        """The last entries into the gradebook, by student and assignment."""
         found = {}
         for student, assignment, fingerprint, *blobs, course, shown in self._rows("SELECT * FROM entered"):
             tasks = _decoded(blobs[0], dict[str, str])
@@ -251,7 +251,7 @@ class ClassStore:
     # -- sources
 
     def note_origins(self, origins: Mapping[str, Origin]) -> None:
-        """Note what the sources of assignments were just made of."""
+        """Note the masters from which the sources of assignments were just made."""
         with self._step() as book:
             book.executemany(
                 "REPLACE INTO origin VALUES (?, ?, ?, ?)",
@@ -259,17 +259,17 @@ class ClassStore:
             )
 
     def origins(self) -> dict[str, Origin]:
-        """What the sources were made of, by assignment; empty where nobody noted it."""
+        """The masters of the sources, by assignment; empty where nobody noted them."""
         return {name: Origin(*fields) for name, *fields in self._rows("SELECT * FROM origin")}
 
     def keep_graded_cells(self, fingerprint: str, cells: bytes) -> None:
-        """Keep what was read from the sources of these bytes, in place of what was read from others."""
+        """Keep the cells that were read from the present sources, in place of all others."""
         with self._step() as book:
             book.execute("DELETE FROM graded_cells")
             book.execute("INSERT INTO graded_cells VALUES (?, ?)", (fingerprint, cells))
 
     def graded_cells(self, fingerprint: str) -> bytes:
-        """What was read from the sources of these bytes; empty where that is not known."""
+        """The cells that were read from the sources with this fingerprint; empty where they are not known."""
         rows = self._rows("SELECT cells FROM graded_cells WHERE fingerprint = ?", fingerprint)
         return rows[0][0] if rows else b""
 
@@ -336,7 +336,7 @@ class ClassStore:
 def _decoded(
     data: bytes, form: type[_Decoded], decode: Callable[..., Any] = msgspec.json.decode
 ) -> _Decoded | None:
-    """What was kept; None where it is damaged."""
+    """The decoded value; None where it is damaged."""
     try:
         found: _Decoded = decode(data, type=form)
     except msgspec.MsgspecError:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from autograder import course
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
 
@@ -18,7 +18,7 @@ def course_command(*words: object, inside: Path | None = None) -> str:
     """A command of ``./course`` as messages print it: a shell takes each word, a path with blanks too, as one.
 
     Args:
-        words: What is typed behind ``./course``.
+        words: The words behind ``./course``.
         inside: The folder in which it has to be typed, as nbgrader's own commands ask for; any where not given.
     """
     program = course.root() / "course" if inside else "./course"
@@ -28,6 +28,19 @@ def course_command(*words: object, inside: Path | None = None) -> str:
 
 class GradingError(Exception):
     """Something an instructor can put right; the message says what happened and what to do."""
+
+
+def check_known(wanted: Sequence[str], known: Sequence[str], what: str) -> None:
+    """See that there is what was asked for by name.
+
+    Raises:
+        GradingError: There is not; the message says what there is.
+    """
+    for name in wanted:
+        if name not in known:
+            raise GradingError(
+                f"There is no {what} named {name} here. There is: {', '.join(known) or 'none'}."
+            )
 
 
 class NotAClass(GradingError):
@@ -53,7 +66,7 @@ class ClassBusy(GradingError):
 
     Args:
         path: The class.
-        holder: Who runs it; empty where that is not known.
+        holder: The process that runs it; empty where it is not known.
     """
 
     def __init__(self, path: Path, holder: str) -> None:
@@ -82,7 +95,7 @@ class GradebookTrouble(GradingError):
 
     Args:
         path: The class.
-        said: What the database says.
+        said: The words of the database.
     """
 
     def __init__(self, path: Path, said: str) -> None:
@@ -97,11 +110,11 @@ class GradebookTrouble(GradingError):
 
 
 class StoreTrouble(GradingError):
-    """What the grader knows of a class cannot be read or written.
+    """The store of a class cannot be read or written.
 
     Args:
-        file: Where it is.
-        said: What is wrong with it.
+        file: Its file.
+        said: The reason, such as the words of the database.
     """
 
     def __init__(self, file: Path, said: str) -> None:

@@ -2,27 +2,29 @@
 
 nbgrader's own conversion has no judge, and copies whatever is in a submission: a pipe would hold it up for ever,
 and a file with a hole of a terabyte would fill the disk. So its steps are replaced by those of ``./course grade``.
-The class's configuration names exporters of ours. nbgrader makes an exporter before it converts the first notebook, and
-ours hands the converter that made it to :func:`take_over`.
+The class's configuration names the exporters below. nbgrader makes an exporter before it converts the first notebook,
+and ours take over the converter that made them.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from nbconvert.exporters import NotebookExporter
 from nbgrader.converters import Autograde, BaseConverter, GenerateFeedback, NbGraderException
+from nbgrader.preprocessors import NbGraderPreprocessor
 from rich.console import Console
 from traitlets.config import Application
 
 from autograder.cards.readable import printable
-from autograder.grading.asked_for import check_known
 from autograder.grading.batch import grade
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission, reason_against_name
 from autograder.grading.classes.configuration import check_configuration
 from autograder.grading.entering.writer import Writer
-from autograder.grading.errors import GradingError
+from autograder.grading.errors import GradingError, check_known
+from autograder.grading.returning.page_exporter import PageExporter
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -130,7 +132,7 @@ class _OurFeedback(_Ours, GenerateFeedback):
                 yield Submission(student, assignment, folder)
 
 
-def take_over(converter: object) -> None:
+def _take_over(converter: object) -> None:
     """Have the engine do what a converter of nbgrader was made for.
 
     Args:
@@ -140,3 +142,36 @@ def take_over(converter: object) -> None:
     if ours is not None:
         # nbgrader offers no way to say which class it shall make.
         converter.__class__ = ours
+
+
+class SubmissionExporter(NotebookExporter):
+    """By this name nbgrader finds our way of grading, whoever starts ``autograde``."""
+
+    def __init__(self, *args: Any, **kw: Any) -> None:
+        initialise: Any = super().__init__
+        initialise(*args, **kw)
+        _take_over(self.parent)
+
+
+class FeedbackExporter(PageExporter):
+    """By this name nbgrader finds our way of making pages, whoever starts ``generate_feedback``."""
+
+    def __init__(self, *args: Any, **kw: Any) -> None:
+        initialise: Any = super().__init__
+        initialise(*args, **kw)
+        _take_over(self.parent)
+
+
+class WireExecute(NbGraderPreprocessor):
+    """Stands in the place of nbgrader's Execute and refuses to grade.
+
+    Its section of the configuration has what the engine reads: limits, and two switches.
+    """
+
+    def preprocess(self, *_: Any, **__: Any) -> tuple[Any, Any]:
+        """Say what is missing: nbgrader comes here only where the line that leads to the engine was taken out.
+
+        Raises:
+            TypeError: Always.
+        """
+        raise TypeError(f"Autograde.exporter_class must be {__name__}.SubmissionExporter")

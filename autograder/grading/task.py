@@ -26,13 +26,13 @@ class Task:
         assignment: The assignment's name.
         notebook: The notebook's name.
         cells: The rebuilt notebook.
-        seed: What the judge draws random inputs from.
+        seed: The seed of the judge's random inputs.
         course: Stands for the version of everything that decides a grade.
         limits: All limits.
         files: Files of the assignment that are beside the notebook, by relative path.
         problem: Why there is nothing to execute; empty for a notebook that can be.
-        boxed: Execute in boxes, or not at all. Without boxes is for the course's own notebooks, and for an instructor
-            who has typed so; such a result never stands for one from a box.
+        boxed: Execute in boxes, or not at all. False is for the course's own notebooks, and for an instructor who has
+            typed so; such a result never counts as one from a box.
     """
 
     student: str

@@ -1,25 +1,60 @@
-"""A submission on its way through a batch, and what may be said of it."""
+"""The work of a batch: what it is asked to grade, a submission on its way through it, and what may be said of that."""
 
 from __future__ import annotations
 
 import contextlib
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.grading.classes.timestamps import handed_in_at
+from autograder.grading.classes.class_directory import Refused
+from autograder.grading.classes.timestamps import handed_in_at, is_not_believed
+from autograder.grading.collecting.outcomes import WaitingList
+from autograder.grading.errors import MasterUnusable, check_known
 from autograder.grading.reporting.rows import LATE, Row
 from autograder.grading.table.entries import CellEntry, SubmissionEntry, read_due_dates
 from autograder.grading.table.point_differences import Difference
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
     from datetime import datetime
 
     from autograder.boxes.execution import Execution
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
-    from autograder.grading.rebuilding.source_points import GradedCell
+    from autograder.grading.rebuilding.fingerprints import Fingerprints
+    from autograder.grading.rebuilding.source_points import GradedCell, Released
     from autograder.grading.table.entries import Entries
+    from autograder.grading.table.roster import Roster
     from autograder.grading.task import Task
+
+
+@dataclass(frozen=True)
+class AskedFor:
+    """The choice of what a run is to grade.
+
+    Attributes:
+        assignments: Only these; all where there is none.
+        students: Only these; all where there is none.
+    """
+
+    assignments: Sequence[str]
+    students: Sequence[str]
+
+    def has(self, student: str, assignment: str) -> bool:
+        """True if a student's work for an assignment was asked for."""
+        return (not self.assignments or assignment in self.assignments) and (
+            not self.students or student in self.students
+        )
+
+    def tells_of(self, refused: Refused, class_folder: Path) -> bool:
+        """True if what was refused belongs to the students and assignments that were named."""
+        submitted = class_folder / "submitted"
+        if not refused.path.is_relative_to(submitted):
+            return True
+        parts = refused.path.relative_to(submitted).parts
+        return (not self.students or parts[0] in self.students) and (
+            not self.assignments or len(parts) < 3 or parts[1] in self.assignments
+        )
 
 
 @dataclass
@@ -30,9 +65,9 @@ class Work:
         submission: Its place.
         fingerprint: Of what it is made from, as it was at the start.
         notebooks: The names of its notebooks.
-        results: What is known of the notebooks that are not written down yet, by notebook.
-        rows: What the judge says of it, or why it says nothing; None while nothing is known.
-        written: Whether the gradebook holds exactly these results.
+        results: The results that are not entered yet, by notebook.
+        rows: The judge's results, or the reason why there are none; None while nothing is known.
+        written: True if the gradebook holds exactly these results.
         shown: Stands for what the gradebook said when its pages were made; empty where there are none of these results.
     """
 
@@ -60,6 +95,88 @@ class Work:
         return [self.results[notebook] for notebook in self.notebooks]
 
 
+@dataclass(frozen=True)
+class FoundWork:
+    """The work that is there.
+
+    Attributes:
+        works: The submissions that were asked for.
+        others: The rest of the class.
+        refused: Files and folders that cannot be graded where they are, with the reason.
+        notices: Remarks for the instructor, each a sentence.
+    """
+
+    works: list[Work]
+    others: list[Work]
+    refused: list[Refused]
+    notices: list[str]
+
+
+def find_work(
+    directory: ClassDirectory,
+    asked: AskedFor,
+    released: Released,
+    roster: Roster,
+    fingerprints: Fingerprints,
+    untidy: Iterable[Refused],
+) -> FoundWork:
+    """Find what was handed in, and what of it was asked for.
+
+    Args:
+        directory: The class.
+        asked: The choice of what is graded.
+        released: The cells with points of the class.
+        roster: The students of the class.
+        fingerprints: Those of the class as it is now.
+        untidy: Files beside their place that were not moved there.
+
+    Raises:
+        MasterUnusable: An assignment that was asked for by name cannot be graded.
+        GradingError: There is no assignment or student of a name that was asked for.
+    """
+    submissions, refused = directory.submissions()
+    found = FoundWork([], [], refused, [])
+    found.refused.extend([*untidy, *_unusable(directory, asked, released), *_unplaced(directory, asked)])
+    submissions = [one for one in submissions if one.assignment in released.cells]
+    check_known(asked.assignments, directory.assignments(), "assignment")
+    there = {submission.student for submission in submissions}
+    # A folder that was refused is known, too: its line in the report says why.
+    there |= {one.path.name for one in refused if one.path.parent == directory.path / "submitted"}
+    check_known(asked.students, sorted(there | roster.students.keys()), "student")
+    names = {assignment: directory.notebooks(assignment) for assignment in released.cells}
+    for submission in submissions:
+        work = Work(submission, fingerprints.of(submission), names[submission.assignment])
+        if is_not_believed(submission.folder):
+            found.notices.append(
+                f"{submission.student}/{submission.assignment}: its timestamp.txt was not written by "
+                "`./course collect`, as the others of this class were, and is not believed: say when it was handed "
+                "in with ./course collect --times FILE"
+            )
+        (found.works if asked.has(*work.key) else found.others).append(work)
+    return found
+
+
+def _unusable(directory: ClassDirectory, asked: AskedFor, released: Released) -> Iterator[Refused]:
+    """The assignments that cannot be graded, which hold up no other.
+
+    Raises:
+        MasterUnusable: It was asked for by name.
+    """
+    for name, reason in released.unusable.items():
+        if name in asked.assignments:
+            raise MasterUnusable(reason)
+        if not asked.assignments:
+            yield Refused(directory.path / "source" / name, f"{reason} The other assignments are graded.")
+
+
+def _unplaced(directory: ClassDirectory, asked: AskedFor) -> Iterator[Refused]:
+    """Collected files without a place, named to the instructor until they have one."""
+    for one in WaitingList(directory).read():
+        if asked.has(one.student, one.assignment) or not (one.student and one.assignment):
+            student = f"{one.student}: " if one.student else ""
+            yield Refused(Path(one.label), f"not placed: {student}{one.reason}")
+
+
 def would_change(
     directory: ClassDirectory,
     works: Iterable[Work],
@@ -71,7 +188,7 @@ def would_change(
     Args:
         directory: The class.
         works: The submissions.
-        entries: What the gradebook has.
+        entries: The entries of the gradebook.
         cells: The cells with points, by assignment.
     """
     found = []
@@ -101,7 +218,7 @@ def would_change(
 def _foreseen(
     work: Work, entry: SubmissionEntry, by_exercise: Mapping[str, GradedCell], due: datetime | None
 ) -> SubmissionEntry:
-    """What the gradebook would have of a submission after a run, but for what being late costs."""
+    """The entry that a submission would have after a run, with the penalty of before."""
     cells = {notebook: dict(of_notebook) for notebook, of_notebook in entry.cells.items()}
     for row in () if work.written else work.rows or ():
         cell = by_exercise[row.exercise]

@@ -20,7 +20,7 @@ from nbgrader.api import Gradebook
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
-from autograder.grading.entering import database, gradebook
+from autograder.grading.entering import gradebook_reading
 from autograder.grading.errors import ClassIncomplete, GradingError
 
 if TYPE_CHECKING:
@@ -141,7 +141,7 @@ def test_it_has_the_same_grades(tiny: TinyClass, moved: Moved, fake_engine: Fake
     assert found["ada"] == {TALKER: 10, LISTENER: 6}
     assert found == scores(f"sqlite:///{tiny.path / 'gradebook.db'}")
     assert reports[0].rows == reports[1].rows
-    assert gradebook.scores(moved.url, "lab_1_2")["ada"] == {"lab_1_2": found["ada"]}
+    assert gradebook_reading.scores(moved.url, "lab_1_2")["ada"] == {"lab_1_2": found["ada"]}
     assert not (moved.tiny.path / "gradebook.db").exists()
 
 
@@ -159,7 +159,7 @@ def test_what_is_missing_is_said(
     with pytest.raises(GradingError, match="Look whether the database server runs"):
         tiny.grade()
     monkeypatch.setitem(sys.modules, "psycopg", None)
-    database._engine.cache_clear()  # as in another process
+    gradebook_reading._engine.cache_clear()  # as in another process
     with pytest.raises(GradingError, match=r"\./course setup --with postgresql"):
         tiny.grade()
 

@@ -1,1 +1,1 @@
-"""A class on disk: how it is made, where things are in it, who is at work in it."""
+"""A class on disk: making it, its folders, its configuration and its lock."""

@@ -1,4 +1,4 @@
-"""A class on disk: where things are, what may be in it, and who is at work in it."""
+"""A class on disk: its folders, the names that may be in them, and its lock."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Refused:
     """Something under ``submitted`` that cannot be graded under that name.
 
     Attributes:
-        path: What it is.
+        path: The file or folder.
         reason: Why, and what to do.
     """
 

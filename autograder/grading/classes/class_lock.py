@@ -27,8 +27,8 @@ class Holder:
 
     Attributes:
         pid: The process.
-        host: Where it runs.
-        since: When it began, local time.
+        host: The machine that it runs on.
+        since: The local time at which it began.
     """
 
     pid: int
@@ -48,7 +48,7 @@ _changing = threading.Lock()
 
 @contextlib.contextmanager
 def held(path: Path, of: Path) -> Iterator[bool]:
-    """Hold the lock of a class; whether the one who held it before was killed.
+    """Hold the lock of a class. The value is True if the process that held it before was killed.
 
     It is a POSIX record lock: it goes with the process, however that ends, and no child inherits it. Its file has a
     name in it as long as somebody is at work: one that is there when nobody is was killed.

@@ -18,16 +18,18 @@ if TYPE_CHECKING:
 
     from autograder.grading.classes.class_directory import ClassDirectory
 
-_EXPORTER = "autograder.grading.exporter.SubmissionExporter"
-_STEP = "autograder.grading.preprocessors.WireExecute"
+_EXPORTER = "autograder.grading.nbgrader_commands.SubmissionExporter"
+_STEP = "autograder.grading.nbgrader_commands.WireExecute"
 _ANYTHING = object()
 _MAY_BE: Mapping[str, Mapping[str, tuple[Any, ...]]] = {
     "Autograde": {
         "exporter_class": (_EXPORTER,),
         "autograde_preprocessors": ([_STEP],),
     },
-    "GenerateFeedback": {"exporter_class": ("autograder.grading.pages.FeedbackExporter",)},
-    "HTMLExporter": {"filters": ({"markdown2html": "autograder.grading.pages.markdown_to_html"},)},
+    "GenerateFeedback": {"exporter_class": ("autograder.grading.nbgrader_commands.FeedbackExporter",)},
+    "HTMLExporter": {
+        "filters": ({"markdown2html": "autograder.grading.returning.page_exporter.markdown_to_html"},)
+    },
     # The last three limit what nbgrader's exchange takes.
     "CourseDirectory": dict.fromkeys(
         ("root", "db_url", "course_id", "include", "max_file_size", "max_dir_size"), (_ANYTHING,)

@@ -1,4 +1,4 @@
-"""Making a class: an nbgrader course directory whose assignments are the course's masters."""
+"""Making a class, an nbgrader course directory of the course's masters, and bringing its sources up to date."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import contextlib
 import copy
 import shutil
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from alembic.config import Config
@@ -17,10 +18,10 @@ from nbgrader.coursedir import CourseDirectory
 from autograder.boxes.limits import Limits
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, SUFFIX, ClassDirectory
+from autograder.grading.classes.origins import note_origins
 from autograder.grading.classes.seeds import create_secret
 from autograder.grading.entering.writer import quiet
 from autograder.grading.errors import ClassExists, GradingError, clear_disk_errors, course_command
-from autograder.grading.following.origins import note_origins
 from autograder.grading.rebuilding import nodes
 from autograder.masters.layout import lab_name, masters, relinked
 from autograder.masters.master_errors import MasterError
@@ -49,12 +50,12 @@ c.GenerateAssignment.preprocessors = ReleaseSteps()
 
 # How a submission is graded: the judge watches each check cell on the wire, whether it is `./course grade`,
 # `nbgrader autograde` or formgrader's button that starts it. Without the first line, the second one refuses to grade.
-c.Autograde.exporter_class = "autograder.grading.exporter.SubmissionExporter"
-c.Autograde.autograde_preprocessors = ["autograder.grading.preprocessors.WireExecute"]
+c.Autograde.exporter_class = "autograder.grading.nbgrader_commands.SubmissionExporter"
+c.Autograde.autograde_preprocessors = ["autograder.grading.nbgrader_commands.WireExecute"]
 
 # What you and the students read: no script, no frame and no address that a submission brought along.
-c.GenerateFeedback.exporter_class = "autograder.grading.pages.FeedbackExporter"
-c.HTMLExporter.filters = {{"markdown2html": "autograder.grading.pages.markdown_to_html"}}
+c.GenerateFeedback.exporter_class = "autograder.grading.nbgrader_commands.FeedbackExporter"
+c.HTMLExporter.filters = {{"markdown2html": "autograder.grading.returning.page_exporter.markdown_to_html"}}
 
 # `nbgrader export` and `./course grade` each write a table: give nbgrader's a name of its own. In neither does
 # a spreadsheet find a formula.
@@ -78,7 +79,7 @@ class NewClass:
     """A class that was made.
 
     Attributes:
-        path: Where it is.
+        path: The class directory.
         assignments: Its assignments; ``release/`` has their notebooks as students get them.
     """
 
@@ -110,7 +111,7 @@ def new_class(
     Args:
         path: A folder that is not there yet, or an empty one; outside of the course's repository.
         course_root: The folder that holds ``solutions``.
-        assignments: Which masters to take, by name; all with a graded cell by default.
+        assignments: The names of the masters; all with a graded cell by default.
         cell_seconds: Wall time of one cell.
         notebook_seconds: Wall time of a notebook.
 
@@ -250,6 +251,45 @@ def release(directory: ClassDirectory, assignments: Sequence[str] = ()) -> None:
                 f"nbgrader could not generate the assignment {assignment}: {error}. "
                 f"See {directory.state / 'nbgrader.log'}."
             ) from error
+
+
+def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> list[str]:
+    """Write the sources of a class anew from the course's masters, and its release from them.
+
+    Args:
+        path: The class directory.
+        course_root: The folder that holds ``solutions``.
+        assignments: Only these; all that the course has masters of by default.
+
+    Returns:
+        What was done, a line for each assignment.
+
+    Raises:
+        GradingError: An assignment is not the course's or not the class's, or nbgrader refuses the new text.
+    """
+    directory = ClassDirectory(path)
+    there = directory.assignments()
+    for name in assignments:
+        if name not in there:
+            raise GradingError(f"The class has no assignment {name}. It has: {', '.join(there)}.")
+    made = {name: one for name, one in sources_of(course_root, assignments).items() if name in there}
+    kept = directory.state / "sources-before" / f"{datetime.now(tz=UTC):%Y-%m-%dT%H-%M-%S.%f}"
+    with directory.lock(), ClassStore(directory) as store:
+        for name in made:
+            shutil.copytree(directory.path / "source" / name, kept / name)
+        try:
+            for name, (_, notebook) in made.items():
+                write_source(directory, name, notebook, there)
+            release(directory, list(made))
+        except GradingError:
+            for name in made:
+                shutil.copytree(kept / name, directory.path / "source" / name, dirs_exist_ok=True)
+            raise
+        note_origins(store, made)
+    lines = [
+        f"{name}: as the course has it now; hand out {directory.path / 'release' / name}" for name in made
+    ]
+    return [*lines, f"what was there before is in {kept}"]
 
 
 @contextlib.contextmanager

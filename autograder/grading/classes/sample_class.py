@@ -18,7 +18,7 @@ from autograder.boxes import sandbox
 from autograder.boxes.execution import CellType
 from autograder.grading.batch import grade
 from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, SUFFIX
-from autograder.grading.classes.new_class import new_class
+from autograder.grading.classes.new_class import CONFIG, new_class
 from autograder.grading.errors import ClassExists
 from autograder.grading.rebuilding import nodes
 from autograder.grading.rebuilding.rebuild import grade_id
@@ -88,7 +88,7 @@ def demo(path: Path, *, console: Console | None = None) -> GradeReport:
     is possible it is graded without one: the samples are the course's own.
 
     Args:
-        path: Where the class is or will be.
+        path: The class directory, which is made where there is none.
         console: Standard output by default.
 
     Raises:
@@ -126,8 +126,8 @@ def _make(path: Path, console: Console) -> None:
 
 
 def _version(root: Path) -> str:
-    """Changes with the masters and the answers that the sample is made of, and with the sample."""
-    digest = hashlib.sha256(DATA.read_bytes())
+    """Changes with the masters, the answers and the data of the sample, and with the configuration of a class."""
+    digest = hashlib.sha256(DATA.read_bytes() + CONFIG.encode())
     notebooks = sample_notebooks()
     names = {notebook.assignment for notebook in notebooks}
     used = [path for path in masters(root) if lab_name(path) in names]
@@ -144,7 +144,7 @@ def made_notebook(path: Path, wanted: SampleNotebook) -> NotebookNode:
 
     Args:
         path: The class, with its sources and its release.
-        wanted: What is handed in.
+        wanted: The notebook to make.
     """
     name = f"{wanted.assignment}{SUFFIX}"
     made = nodes.read((path / "release" / wanted.assignment / name).read_text(encoding="utf-8"))

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 TIMESTAMP = "timestamp.txt"
 """The file's name, beside the notebooks."""
 SECRET = "submission_secret.txt"
-"""nbgrader's exchange writes it beside the notebooks that it collects, and finds by it whose feedback a page is."""
+"""nbgrader's exchange writes it beside the notebooks that it collects, and finds a page's student by it."""
 _LONGEST = 200
 _HEX = frozenset("0123456789abcdef")
 _EARLIEST = datetime(2024, 5, 23)
@@ -83,7 +83,7 @@ def handed_in_at(folder: Path) -> datetime | None:
     """The time at which the work in a folder was handed in, in UTC; None where nobody wrote it down.
 
     Raises:
-        ValueError: What was written down is no time, or one at which nobody can have handed in anything.
+        ValueError: The text is no time, or a time at which nobody can have handed in anything.
     """
     stamp = read_timestamp(folder)
     if not stamp:

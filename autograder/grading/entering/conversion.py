@@ -1,4 +1,4 @@
-"""The one conversion: a graded submission as it is in ``autograded/``, and what the gradebook has to hold of it.
+"""The conversion of a graded submission: its notebooks in ``autograded/``, and its entry in the gradebook.
 
 It leaves behind what nbgrader's own conversion would, in a twentieth of the time: that one reads, validates and writes
 every notebook twice and opens the gradebook a dozen times.
@@ -13,22 +13,29 @@ from nbformat.v4 import rwbase
 from nbgrader.preprocessors import LimitOutput
 from nbgrader.utils import compute_checksum, determine_grade, is_grade, is_solution, is_task
 
+from autograder.boxes.execution import Cell, CellRun, CellType, Check, Ended, Execution
+from autograder.cards.bundle import mimebundle
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.classes.timestamps import companions
 from autograder.grading.entering.gradebook import NotebookEntry
-from autograder.grading.entering.results import with_results
+from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding.demonstrations import LEFT_OUT
 from autograder.grading.rebuilding.task_making import rebuilt_notebook, task_of
+from autograder.grading.returning.sanitize import harmless_output, make_harmless
+from autograder.grading.running import sandboxing
+from autograder.grading.task import points
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from nbformat import NotebookNode
 
-    from autograder.boxes.execution import Execution
+    from autograder.boxes.limits import Limits
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
     from autograder.grading.task import Task
+    from autograder.verdict import Verdict
 
 _READ_ONLY = 0o444
 
@@ -43,13 +50,13 @@ def convert(
     results: Sequence[tuple[Task, Execution]],
     folder: Path,
 ) -> dict[str, NotebookEntry]:
-    """Write the notebooks of a submission with their results, and say what the gradebook has to hold.
+    """Write the notebooks of a submission with their results, and return their entries for the gradebook.
 
     Args:
         directory: The class.
-        submission: What was executed.
+        submission: The submission that was executed.
         results: A pair for each notebook of the assignment.
-        folder: Where the notebooks go; made here, and not there before.
+        folder: The folder for the notebooks; it is made here, and must not exist.
 
     Returns:
         By notebook.
@@ -72,7 +79,7 @@ def convert(
 
 
 def write_companions(submission: Submission, folder: Path) -> None:
-    """Have nbgrader's files of when a submission came, and by which secret, follow it to a folder.
+    """Copy nbgrader's files about a submission, its timestamp and its secret, into a folder.
 
     Raises:
         OSError: They could not be written.
@@ -91,7 +98,7 @@ def _graded(
         raise ChangedMeanwhile(
             f"{task.label} was changed while it was graded: grade it again to take the new one"
         )
-    return with_results(rebuilt.notebook, task, execution)
+    return _with_results(rebuilt.notebook, task, execution)
 
 
 def _text(notebook: NotebookNode) -> bytes:
@@ -122,3 +129,79 @@ def _comment(cell: Any) -> str | None:
 def _write(path: Path, data: bytes) -> None:
     write_whole(path, data)
     path.chmod(_READ_ONLY)
+
+
+def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> NotebookNode:
+    """The notebook with the outputs of its cells; of a check cell they are the card and the points."""
+    count = 0
+    for index, (node, cell) in enumerate(zip(nb.cells, task.cells, strict=True)):
+        if node.cell_type != "code":
+            continue
+        run = execution.cells[index] if index < len(execution.cells) else CellRun(Ended.NOT_RUN)
+        if run.ended is not Ended.NOT_RUN:
+            count += 1
+            node.execution_count = count
+        if cell.check is not None:
+            node.outputs = _graded_outputs(cell.check, execution.verdicts[index], run.outputs)
+        else:
+            node.outputs = [nodes.output(**output) for output in run.outputs]
+            node.outputs += _remark(node, cell, run, task.limits) if execution.cells else []
+    # Here and not on the page: formgrader shows what is in autograded/, and it cleans nothing.
+    make_harmless(nb, range(len(nb.cells)) if execution.trouble else execution.as_typed)
+    nb.cells = list(_with_rubrics(nb.cells))
+    if not task.boxed:
+        nb.cells.insert(0, nodes.cell(CellType.MARKDOWN, f"**{sandboxing.NOTE}**"))
+    return nb
+
+
+def _with_rubrics(cells: Sequence[NotebookNode]) -> Iterator[NotebookNode]:
+    """The cells, and below each question that a person grades what the instructor wrote for that person."""
+    for cell in cells:
+        rubric = cell.metadata.pop("autograder", {}).get("rubric", "")
+        yield cell
+        if rubric:
+            text = f"**How this answer is graded**\n\n{rubric}"
+            yield nodes.cell(CellType.MARKDOWN, text, f"rubric-{cell.id}"[:64])
+
+
+def _graded_outputs(
+    check: Check, verdict: Verdict, outputs: Sequence[Mapping[str, Any]]
+) -> list[NotebookNode]:
+    """The card, or what tests said, and as the cell's value the score: nbgrader gives a cell that number of points."""
+    score = points(check, verdict)
+    card = nodes.output(output_type="display_data", data=mimebundle(verdict), metadata={})
+    return [
+        *([card, *_of_tests(outputs)] if check.asserts else [card]),
+        nodes.output(
+            output_type="execute_result", data={"text/plain": f"{score:g}"}, metadata={}, execution_count=None
+        ),
+    ]
+
+
+def _of_tests(outputs: Sequence[Mapping[str, Any]]) -> Iterator[NotebookNode]:
+    """The output and errors of tests, in a form by which nbgrader decides nothing.
+
+    It takes an error and a line on standard error for zero points, and the first value for the points.
+    """
+    for one in outputs:
+        if one["output_type"] == "error":
+            text = "\n".join(one["traceback"]) or f"{one['ename']}: {one['evalue']}"
+            yield harmless_output(nodes.output(output_type="stream", name="stdout", text=text))
+        elif one["output_type"] == "stream":
+            yield harmless_output(nodes.output(output_type="stream", name="stdout", text=one["text"]))
+        elif one["output_type"] == "display_data":
+            yield harmless_output(nodes.output(**one))
+
+
+def _remark(node: NotebookNode, cell: Cell, run: CellRun, limits: Limits) -> list[NotebookNode]:
+    words = {
+        Ended.TIMED_OUT: f"[stopped: the cell had not ended after {run.seconds:.0f} s]",
+        Ended.KERNEL_DIED: "[the kernel ended in this cell]",
+        Ended.OUT_OF_MEMORY: f"[stopped: more than {limits.memory_bytes / 1e9:g} GB of memory]",
+        Ended.OUT_OF_CPU: f"[stopped: more than {limits.cpu_seconds:g} s of processor time]",
+        Ended.TOO_MANY_PROCESSES: f"[stopped: more than {limits.processes} processes and threads]",
+        Ended.TOO_MUCH_OUTPUT: f"[stopped: more than {limits.flood_bytes / 1e6:g} MB of output]",
+        Ended.NOT_RUN: "[this cell was not run]",
+    }
+    text = words.get(run.ended) if cell.source.strip() else LEFT_OUT if node.source.strip() else None
+    return [nodes.output(output_type="stream", name="stdout", text=f"{text}\n")] if text else []

@@ -1,40 +1,26 @@
-"""nbgrader's gradebook, where points are: taking them back, entering them and looking them up.
-
-In SQL on nbgrader's own tables (``nbgrader/api.py``, as of 0.9), because its objects cost a query for every cell, and
-importing them more than a second.
-"""
+"""nbgrader's gradebook, written: points are taken back and entered, with comments, times and what being late costs."""
 
 from __future__ import annotations
 
 import re  # noqa: TID251  (our own statements)
 import uuid
-from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import sqlalchemy
 
-from autograder.grading.entering.database import has_tables, opened, sql
+from autograder.grading.entering.gradebook_reading import SUBMITTED, Scores, has_tables, opened, sql
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
     from datetime import datetime
 
     from sqlalchemy import Connection
-
-Scores = Mapping[str, float | None]
-"""By grade_id; None where there is no automatic score."""
 
 _GRADED = ("GradeCell", "TaskCell")
 _COMMENTED = ("SolutionCell", "TaskCell")
 
 _PARAMETER = re.compile(r":(\w+)")
-
-_SUBMITTED = """
-    submitted_assignment s
-    JOIN assignment a ON a.id = s.assignment_id
-    JOIN submitted_notebook sn ON sn.assignment_id = s.id
-    JOIN notebook n ON n.id = sn.notebook_id
-"""
 
 
 class NoSuchAssignment(LookupError):
@@ -54,34 +40,6 @@ class NotebookEntry:
     comments: Mapping[str, str | None]
 
 
-@dataclass(frozen=True)
-class CellState:
-    """The gradebook's row of one cell of a student's notebook.
-
-    Attributes:
-        score: Points, those that a person gave included; None for a cell without points.
-        max_score: Points that can be had; None like ``score``.
-        comment: A person's comment, or else the automatic one.
-    """
-
-    score: float | None = None
-    max_score: float | None = None
-    comment: str | None = None
-
-
-@dataclass(frozen=True)
-class NotebookState:
-    """The gradebook's rows of a student's notebook.
-
-    Attributes:
-        cells: By grade_id.
-        late_penalty: Points that were taken off.
-    """
-
-    cells: Mapping[str, CellState]
-    late_penalty: float = 0.0
-
-
 def reset(url: str, submissions: Iterable[tuple[str, str]]) -> None:
     """Take back the automatic grades of these submissions, in one transaction.
 
@@ -89,7 +47,7 @@ def reset(url: str, submissions: Iterable[tuple[str, str]]) -> None:
     an instructor gave by hand is the instructor's and stays.
 
     Args:
-        url: What SQLAlchemy opens the gradebook by.
+        url: The address by which SQLAlchemy opens the gradebook.
         submissions: Pairs of assignment and student.
     """
     pairs = [{"assignment": assignment, "student": student} for assignment, student in submissions]
@@ -98,45 +56,10 @@ def reset(url: str, submissions: Iterable[tuple[str, str]]) -> None:
             book.execute(
                 sql(
                     "UPDATE grade SET auto_score = 0, needs_manual_grade = :yes WHERE notebook_id IN"
-                    f" (SELECT sn.id FROM {_SUBMITTED} WHERE a.name = :assignment AND s.student_id = :student)"
+                    f" (SELECT sn.id FROM {SUBMITTED} WHERE a.name = :assignment AND s.student_id = :student)"
                 ),
                 [{**pair, "yes": True} for pair in pairs],
             )
-
-
-def scores(url: str, assignment: str) -> dict[str, dict[str, Scores]]:
-    """The automatic scores of an assignment: by student, by notebook, by grade_id."""
-    return _scores(url, "a.name = :assignment", assignment=assignment)
-
-
-def scores_of_student(url: str, assignment: str, student: str) -> dict[str, Scores]:
-    """The automatic scores of one submission: by notebook, by grade_id."""
-    found = _scores(
-        url, "a.name = :assignment AND s.student_id = :student", assignment=assignment, student=student
-    )
-    return found.get(student, {})
-
-
-def worth(url: str, assignment: str) -> dict[str, dict[str, float]]:
-    """The points of each cell in the gradebook: by notebook, by grade_id."""
-    found: dict[str, dict[str, float]] = {}
-    with opened(url) as book:
-        if has_tables(book):
-            rows = book.execute(
-                sql(
-                    "SELECT n.name, b.name, COALESCE(g.max_score, t.max_score) FROM assignment a"
-                    " JOIN notebook n ON n.assignment_id = a.id"
-                    " LEFT JOIN base_cell b ON b.notebook_id = n.id AND b.type IN ('GradeCell', 'TaskCell')"
-                    " LEFT JOIN grade_cells g ON g.id = b.id LEFT JOIN task_cells t ON t.id = b.id"
-                    " WHERE a.name = :assignment"
-                ),
-                {"assignment": assignment},
-            )
-            for notebook, cell, points in rows:
-                cells = found.setdefault(notebook, {})
-                if cell is not None:
-                    cells[cell] = points
-    return found
 
 
 def enter(
@@ -149,11 +72,11 @@ def enter(
     """Enter the results of one submission, in one transaction; what a person entered stays.
 
     Args:
-        url: What SQLAlchemy opens the gradebook by.
+        url: The address by which SQLAlchemy opens the gradebook.
         assignment: The assignment's name.
         student: The student's id; the student is made where there is none.
         notebooks: Results, by notebook.
-        timestamp: When it was handed in, in UTC; what is known already stays where it is None.
+        timestamp: The time of handing in, in UTC; None leaves the time that is known already.
 
     Returns:
         Whether the assignment has a due date, so that nbgrader has to say what being late costs.
@@ -178,44 +101,6 @@ def enter(
         for name in cells.keys() - notebooks.keys():
             _enter_notebook(book, submission, cells[name], NotebookEntry({}, {}))
     return due is not None
-
-
-def states(url: str, assignment: str, student: str) -> dict[str, NotebookState]:
-    """All that a feedback page says of a submission, by notebook."""
-    names = {"assignment": assignment, "student": student}
-    of_student = "WHERE a.name = :assignment AND s.student_id = :student"
-    cells: dict[str, dict[str, CellState]] = {}
-    penalties: dict[str, float] = {}
-    with opened(url) as book:
-        for notebook, penalty in book.execute(
-            sql(f"SELECT n.name, sn.late_submission_penalty FROM {_SUBMITTED} {of_student}"), names
-        ):
-            penalties[notebook] = penalty or 0.0
-        for notebook, cell, by_hand, automatic in book.execute(
-            sql(
-                f"SELECT n.name, b.name, c.manual_comment, c.auto_comment FROM {_SUBMITTED}"
-                f" JOIN comment c ON c.notebook_id = sn.id JOIN base_cell b ON b.id = c.cell_id {of_student}"
-            ),
-            names,
-        ):
-            comment = by_hand if by_hand is not None else automatic
-            cells.setdefault(notebook, {})[cell] = CellState(comment=comment)
-        for notebook, cell, by_hand, automatic, extra, of_grade, of_task in book.execute(
-            sql(
-                "SELECT n.name, b.name, g.manual_score, g.auto_score, g.extra_credit, gc.max_score, tc.max_score"
-                f" FROM {_SUBMITTED} JOIN grade g ON g.notebook_id = sn.id JOIN base_cell b ON b.id = g.cell_id"
-                f" LEFT JOIN grade_cells gc ON gc.id = b.id LEFT JOIN task_cells tc ON tc.id = b.id {of_student}"
-            ),
-            names,
-        ):
-            base = by_hand if by_hand is not None else automatic
-            known = cells.setdefault(notebook, {}).get(cell, CellState())
-            cells[notebook][cell] = CellState(
-                score=0.0 if base is None else base + (extra or 0.0),
-                max_score=of_grade if of_grade is not None else of_task,
-                comment=known.comment,
-            )
-    return {name: NotebookState(cells.get(name, {}), penalty) for name, penalty in penalties.items()}
 
 
 @dataclass(frozen=True)
@@ -273,7 +158,7 @@ def enter_time(url: str, assignment: str, student: str, timestamp: datetime) -> 
     """Enter when a submission that is known was handed in.
 
     Args:
-        url: What SQLAlchemy opens the gradebook by.
+        url: The address by which SQLAlchemy opens the gradebook.
         assignment: The assignment's name.
         student: The student's id.
         timestamp: In UTC.
@@ -290,7 +175,7 @@ def enter_penalties(url: str, assignment: str, student: str, penalties: Mapping[
     """Enter what being late costs in each notebook of a submission.
 
     Args:
-        url: What SQLAlchemy opens the gradebook by.
+        url: The address by which SQLAlchemy opens the gradebook.
         assignment: The assignment's name.
         student: The student's id.
         penalties: Points to be taken off, by notebook; None for nothing.
@@ -304,7 +189,7 @@ def enter_penalties(url: str, assignment: str, student: str, penalties: Mapping[
             book,
             rows,
             "UPDATE submitted_notebook SET late_submission_penalty = :costs WHERE id IN"
-            f" (SELECT sn.id FROM {_SUBMITTED} WHERE a.name = :a AND s.student_id = :s AND n.name = :n)",
+            f" (SELECT sn.id FROM {SUBMITTED} WHERE a.name = :a AND s.student_id = :s AND n.name = :n)",
         )
 
 
@@ -386,20 +271,3 @@ def _put(book: Connection, rows: list[dict[str, object]], statement: str) -> Non
     if rows:
         names = _PARAMETER.findall(statement)
         book.execute(sql(statement), [{name: row[name] for name in names} for row in rows])
-
-
-def _scores(url: str, where: str, **names: str) -> dict[str, dict[str, Scores]]:
-    found: dict[str, dict[str, dict[str, float | None]]] = {}
-    with opened(url) as book:
-        if not has_tables(book):
-            return {}
-        rows = book.execute(
-            sql(
-                f"SELECT s.student_id, n.name, b.name, g.auto_score FROM {_SUBMITTED}"
-                f" JOIN grade g ON g.notebook_id = sn.id JOIN base_cell b ON b.id = g.cell_id WHERE {where}"
-            ),
-            names,
-        )
-        for student, notebook, cell, score in rows:
-            found.setdefault(student, {}).setdefault(notebook, {})[cell] = score
-    return {student: dict(notebooks) for student, notebooks in found.items()}

@@ -1,4 +1,4 @@
-"""The one writer into gradebook, ``autograded/`` and ``feedback/``; everything in it fails closed."""
+"""The only writer into gradebook, ``autograded/`` and ``feedback/``; whatever fails in it leaves zero points."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.class_records import Attempt, Entered
 from autograder.grading.classes.timestamps import handed_in_at
-from autograder.grading.entering import conversion, gradebook
+from autograder.grading.entering import conversion, gradebook, gradebook_reading
 from autograder.grading.errors import is_disk_full
 from autograder.grading.returning import feedback
 from autograder.grading.table.entries import read_entries
@@ -38,7 +38,7 @@ class Writer:
 
     Args:
         directory: The class, locked by this process.
-        store: Where it is noted what was entered.
+        store: The class's store, which notes what was entered.
     """
 
     def __init__(self, directory: ClassDirectory, store: ClassStore) -> None:
@@ -65,10 +65,10 @@ class Writer:
         """Convert the submission and enter its grades.
 
         Args:
-            submission: What was executed.
+            submission: The submission that was executed.
             fingerprint: Of all that it was made from.
             results: A pair for each notebook of the assignment.
-            rows: The same for the report.
+            rows: The results as rows of the report.
 
         Raises:
             NotWritten: That failed, or the gradebook then says something else. The grades are zero then.
@@ -109,7 +109,7 @@ class Writer:
             self._assign_penalties(submission)
 
     def enter_time(self, submission: Submission, at: datetime | None) -> None:
-        """Enter when a submission that is graded already was handed in, and what being late costs now.
+        """Enter the time at which a graded submission was handed in, and the penalty for being late.
 
         Args:
             submission: Its grades stay as they are.
@@ -144,7 +144,7 @@ class Writer:
                 logging.getLogger("traitlets").exception("no page for %s", submission.folder)
 
     def _verify(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
-        found = gradebook.scores_of_student(
+        found = gradebook_reading.scores_of_student(
             self._directory.gradebook_url, submission.assignment, submission.student
         )
         for task, execution in results:

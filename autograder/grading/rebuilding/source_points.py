@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.grading.entering import gradebook
+from autograder.grading.entering import gradebook_reading
 from autograder.grading.errors import ClassIncomplete, MasterUnusable, course_command
 from autograder.grading.reporting.rows import NO_EXERCISE
 
@@ -82,7 +82,7 @@ def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, 
             f"{directory.path / 'source'} holds no assignment. Put one there, or make a new class."
         )
     for assignment, wanted in cells.items():
-        entered = gradebook.worth(directory.gradebook_url, assignment)
+        entered = gradebook_reading.worth(directory.gradebook_url, assignment)
         for cell in wanted:
             if entered.get(cell.notebook, {}).get(cell.name) != cell.worth:
                 command = ("nbgrader", "generate_assignment", assignment, "--force")

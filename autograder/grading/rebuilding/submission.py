@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING, Any
 
 from autograder.boxes.execution import CellType
-from autograder.grading.collector import without_collector
+from autograder.grading.garbage_collection import without_garbage_collection
 from autograder.regular_files import files_below, opened
 
 if TYPE_CHECKING:
@@ -197,7 +197,7 @@ def _decoded(data: bytes) -> Any:
         ) from None
     try:
         # Nothing that is made here can be freed, but the collector would look for it again and again.
-        with without_collector():
+        with without_garbage_collection():
             return json.loads(text)
     except (RecursionError, MemoryError):
         raise UnreadableSubmission("The file is not a notebook: its JSON is nested too deeply.") from None

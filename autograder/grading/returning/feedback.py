@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from nbgrader.utils import is_grade, is_solution, is_task
 
 from autograder.grading.classes.class_directory import SUFFIX
-from autograder.grading.entering import gradebook
+from autograder.grading.entering import gradebook_reading
 from autograder.grading.rebuilding import nodes
 from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.returning.page_head import mark_waiting
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
-    from autograder.grading.entering.gradebook import NotebookState
+    from autograder.grading.entering.gradebook_reading import NotebookState
 
 
 class FeedbackPages:
@@ -43,7 +43,9 @@ class FeedbackPages:
         Raises:
             OSError: A page could not be written.
         """
-        states = gradebook.states(self._directory.gradebook_url, submission.assignment, submission.student)
+        states = gradebook_reading.states(
+            self._directory.gradebook_url, submission.assignment, submission.student
+        )
         graded = self._directory.path / "autograded" / submission.student / submission.assignment
         folder = self._directory.path / "feedback" / submission.student / submission.assignment
         for name in notebooks:

@@ -13,7 +13,7 @@ import time
 from typing import TYPE_CHECKING
 
 from autograder.boxes.execution import Cell, CellType
-from autograder.grading.collector import without_collector
+from autograder.grading.garbage_collection import without_garbage_collection
 from autograder.grading.rebuilding.submission import HARMLESS_LENGTH
 from autograder.judge.verdicts.deciding import Undecided, limited
 
@@ -36,7 +36,7 @@ def too_costly(cells: Sequence[Cell], seconds: float = SECONDS) -> tuple[int, ..
     own = [(place, cell) for place, cell in enumerate(cells) if cell.own and cell.source]
     if sum(len(cell.source) for _, cell in own) <= HARMLESS_LENGTH:
         return ()
-    with without_collector():  # this notebook must not pay for what earlier ones have left
+    with without_garbage_collection():  # this notebook must not pay for what earlier ones have left
         return _beyond(seconds, own)
 
 

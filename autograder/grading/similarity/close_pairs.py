@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from autograder.grading.asked_for import check_known
 from autograder.grading.collecting.tidying import tidy
-from autograder.grading.errors import GradingError
+from autograder.grading.errors import GradingError, check_known
 from autograder.grading.similarity.own_code import LONGEST, Given, compared
 from autograder.grading.similarity.pairs import Pair, close_pairs, closest_first
 from autograder.grading.similarity.student_texts import given_texts, read_answers

@@ -27,11 +27,11 @@ class ClassTable:
 
     Attributes:
         rows: By student, in the order of the course.
-        roster: Who is in the class.
-        entries: What the gradebook has, by student and assignment.
+        roster: The students of the class.
+        entries: The entries of the gradebook, by student and assignment.
         stale: Submissions that were handed in or changed after they were graded last, as student/assignment.
         unplaced: Files that were collected and have no place.
-        absent: The points of who has handed in nothing: None, unless the instructor says that they are zero.
+        absent: The points of students who have handed in nothing: None, or zero where the instructor says so.
     """
 
     rows: tuple[Row, ...]
@@ -52,7 +52,7 @@ class ClassTable:
         return list(dict.fromkeys(row.assignment for row in self.rows))
 
     def of(self, student: str, assignment: str = "") -> list[Row]:
-        """A student's rows, of all assignments or of one, whose points are the same where the total leaves them out."""
+        """A student's rows of all assignments, or of one, which has its points also where the total leaves it out."""
         own = [row for row in self.rows if row.student == student]
         return [
             row for row in own if not assignment or (row.assignment == assignment and row.exercise != DROPPED)

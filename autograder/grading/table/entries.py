@@ -10,7 +10,7 @@ from datetime import datetime  # noqa: TC003
 import msgspec
 import sqlalchemy
 
-from autograder.grading.entering.database import has_tables, opened, sql
+from autograder.grading.entering.gradebook_reading import has_tables, opened, sql
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class CellEntry:
         judged: Points that were given automatically; None where there are none.
         by_hand: Points that a person gave instead; None where nobody did.
         extra: Points that a person gave on top.
-        waits: Whether nbgrader says that a person has to look.
+        waits: True if nbgrader says that a person has to grade the cell.
         comment: A person's comment.
     """
 
@@ -44,7 +44,7 @@ class SubmissionEntry:
     """The gradebook's rows of one submission.
 
     Attributes:
-        handed_in: When, in UTC; None where nobody wrote it down.
+        handed_in: The time of handing in, in UTC; None where it is not known.
         due: Until when it was due for this student, in UTC; None without a due date.
         penalty: Points that are taken off for being late.
         cells: By notebook and grade_id.
@@ -119,7 +119,7 @@ def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entrie
     """The submissions that the gradebook knows.
 
     Args:
-        url: What SQLAlchemy opens the gradebook by.
+        url: The address by which SQLAlchemy opens the gradebook.
         student: Only this student's; everybody's where empty.
         assignment: Only of this assignment; of all where empty.
     """

@@ -39,7 +39,7 @@ class LatePolicy(LateSubmissionPlugin):
             score: Points that were earned.
             total_seconds_late: Seconds after the due date, extensions included.
         """
-        del student_id  # who has an extension has another due date
+        del student_id  # an extension is in the due date
         if total_seconds_late <= 60 * self.grace_minutes:
             return 0.0
         if total_seconds_late > _DAY * self.cut_off_days:
@@ -49,7 +49,7 @@ class LatePolicy(LateSubmissionPlugin):
 
 
 def penalties(config: Config, student: str, entry: SubmissionEntry) -> dict[str, float | None]:
-    """What being late costs a submission, by notebook, as nbgrader asks the class's own rule; None for nothing.
+    """The penalty of a late submission by notebook, asked of the class's own rule as nbgrader asks it; None for none.
 
     Args:
         config: The class's.

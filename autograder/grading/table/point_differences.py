@@ -24,9 +24,9 @@ class Difference:
         exercise: The exercise's id, or ``late``.
         before: Points before; None where there were none.
         after: Points now; None where there are none any more.
-        diagnosis_before: What was diagnosed before.
-        diagnosis_after: What is now.
-        note: What else is worth knowing.
+        diagnosis_before: The diagnosis before.
+        diagnosis_after: The diagnosis now.
+        note: A remark for a person; empty for none.
     """
 
     student: str

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import ClassDirectory, reason_against_name
-from autograder.grading.entering.database import has_tables, opened, sql
+from autograder.grading.entering.gradebook_reading import has_tables, opened, sql
 from autograder.grading.errors import GradingError
 from autograder.grading.reporting.spreadsheet import csv_rows
 
@@ -66,7 +66,7 @@ class Student:
         email: The same.
         lms: Ids and user names in learning management systems, by the names of :data:`LMS`.
         excused: Assignments that the student need not do.
-        section: The group whose work one teaching assistant grades; empty for none.
+        section: The group of students that one teaching assistant grades; empty for none.
     """
 
     id: str
@@ -88,7 +88,7 @@ class Identity:
     """The name of somebody in a file name, or in a list of an LMS.
 
     Attributes:
-        lms: Which system, one of :data:`LMS`; empty where a folder has a plain name.
+        lms: The system, one of :data:`LMS`; empty where a folder has a plain name.
         number: The system's number of the student.
         login: A user name, an address, or a name with its blanks left out.
         name: A name as people write it.
@@ -139,7 +139,7 @@ class Roster:
         return [one.id for one in self.students.values() if one.section and one.section in set(sections)]
 
     def find(self, identity: Identity) -> tuple[Student, ...]:
-        """The students who may be meant: one where that is certain, several where it is not.
+        """The students who may be meant: one student if it is certain, several if not.
 
         What identifies best is asked first: the number in that system, then user names and addresses, then names.
         """

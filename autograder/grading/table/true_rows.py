@@ -36,10 +36,10 @@ def true_rows(
         students: Their names, by id.
         cells: The cells with points, by assignment.
         judged: The judge's results.
-        entries: What the gradebook has.
+        entries: The entries of the gradebook.
         handed_in: The content of ``submitted``: students and assignments.
         excused: Students and assignments that they need not do.
-        what_counts: What the instructor leaves out or gives another weight.
+        what_counts: The exercises that the instructor leaves out, and the weights.
     """
     there = set(handed_in)
     known = sorted({student for student, _ in [*there, *entries]} | students.keys())
@@ -102,7 +102,7 @@ _IS_GRADED = ("passed", "failed", WAITS, BY_HAND)
 
 
 def _state(cell: GradedCell, kept: CellEntry) -> str:
-    """The state of a cell of which the judge has said nothing that is known."""
+    """The state of a cell without a known result of the judge."""
     if not cell.by_judge:
         if kept.by_hand is None and not kept.waits:
             return "failed"  # nothing was written there, so nbgrader gives no points

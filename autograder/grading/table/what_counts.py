@@ -32,8 +32,8 @@ class WhatCounts:
     """The weights in the table of a class; the gradebook keeps what was earned, so that it can be changed at any time.
 
     Attributes:
-        factors: What points are multiplied by, by assignment and exercise; 0 leaves an exercise out.
-        drop_lowest: How many of a student's assignments are left out of the total.
+        factors: The factors of points, by assignment and exercise; 0 leaves an exercise out.
+        drop_lowest: The number of a student's assignments that are left out of the total.
     """
 
     factors: Mapping[tuple[str, str], float] = field(default_factory=dict)

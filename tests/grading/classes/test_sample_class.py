@@ -14,7 +14,7 @@ from nbgrader.api import Gradebook
 
 from autograder import exercises
 from autograder.appeals import appeal_file, replaying
-from autograder.grading.appealing.appeal import write_appeal
+from autograder.grading.appeal import write_appeal
 from autograder.grading.classes import sample_class
 from autograder.grading.classes.sample_class import SampleNotebook, demo, sample_notebooks
 from autograder.grading.errors import ClassExists, GradingError

@@ -10,9 +10,8 @@ import pytest
 from conftest import LISTENER, MASTER, TALKER, FakeEngine, TinyClass, write_master
 from rich.console import Console
 
-from autograder.grading.classes.new_class import new_class
+from autograder.grading.classes.new_class import new_class, renew
 from autograder.grading.errors import GradingError
-from autograder.grading.following.renewing import renew
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -11,8 +11,8 @@ from tiny_class import TALKER, TinyClass
 
 from autograder.boxes.execution import CellType
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
-from autograder.grading.entering import gradebook
-from autograder.grading.entering.gradebook import CellState, NotebookState
+from autograder.grading.entering import gradebook_reading
+from autograder.grading.entering.gradebook_reading import CellState, NotebookState
 from autograder.grading.rebuilding import nodes
 from autograder.grading.returning import feedback
 from autograder.grading.returning.page_exporter import POLICY, PageExporter, Remembered
@@ -114,7 +114,7 @@ class Pages:
     def __init__(self, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self.directory = ClassDirectory(path)
         self.state = NotebookState({TALKER: CellState(1.0, 2.0)})
-        monkeypatch.setattr(gradebook, "states", lambda *_: {"lab_1_2": self.state})
+        monkeypatch.setattr(gradebook_reading, "states", lambda *_: {"lab_1_2": self.state})
 
     def make(self, maker: feedback.FeedbackPages, change: Callable[[Any], None], **metadata: Any) -> str:
         cells = one_of_each()

@@ -12,9 +12,9 @@ from nbconvert.exporters import HTMLExporter
 from nbformat import NotebookNode
 
 from autograder.boxes.execution import CellType
-from autograder.grading.pages import markdown_to_html
 from autograder.grading.rebuilding.rebuild import rebuild, rebuild_unreadable
 from autograder.grading.rebuilding.submission import SubmittedCell
+from autograder.grading.returning.page_exporter import markdown_to_html
 from autograder.grading.returning.sanitize import harmless_markdown, make_harmless
 
 CHAPTERS = Path(__file__).resolve().parents[3] / "chapters"

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
 
 
 @contextlib.contextmanager
-def without_collector() -> Iterator[None]:
-    """Collect no garbage meanwhile, whose search would go through all that lives in the process."""
+def without_garbage_collection() -> Iterator[None]:
+    """Collect no garbage meanwhile: each collection would go through all objects of the process."""
     collects = gc.isenabled()
     gc.disable()
     try:

@@ -5,21 +5,17 @@ from __future__ import annotations
 import contextlib
 import json
 import sqlite3
-import sys
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 from click.testing import CliRunner
-
-sys.path.insert(0, str(Path(__file__).parents[1]))
 from conftest import QUIET
 
 from autograder import exercises
 from autograder.appeals import appeal_file
 from autograder.cli import cli
-from autograder.grading.appealing.appeal import write_appeal
+from autograder.grading.appeal import write_appeal
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.errors import GradingError
@@ -29,6 +25,8 @@ from autograder.kit.evidence import Event, Evidence, Part
 from autograder.messages.orders import Report
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from conftest import FakeEngine, TinyClass
 
 ID = "lab_1_2.talker"

@@ -1,1 +1,0 @@
-"""Appeals: everything about one check of one student, taken from a class."""
