@@ -23,7 +23,7 @@ from autograder.grading.classes.configuration import check_configuration
 from autograder.grading.classes.origins import news
 from autograder.grading.classes.timestamps import handed_in_at
 from autograder.grading.collecting.tidying import Tidied, tidy
-from autograder.grading.entering import gradebook_reading
+from autograder.grading.entering.gradebook_reading import SubmissionEntry, read_entries
 from autograder.grading.errors import MasterUnusable, is_disk_full
 from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.rebuilding.fingerprints import Fingerprints
@@ -34,7 +34,6 @@ from autograder.grading.returning.up_to_date import UpToDate
 from autograder.grading.running import places
 from autograder.grading.running.progress import BatchProgress
 from autograder.grading.running.timings import Timings
-from autograder.grading.table.entries import SubmissionEntry, read_entries
 from autograder.grading.table.roster import enter_roster, read_roster
 from autograder.grading.table.true_rows import true_rows
 from autograder.grading.table.what_counts import read_what_counts
@@ -47,10 +46,10 @@ if TYPE_CHECKING:
 
     from autograder.boxes.execution import Execution
     from autograder.grading.class_records import Entered
+    from autograder.grading.entering.gradebook_reading import Entries
     from autograder.grading.entering.writer import Writer
     from autograder.grading.rebuilding.source_points import GradedCell
     from autograder.grading.running.places import Execute
-    from autograder.grading.table.entries import Entries
     from autograder.grading.table.point_differences import Difference
     from autograder.grading.table.roster import Roster
     from autograder.grading.task import Task
@@ -198,14 +197,10 @@ class _Batch:
 
     def plan(self, again: bool) -> None:
         """Find the submissions whose grades are in the gradebook already; the others are graded."""
-        in_gradebook = {
-            assignment: gradebook_reading.scores(self._directory.gradebook_url, assignment)
-            for assignment in sorted({work.submission.assignment for work in [*self._works, *self._others]})
-        }
         self._entries = read_entries(self._directory.gradebook_url)
         self._entered = self._store.entered()
         for work in self._others:
-            self._settle(work, in_gradebook)
+            self._settle(work)
         older = sum(
             work.key in self._entered and self._entered[work.key].course != course_version()
             for work in self._works
@@ -219,7 +214,7 @@ class _Batch:
             self._store.forget_results(work.submission for work in self._works)
             return
         for work in self._works:
-            self._settle(work, in_gradebook)
+            self._settle(work)
 
     @property
     def unsettled(self) -> list[Submission]:
@@ -305,13 +300,10 @@ class _Batch:
             timings=self._timings,
         )
 
-    def _settle(
-        self, work: Work, in_gradebook: dict[str, dict[str, dict[str, gradebook_reading.Scores]]]
-    ) -> None:
+    def _settle(self, work: Work) -> None:
         """Mark a submission as written if the gradebook has the grades of exactly this work."""
         entered = self._entered.get(work.key)
-        scores = in_gradebook[work.submission.assignment].get(work.submission.student, {})
-        if entered is None or not entered.is_in(scores):
+        if entered is None or not entered.is_in(self._entries.get(work.key, SubmissionEntry())):
             return
         if not self._directory.has_converted(work.submission, entered.tasks):
             return

@@ -13,10 +13,8 @@ from autograder.boxes.execution import CellType
 from autograder.grading.reporting.rows import Row  # noqa: TC001  (the same)
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from autograder.boxes.execution import Execution
-    from autograder.grading.entering.gradebook_reading import Scores
+    from autograder.grading.entering.gradebook_reading import SubmissionEntry
     from autograder.grading.task import Task
 
 
@@ -71,10 +69,10 @@ class Entered:
     course: str
     shown: str = ""
 
-    def is_in(self, scores: Mapping[str, Scores]) -> bool:
-        """True if the gradebook, which has these scores by notebook, still has the points that were entered."""
+    def is_in(self, entry: SubmissionEntry) -> bool:
+        """True if the gradebook, whose entry this is, still has the points that were entered."""
         return all(
-            scores.get(notebook, {}).get(name) == score
+            entry.judged(notebook, name) == score
             for notebook, entered in self.scores.items()
             for name, score in entered.items()
         )

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from autograder.grading.classes.class_directory import Refused
 from autograder.grading.classes.timestamps import handed_in_at, is_not_believed
 from autograder.grading.collecting.outcomes import WaitingList
+from autograder.grading.entering.gradebook_reading import CellEntry, SubmissionEntry, read_due_dates
 from autograder.grading.errors import MasterUnusable, check_known
 from autograder.grading.reporting.rows import LATE, Row
-from autograder.grading.table.entries import CellEntry, SubmissionEntry, read_due_dates
 from autograder.grading.table.point_differences import Difference
 
 if TYPE_CHECKING:
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
     from autograder.boxes.execution import Execution
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
+    from autograder.grading.entering.gradebook_reading import Entries
     from autograder.grading.rebuilding.fingerprints import Fingerprints
     from autograder.grading.rebuilding.source_points import GradedCell, Released
-    from autograder.grading.table.entries import Entries
     from autograder.grading.table.roster import Roster
     from autograder.grading.task import Task
 

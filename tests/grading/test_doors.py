@@ -19,7 +19,8 @@ from nbgrader.coursedir import CourseDirectory
 from autograder.cli import cli
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.entering import gradebook, gradebook_reading
+from autograder.grading.entering import gradebook
+from autograder.grading.entering.gradebook_reading import read_entries
 from autograder.grading.errors import ClassIncomplete
 
 if TYPE_CHECKING:
@@ -177,7 +178,7 @@ def test_a_linked_submission_folder_is_not_graded_by_plain_nbgrader_either(
     with pytest.raises(NbGraderException):
         nbgrader_autograde(tiny)
     assert tiny.scores("ada")[TALKER] == 10
-    assert list(gradebook_reading.scores(ClassDirectory(tiny.path).gradebook_url, "lab_1_2")) == ["ada"]
+    assert list(read_entries(ClassDirectory(tiny.path).gradebook_url)) == [("ada", "lab_1_2")]
 
 
 def test_a_result_that_cannot_be_kept_is_no_result(
@@ -190,7 +191,7 @@ def test_a_result_that_cannot_be_kept_is_no_result(
     tiny.submit("ada")
     with pytest.raises(NbGraderException):
         nbgrader_autograde(tiny)
-    assert gradebook_reading.scores(ClassDirectory(tiny.path).gradebook_url, "lab_1_2") == {}
+    assert read_entries(ClassDirectory(tiny.path).gradebook_url) == {}
 
 
 def test_a_single_notebook_of_a_submission_is_refused(tiny: TinyClass, fake_engine: FakeEngine) -> None:

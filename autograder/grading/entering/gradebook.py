@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import re  # noqa: TID251  (our own statements)
 import uuid
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import sqlalchemy
 
-from autograder.grading.entering.gradebook_reading import SUBMITTED, Scores, has_tables, opened, sql
+from autograder.grading.entering.gradebook_reading import SUBMITTED, has_tables, opened, sql
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable
     from datetime import datetime
 
     from sqlalchemy import Connection
+
+Scores = Mapping[str, float | None]
+"""By grade_id; None where there is no automatic score."""
 
 _GRADED = ("GradeCell", "TaskCell")
 _COMMENTED = ("SolutionCell", "TaskCell")

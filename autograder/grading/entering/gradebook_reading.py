@@ -7,11 +7,14 @@ importing them more than a second.
 from __future__ import annotations
 
 import functools
+import hashlib
 from collections.abc import Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from datetime import datetime  # noqa: TC003  (msgspec reads the annotations)
 from typing import TYPE_CHECKING
 
+import msgspec
 import sqlalchemy
 from sqlalchemy.pool import NullPool
 
@@ -20,9 +23,6 @@ if TYPE_CHECKING:
 
     from sqlalchemy import Connection, Engine, TextClause
 
-Scores = Mapping[str, float | None]
-"""By grade_id; None where there is no automatic score."""
-
 SUBMITTED = """
     submitted_assignment s
     JOIN assignment a ON a.id = s.assignment_id
@@ -30,6 +30,112 @@ SUBMITTED = """
     JOIN notebook n ON n.id = sn.notebook_id
 """
 """The submitted notebooks, for FROM in a statement."""
+_FROM = "submitted_assignment s JOIN assignment a ON a.id = s.assignment_id"
+_CELLS = f"""
+    SELECT s.student_id AS student, a.name AS assignment, n.name AS notebook, b.name AS cell,
+        g.auto_score AS judged, g.manual_score AS by_hand, g.extra_credit AS extra,
+        g.needs_manual_grade AS waits, COALESCE(gc.max_score, tc.max_score, 0) AS most
+    FROM {_FROM} JOIN submitted_notebook sn ON sn.assignment_id = s.id JOIN notebook n ON n.id = sn.notebook_id
+        JOIN grade g ON g.notebook_id = sn.id JOIN base_cell b ON b.id = g.cell_id
+        LEFT JOIN grade_cells gc ON gc.id = b.id LEFT JOIN task_cells tc ON tc.id = b.id
+"""
+# A question that a person grades is two cells of one name to nbgrader: one has the points, the other the comment.
+_COMMENTS = f"""
+    SELECT s.student_id AS student, a.name AS assignment, n.name AS notebook, b.name AS cell,
+        c.manual_comment AS said
+    FROM {_FROM} JOIN submitted_notebook sn ON sn.assignment_id = s.id JOIN notebook n ON n.id = sn.notebook_id
+        JOIN comment c ON c.notebook_id = sn.id JOIN base_cell b ON b.id = c.cell_id
+    WHERE c.manual_comment IS NOT NULL
+"""
+_SUBMISSIONS = f"""
+    SELECT s.student_id AS student, a.name AS assignment, s.timestamp AS timestamp, a.duedate AS duedate,
+        s.extension AS extension, st.first_name, st.last_name,
+        (SELECT COALESCE(SUM(sn.late_submission_penalty), 0) FROM submitted_notebook sn
+            WHERE sn.assignment_id = s.id) AS penalty
+    FROM {_FROM} JOIN student st ON st.id = s.student_id
+"""
+
+
+@dataclass(frozen=True)
+class CellEntry:
+    """The gradebook's row of one cell of a submission.
+
+    Attributes:
+        max_score: Points that can be had.
+        judged: Points that were given automatically; None where there are none.
+        by_hand: Points that a person gave instead; None where nobody did.
+        extra: Points that a person gave on top.
+        waits: True if nbgrader says that a person has to grade the cell.
+        comment: A person's comment.
+    """
+
+    max_score: float
+    judged: float | None = None
+    by_hand: float | None = None
+    extra: float = 0.0
+    waits: bool = False
+    comment: str = ""
+
+    @property
+    def score(self) -> float:
+        """The points that count."""
+        return (self.by_hand if self.by_hand is not None else self.judged or 0.0) + self.extra
+
+
+@dataclass(frozen=True)
+class SubmissionEntry:
+    """The gradebook's rows of one submission.
+
+    Attributes:
+        handed_in: The time of handing in, in UTC; None where it is not known.
+        due: Until when it was due for this student, in UTC; None without a due date.
+        penalty: Points that are taken off for being late.
+        cells: By notebook and grade_id.
+        name: The student's name, empty where the gradebook has none.
+    """
+
+    handed_in: datetime | None = None
+    due: datetime | None = None
+    penalty: float = 0.0
+    cells: Mapping[str, Mapping[str, CellEntry]] = field(default_factory=dict)
+    name: str = ""
+
+    @property
+    def is_late(self) -> bool:
+        """True if it was handed in after its due date."""
+        return self.handed_in is not None and self.due is not None and self.handed_in > self.due
+
+    @property
+    def raw(self) -> float:
+        """Points before what is taken off for being late."""
+        return sum(cell.score for cells in self.cells.values() for cell in cells.values())
+
+    @property
+    def taken_off(self) -> float:
+        """Points that being late costs; as with nbgrader, nobody has fewer than none."""
+        return min(self.penalty, max(0.0, self.raw))
+
+    @property
+    def why_late(self) -> str:
+        """The reason why points are taken off; empty where none are."""
+        if not self.taken_off:
+            return ""
+        # A due date may have been removed after the penalty was entered.
+        times = (("handed in", self.handed_in), ("due", self.due))
+        return ", ".join(f"{word} {at:%Y-%m-%d %H:%M} UTC" for word, at in times if at)
+
+    def judged(self, notebook: str, cell: str) -> float | None:
+        """The points that a cell was given automatically; None where there are none."""
+        entry = self.cells.get(notebook, {}).get(cell)
+        return entry.judged if entry else None
+
+    def shown(self) -> str:
+        """Changes with whatever a page of feedback says about points and comments."""
+        return hashlib.sha256(msgspec.json.encode(self, order="deterministic")).hexdigest()
+
+
+Entries = Mapping[tuple[str, str], SubmissionEntry]
+"""By student and assignment."""
 
 
 @dataclass(frozen=True)
@@ -82,19 +188,6 @@ def sql(statement: str) -> TextClause:
 def has_tables(book: Connection) -> bool:
     """True if nbgrader has made its tables in this database."""
     return sqlalchemy.inspect(book).has_table("grade")
-
-
-def scores(url: str, assignment: str) -> dict[str, dict[str, Scores]]:
-    """The automatic scores of an assignment: by student, by notebook, by grade_id."""
-    return _scores(url, "a.name = :assignment", assignment=assignment)
-
-
-def scores_of_student(url: str, assignment: str, student: str) -> dict[str, Scores]:
-    """The automatic scores of one submission: by notebook, by grade_id."""
-    found = _scores(
-        url, "a.name = :assignment AND s.student_id = :student", assignment=assignment, student=student
-    )
-    return found.get(student, {})
 
 
 def worth(url: str, assignment: str) -> dict[str, dict[str, float]]:
@@ -157,18 +250,52 @@ def states(url: str, assignment: str, student: str) -> dict[str, NotebookState]:
     return {name: NotebookState(cells.get(name, {}), penalty) for name, penalty in penalties.items()}
 
 
-def _scores(url: str, where: str, **names: str) -> dict[str, dict[str, Scores]]:
-    found: dict[str, dict[str, dict[str, float | None]]] = {}
+def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entries:
+    """The submissions that the gradebook knows.
+
+    Args:
+        url: The address by which SQLAlchemy opens the gradebook.
+        student: Only this student's; everybody's where empty.
+        assignment: Only of this assignment; of all where empty.
+    """
+    names = {"student": student, "assignment": assignment}
+    narrow = "(:student = '' OR s.student_id = :student) AND (:assignment = '' OR a.name = :assignment)"
+    cells: dict[tuple[str, str], dict[str, dict[str, CellEntry]]] = {}
+    found: dict[tuple[str, str], SubmissionEntry] = {}
     with opened(url) as book:
         if not has_tables(book):
             return {}
-        rows = book.execute(
-            sql(
-                f"SELECT s.student_id, n.name, b.name, g.auto_score FROM {SUBMITTED}"
-                f" JOIN grade g ON g.notebook_id = sn.id JOIN base_cell b ON b.id = g.cell_id WHERE {where}"
+        for row in book.execute(sql(f"{_CELLS} WHERE {narrow}"), names):
+            of_notebook = cells.setdefault((row.student, row.assignment), {}).setdefault(row.notebook, {})
+            of_notebook[row.cell] = CellEntry(
+                row.most, row.judged, row.by_hand, row.extra or 0.0, bool(row.waits)
+            )
+        for row in book.execute(sql(f"{_COMMENTS} AND {narrow}"), names):
+            of_notebook = cells.setdefault((row.student, row.assignment), {}).setdefault(row.notebook, {})
+            known = of_notebook.get(row.cell, CellEntry(0.0))
+            of_notebook[row.cell] = replace(known, comment=row.said)
+        for row in book.execute(
+            sqlalchemy.text(f"{_SUBMISSIONS} WHERE {narrow}").columns(
+                timestamp=sqlalchemy.DateTime(),
+                duedate=sqlalchemy.DateTime(),
+                extension=sqlalchemy.Interval(),
             ),
             names,
-        )
-        for student, notebook, cell, score in rows:
-            found.setdefault(student, {}).setdefault(notebook, {})[cell] = score
-    return {student: dict(notebooks) for student, notebooks in found.items()}
+        ):
+            due = row.duedate
+            if due is not None and row.extension is not None:
+                due = due + row.extension
+            key = (row.student, row.assignment)
+            penalty = float(row.penalty or 0.0)
+            name = " ".join(part for part in (row.first_name, row.last_name) if part)
+            found[key] = SubmissionEntry(row.timestamp, due, penalty, cells.get(key, {}), name)
+    return found
+
+
+def read_due_dates(url: str) -> dict[str, datetime]:
+    """Until when assignments are due, in UTC, without any student's extension; by name."""
+    with opened(url) as book:
+        if not has_tables(book):
+            return {}
+        dates = sqlalchemy.text("SELECT name, duedate FROM assignment WHERE duedate IS NOT NULL")
+        return {row.name: row.duedate for row in book.execute(dates.columns(duedate=sqlalchemy.DateTime()))}

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.class_records import Attempt, Entered
 from autograder.grading.classes.timestamps import handed_in_at
-from autograder.grading.entering import conversion, gradebook, gradebook_reading
+from autograder.grading.entering import conversion, gradebook
+from autograder.grading.entering.gradebook_reading import read_entries
 from autograder.grading.errors import is_disk_full
 from autograder.grading.returning import feedback
-from autograder.grading.table.entries import read_entries
 from autograder.grading.table.late_policy import penalties
 from autograder.grading.task import scores_of
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from autograder.boxes.execution import Execution
     from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
+    from autograder.grading.entering.gradebook_reading import SubmissionEntry
     from autograder.grading.reporting.rows import Row
     from autograder.grading.task import Task
 
@@ -123,10 +124,14 @@ class Writer:
             self._assign_penalties(submission)
 
     def _assign_penalties(self, submission: Submission) -> None:
-        url, student, assignment = self._directory.gradebook_url, submission.student, submission.assignment
-        entry = read_entries(url, student=student, assignment=assignment)[student, assignment]
-        costs = penalties(self._directory.config, student, entry)
-        gradebook.enter_penalties(url, assignment, student, costs)
+        url, student = self._directory.gradebook_url, submission.student
+        costs = penalties(self._directory.config, student, self._entry(submission))
+        gradebook.enter_penalties(url, submission.assignment, student, costs)
+
+    def _entry(self, submission: Submission) -> SubmissionEntry:
+        student, assignment = submission.student, submission.assignment
+        url = self._directory.gradebook_url
+        return read_entries(url, student=student, assignment=assignment)[student, assignment]
 
     def write_feedback(self, submission: Submission) -> None:
         """Make the HTML pages that go back to a student; ask ``ClassDirectory.has_pages`` afterwards.
@@ -144,12 +149,10 @@ class Writer:
                 logging.getLogger("traitlets").exception("no page for %s", submission.folder)
 
     def _verify(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
-        found = gradebook_reading.scores_of_student(
-            self._directory.gradebook_url, submission.assignment, submission.student
-        )
+        entry = self._entry(submission)
         for task, execution in results:
             for name, score in scores_of(task, execution).items():
-                if found.get(task.notebook, {}).get(name) != score:
+                if entry.judged(task.notebook, name) != score:
                     raise NotWritten(f"{task.label}: the gradebook does not have {score:g} points for {name}")
 
     def _folder(self, step: str, submission: Submission) -> Path:

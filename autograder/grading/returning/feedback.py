@@ -9,10 +9,10 @@ from nbgrader.utils import is_grade, is_solution, is_task
 
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.entering import gradebook_reading
+from autograder.grading.entering.gradebook_reading import SubmissionEntry, read_entries
 from autograder.grading.rebuilding import nodes
 from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.returning.page_head import mark_waiting
-from autograder.grading.table.entries import SubmissionEntry, read_entries
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from nbformat import NotebookNode
 
-    from autograder.grading.table.entries import CellEntry
+    from autograder.grading.entering.gradebook_reading import CellEntry
 
 WAITS = "waits_for_a_person"
 """The mark, among nbgrader's own metadata, of a cell that still waits for points by a person."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.timestamps import handed_in_at
-from autograder.grading.table.entries import SubmissionEntry, read_entries
+from autograder.grading.entering.gradebook_reading import SubmissionEntry, read_entries
 
 if TYPE_CHECKING:
     from collections.abc import Callable

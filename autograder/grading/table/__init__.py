@@ -1,1 +1,1 @@
-"""The one table of a class: what the gradebook says, beside it what the judge said and what waits for a person."""
+"""The table of a class: the points of the gradebook, the words of the judge, and what waits for a person."""

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.class_store import ClassStore
 from autograder.grading.collecting.outcomes import Waiting, WaitingList
+from autograder.grading.entering.gradebook_reading import Entries, read_entries
 from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import read_released
 from autograder.grading.reporting.rows import DROPPED, EXCUSED, NO_EXERCISE, NOT_SUBMITTED, Row, total
-from autograder.grading.table.entries import Entries, read_entries
 from autograder.grading.table.roster import Roster, Student, read_roster
 from autograder.grading.table.true_rows import true_rows
 from autograder.grading.table.what_counts import read_what_counts

@@ -11,8 +11,8 @@ from autograder.grading.table.what_counts import WhatCounts
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
+    from autograder.grading.entering.gradebook_reading import CellEntry, Entries, SubmissionEntry
     from autograder.grading.rebuilding.source_points import GradedCell
-    from autograder.grading.table.entries import CellEntry, Entries, SubmissionEntry
 
     Judged = Mapping[tuple[str, str], Sequence[Row]]
     """The judge's words on each submission, by student and assignment."""

@@ -18,11 +18,11 @@ from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.timestamps import handed_in_at
-from autograder.grading.entering import gradebook, gradebook_reading
+from autograder.grading.entering import gradebook
+from autograder.grading.entering.gradebook_reading import read_entries
 from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.returning.page_head import mark_waiting
 from autograder.grading.returning.sanitize import make_harmless
-from autograder.grading.table.entries import read_entries
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
@@ -184,14 +184,15 @@ def test_a_gradebook_that_was_put_back_is_read_anew(tiny: TinyClass, fake_engine
     """What SQLAlchemy knows of a gradebook is kept between transactions, but nothing of what is in it."""
     book = tiny.path / "gradebook.db"
     url = ClassDirectory(tiny.path).gradebook_url
+    ada = ("ada", "lab_1_2")
     tiny.submit("ada", 4)
     tiny.grade()
     shutil.copy(book, book.with_suffix(".copy"))
     tiny.submit("ada", 9)
     tiny.grade()
-    assert gradebook_reading.scores_of_student(url, "lab_1_2", "ada")["lab_1_2"][TALKER] == 9
+    assert read_entries(url)[ada].judged("lab_1_2", TALKER) == 9
     book.with_suffix(".copy").replace(book)
-    assert gradebook_reading.scores_of_student(url, "lab_1_2", "ada")["lab_1_2"][TALKER] == 4
+    assert read_entries(url)[ada].judged("lab_1_2", TALKER) == 4
 
 
 def test_a_notebook_that_was_replaced_while_it_ran_is_not_given_the_old_ones_points(
