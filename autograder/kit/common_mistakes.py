@@ -33,6 +33,8 @@ __all__ = [
     "one_is_missing",
     "only_if_ended",
     "qos_mismatch",
+    "servers",
+    "two_servers",
     "went_deaf",
 ]
 
@@ -128,6 +130,28 @@ def qos_mismatch(role: str) -> Mistake:
         )
 
     return Mistake("qos_mismatch", recognise, certain=True)
+
+
+def servers(part: Part) -> int:
+    """The largest number of servers that were there at once."""
+    return max((int(event.data["count"]) for event in part.of("servers")), default=0)
+
+
+def two_servers(role: str, comes_of_it: str, next_step: str) -> Mistake:
+    """Two servers share the name.
+
+    Args:
+        role: ``service`` or ``action_server``.
+        comes_of_it: What happens to a call or a goal, in a sentence.
+        next_step: What to do.
+    """
+
+    def recognise(evidence: Evidence) -> Advice | None:
+        count, (name, _) = servers(evidence.main), evidence.reference.only(role)
+        said = f"{count} servers of {name} are on the graph. {comes_of_it}"
+        return Advice(said, next_step) if count > 1 else None
+
+    return Mistake("two_servers", recognise, certain=True)
 
 
 def everything_twice(role: str) -> Mistake:

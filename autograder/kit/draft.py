@@ -46,6 +46,18 @@ class Recipe(Protocol[View_co]):
         """The reference solution, as it was recorded."""
 
 
+class SeenAsItIs:
+    """Both views of such a recipe are the evidence itself, which has the reference in it: there are several runs."""
+
+    def seen(self, evidence: Evidence) -> Evidence:
+        """The subject, as it was seen."""
+        return evidence
+
+    def expected(self, evidence: Evidence) -> Evidence:
+        """The same: it holds what was recorded, too."""
+        return evidence
+
+
 OWN = Mistake("", lambda _: None)
 """The place in a ladder of an exercise's own mistakes: before anything is said of nodes that hang or are not spun."""
 OWN_LATE = Mistake("", lambda _: None)

@@ -112,8 +112,3 @@ def all_goals(part: Part) -> list[Goal]:
 def status_text(number: int | None) -> str:
     """A goal's status by name and number."""
     return "none" if number is None else f"{STATUS.get(number, '?')} ({number})"
-
-
-def servers(part: Part) -> int:
-    """The largest number of servers that were there at once."""
-    return max((int(event.data["count"]) for event in part.of("servers")), default=0)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.model import Advice, Mistake
+from autograder.kit.model import Advice, Mistake, mistake
 from autograder.kit.workspace_report import WorkspaceReport, report_of
 
 if TYPE_CHECKING:
@@ -25,30 +25,15 @@ def seen_of_build(report: WorkspaceReport) -> str:
     return report.line or report.trouble.replace("_", " ")
 
 
-def _no_workspace(evidence: Evidence) -> Advice | None:
+def _trouble(evidence: Evidence, *kinds: str) -> WorkspaceReport | None:
+    """The report of the build, where the trouble is of one of these kinds."""
     report = build_report(evidence.main)
-    if report is None or report.trouble not in ("no_workspace", "no_package"):
-        return None
-    return Advice(
-        f"There is nothing to build: {report.line}.",
-        "A workspace is a folder with src in it, and each package is a folder in src, made there with "
-        "`ros2 pkg create`.",
-    )
-
-
-def _bad_package(evidence: Evidence) -> Advice | None:
-    report = build_report(evidence.main)
-    if report is None or report.trouble != "bad_package":
-        return None
-    return Advice(
-        f"A package cannot be used: {report.line}.",
-        "Correct package.xml. colcon does not say that it is not valid, and treats the package as another kind.",
-    )
+    return report if report is not None and report.trouble in kinds else None
 
 
 def _build_failed(evidence: Evidence) -> Advice | None:
-    report = build_report(evidence.main)
-    if report is None or report.trouble != "build":
+    report = _trouble(evidence, "build")
+    if report is None:
         return None
     if re2.search(r"rosidl_generate_interfaces\(\) the passed file '[^']*' doesn't exist", report.line):
         next_step = (
@@ -64,18 +49,12 @@ def _build_failed(evidence: Evidence) -> Advice | None:
     return Advice(f"colcon build fails in {report.package or 'the workspace'}: {report.line}", next_step)
 
 
-def _syntax_error(evidence: Evidence) -> Advice | None:
-    report = build_report(evidence.main)
-    if (
-        report is None
-        or report.trouble != "build"
-        or not re2.search(r"(?:Syntax|Indentation|Tab)Error", report.line)
-    ):
+def _unreadable(evidence: Evidence) -> tuple[str, WorkspaceReport] | None:
+    """The file that Python could not read when its package was built, and the report."""
+    report = _trouble(evidence, "build")
+    if report is None or not re2.search(r"(?:Syntax|Indentation|Tab)Error", report.line):
         return None
-    return Advice(
-        f"Python could not read {report.line.partition(': ')[0]} when {report.package} was built: {report.line}",
-        "A bracket, a quote, a colon or the indentation is off there or just before it.",
-    )
+    return report.line.partition(": ")[0], report
 
 
 def _not_sourced(evidence: Evidence) -> Advice | None:
@@ -92,9 +71,28 @@ def _not_sourced(evidence: Evidence) -> Advice | None:
 
 
 BUILD = (
-    Mistake("no_workspace", _no_workspace, certain=True),
-    Mistake("bad_package", _bad_package, certain=True),
-    Mistake("syntax_error", _syntax_error, certain=True),
+    mistake(
+        "no_workspace",
+        lambda evidence: _trouble(evidence, "no_workspace", "no_package"),
+        "There is nothing to build: {0.line}.",
+        "A workspace is a folder with src in it, and each package is a folder in src, made there with "
+        "`ros2 pkg create`.",
+        certain=True,
+    ),
+    mistake(
+        "bad_package",
+        lambda evidence: _trouble(evidence, "bad_package"),
+        "A package cannot be used: {0.line}.",
+        "Correct package.xml. colcon does not say that it is not valid, and treats the package as another kind.",
+        certain=True,
+    ),
+    mistake(
+        "syntax_error",
+        _unreadable,
+        "Python could not read {0[0]} when {0[1].package} was built: {0[1].line}",
+        "A bracket, a quote, a colon or the indentation is off there or just before it.",
+        certain=True,
+    ),
     Mistake("build_failed", _build_failed, certain=True),
 )
 """A workspace that cannot be built."""

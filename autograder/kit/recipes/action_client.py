@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from autograder.kit import common_mistakes as common
 from autograder.kit import goal_mistakes as goals
 from autograder.kit.crashes import OTHER_SLIPS
+from autograder.kit.draft import SeenAsItIs
 from autograder.kit.giving_up import GIVE_UP_LIMIT, PATIENCE, await_it, drawn_patience
 from autograder.kit.goal_reports import ABORTED, ABSENT, FEEDBACKS, LATE, REFUSED, unshown_feedback
 from autograder.kit.hangs import HANGS
@@ -234,7 +235,7 @@ def _not_by_refusal(mistake: Mistake) -> Mistake:
     return replace(mistake, recognise=recognise)
 
 
-class ActionClient:
+class ActionClient(SeenAsItIs):
     """The recipe for a client of an action. Its views are the evidence itself: there is a goal in each of several runs.
 
     Args:
@@ -257,14 +258,6 @@ class ActionClient:
             *common.OTHER_CRASHES,
             *common.NOTHING_THERE,
         )
-
-    def seen(self, evidence: Evidence) -> Evidence:
-        """The subject, as it was seen."""
-        return evidence
-
-    def expected(self, evidence: Evidence) -> Evidence:
-        """The same: it holds what was recorded, too."""
-        return evidence
 
 
 def sends_goals() -> ActionClient:

@@ -8,8 +8,8 @@ import re2
 
 from autograder.kit import common_mistakes as common
 from autograder.kit.crashes import raised, traceback_of
-from autograder.kit.draft import OWN, OWN_LATE
-from autograder.kit.goals_seen import ABORTED, CANCELED, all_goals, servers, status_text
+from autograder.kit.draft import OWN, OWN_LATE, SeenAsItIs
+from autograder.kit.goals_seen import ABORTED, CANCELED, all_goals, status_text
 from autograder.kit.hangs import HANGS
 from autograder.kit.model import Advice, Mistake
 
@@ -26,7 +26,7 @@ MANY = 2
 """Feedback messages in a row that show that a server does not read a request while it works."""
 
 
-class SendsGoals:
+class SendsGoals(SeenAsItIs):
     """The recipe for an action server. Its views are the evidence itself: there are several goals in several runs.
 
     Args:
@@ -46,19 +46,15 @@ class SendsGoals:
     ) -> None:
         self.scenario, self._good, self.canceled = scenario, good, canceled
 
-    def seen(self, evidence: Evidence) -> Evidence:
-        """The subject, as it was seen."""
-        return evidence
-
-    def expected(self, evidence: Evidence) -> Evidence:
-        """The same: it holds what was recorded, too."""
-        return evidence
-
     @property
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most telling first."""
         return (
-            Mistake("two_servers", _two_servers, certain=True),
+            common.two_servers(
+                "action_server",
+                "Each goal reaches both, and both execute it.",
+                "Make one ActionServer only, and one node.",
+            ),
             Mistake("result_missing", _result_missing, certain=True),
             # Before any crash: a goal that should have been refused may end in one.
             OWN,
@@ -136,18 +132,6 @@ class SendsGoals:
 def is_quick(seen: Goal) -> bool:
     """True if a goal took no time."""
     return seen.seconds is not None and seen.seconds < AT_ONCE
-
-
-def _two_servers(evidence: Evidence) -> Advice | None:
-    """Two servers share the name."""
-    name, _ = evidence.reference.only("action_server")
-    count = servers(evidence.main)
-    if count < 2:
-        return None
-    return Advice(
-        f"{count} servers of {name} are on the graph. Each goal reaches both, and both execute it.",
-        "Make one ActionServer only, and one node.",
-    )
 
 
 def _result_missing(evidence: Evidence) -> Advice | None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder.kit import common_mistakes as common
-from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.draft import OWN, OWN_LATE, SeenAsItIs
 from autograder.kit.evidence import Event
 from autograder.kit.hangs import HANGS
 from autograder.kit.model import Finding
@@ -90,7 +90,7 @@ def _in_words(role: str, endpoints: Mapping[str, str]) -> str:
     return ", ".join(f"{_NOUN[role]} {name} ({kind})" for name, kind in sorted(endpoints.items()))
 
 
-class OwnLadder:
+class OwnLadder(SeenAsItIs):
     """The recipe for a subject without an endpoint: the exercise says which common mistakes it may show, too.
 
     Its view is all that was seen.
@@ -105,11 +105,3 @@ class OwnLadder:
     def __init__(self, scenario: Callable[[Bench], None], *ladder: Mistake) -> None:
         self.scenario = scenario
         self.ladder = ladder
-
-    def seen(self, evidence: Evidence) -> Evidence:
-        """The subject, as it was seen."""
-        return evidence
-
-    def expected(self, evidence: Evidence) -> Evidence:
-        """The same: nothing is recorded of a subject without an endpoint."""
-        return evidence

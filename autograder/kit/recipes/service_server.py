@@ -76,7 +76,7 @@ class Server:
     @property
     def count(self) -> int:
         """The largest number of servers of the name that were there at once."""
-        return max((int(event.data["count"]) for event in self.part.of("servers")), default=0)
+        return common.servers(self.part)
 
     def objections(self, calls: Sequence[Event], objection: Objection) -> list[str]:
         """The faults of the answers to these calls, in words."""
@@ -175,7 +175,11 @@ class Asks:
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most telling first."""
         return (
-            Mistake("two_servers", self._two_servers, certain=True),
+            common.two_servers(
+                "service",
+                "Each call reaches both, and whichever is quicker answers.",
+                "Call create_service once, and make one node only.",
+            ),
             # Before any crash: a wrong answer may not fit into its field, and rclpy's server dies of that.
             OWN,
             *common.CRASHES,
@@ -189,17 +193,6 @@ class Asks:
             common.went_deaf("service"),
             OWN_LATE,
             *common.NOTHING_THERE,
-        )
-
-    def _two_servers(self, evidence: Evidence) -> Advice | None:
-        """Two servers share the name."""
-        name, _ = evidence.reference.only("service")
-        count = self.seen(evidence).count
-        if count < 2:
-            return None
-        return Advice(
-            f"{count} servers of {name} are on the graph. Each call reaches both, and whichever is quicker answers.",
-            "Call create_service once, and make one node only.",
         )
 
     def _stopped_answering(self, evidence: Evidence) -> Advice | None:

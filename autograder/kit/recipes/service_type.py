@@ -8,7 +8,7 @@ import re2
 
 from autograder.kit import common_mistakes as common
 from autograder.kit import workspace_mistakes as workspace
-from autograder.kit.draft import OWN
+from autograder.kit.draft import OWN, SeenAsItIs
 from autograder.kit.model import Advice, Bench, Finding, Mistake
 from autograder.kit.runners import ServesInterface
 from autograder.kit.workspace_report import AMENT_PACKAGE, Interface, PackageReport, report_of
@@ -37,7 +37,7 @@ Fields = list[tuple[str, str]]
 """The type and the name of each field, in their order."""
 
 
-class ServiceType:
+class ServiceType(SeenAsItIs):
     """The recipe for a package that generates a service type. Its views are all that was seen.
 
     Args:
@@ -50,14 +50,6 @@ class ServiceType:
     def __init__(self, file: str, package: str) -> None:
         self._file, self._package = file, package
         self.runner = ServesInterface(file, SERVICE)
-
-    def seen(self, evidence: Evidence) -> Evidence:
-        """The package, as it was seen."""
-        return evidence
-
-    def expected(self, evidence: Evidence) -> Evidence:
-        """The same: it holds what was recorded, too."""
-        return evidence
 
     def scenario(self, bench: Bench) -> None:
         """Look at the file, build the package, and compare what it generated on the wire."""

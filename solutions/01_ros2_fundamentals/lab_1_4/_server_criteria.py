@@ -32,7 +32,8 @@ from lab_1_4._goals import (
     to_be_canceled,
 )
 
-from autograder.kit.goals_seen import CANCELED, servers, status_text
+from autograder.kit.common_mistakes import servers
+from autograder.kit.goals_seen import CANCELED, status_text
 from autograder.kit.model import Finding
 
 if TYPE_CHECKING:
