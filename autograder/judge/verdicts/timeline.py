@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import re2
 from action_msgs.msg import GoalStatus
@@ -16,7 +16,7 @@ from autograder.kit.workspace_report import build_ended
 from autograder.verdict import Moment
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from autograder.kit.evidence import Event, Evidence, Part, Reference
 
@@ -30,37 +30,6 @@ MAX_LABEL = 200
 
 EXPECTED = 5
 """Messages of the reference solution that a failed card shows for each topic: the first that were missed."""
-
-_DIRECTION = {
-    "message": "from_subject",
-    "sent": "to_subject",
-    "request": "from_subject",
-    "response": "to_subject",
-    "goal": "from_subject",
-    "feedback": "to_subject",
-    "cancel": "from_subject",
-    "result_request": "from_subject",
-    "result": "to_subject",
-    "asked": "to_subject",
-    "answered": "from_subject",
-    "goal_sent": "to_subject",
-    "goal_answer": "from_subject",
-    "feedback_heard": "from_subject",
-    "cancel_sent": "to_subject",
-    "cancel_answer": "from_subject",
-    "result_heard": "from_subject",
-    "log": "from_subject",
-    "output": "from_subject",
-    "mismatch": "note",
-    "subject": "note",
-}
-
-
-_KEY = {"goal", "cancel", "result", "goal_sent", "cancel_sent", "result_heard", "mismatch"}
-"""The kinds of events that a timeline always keeps."""
-
-_NUMBERED = {"goal_sent", "goal_answer", "feedback_heard", "cancel_sent", "cancel_answer", "result_heard"}
-"""The kinds of events about the judge's own goals, which carry a goal's number."""
 
 _STATUS = {
     GoalStatus.STATUS_SUCCEEDED: "SUCCEEDED",
@@ -133,7 +102,7 @@ def _of_part(
     shown = [
         event
         for event in _without_echoes(part.events)
-        if event.kind in _DIRECTION and not _began(event) and (event.kind != "output" or id(event) in told)
+        if event.kind in _KINDS and not _began(event) and (event.kind != "output" or id(event) in told)
     ]
     lanes = _lanes(shown)
     unlike = _first_unlike(shown, part, reference)
@@ -144,11 +113,11 @@ def _of_part(
             Moment(
                 t=_time(event, start),
                 lane=lane,
-                direction=_DIRECTION[event.kind],
+                direction=_KINDS[event.kind].direction,
                 label=_label(event),
                 part=title,
                 simulated=start is not None,
-                key=event.kind in _KEY
+                key=_KINDS[event.kind].key
                 or event is unlike
                 or id(event) in told
                 or (event.kind == "subject" and event.name == "raised"),
@@ -203,7 +172,7 @@ def _lanes(events: Sequence[Event]) -> list[str]:
     for event in events:
         if event.kind == "goal":
             number[event.name] = number.get(event.name, -1) + 1
-        own = event.data.get("goal") if event.kind in _NUMBERED else None
+        own = event.data.get("goal") if _KINDS[event.kind].numbered else None
         numbers.append(own if isinstance(own, int) and own >= 0 else number.get(event.name, 0))
     several = {event.name for event, number in zip(events, numbers, strict=True) if number > 0}
     return [
@@ -306,24 +275,55 @@ def _leaves(fields: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, A
             yield f"{above}{name}", value
 
 
-_LABELS: dict[str, Callable[[Event], str]] = {
-    "goal": lambda e: _goal(e.data),
-    "cancel": lambda _: "cancel request",
-    "result_request": lambda _: "asks for the result",
-    "result": lambda e: f"{str(e.data['status']).upper()} {_fields(e.data)}".rstrip(),
-    "goal_sent": lambda e: _goal(e.data),
-    "goal_answer": lambda e: "accepted" if e.data["accepted"] else "rejected",
-    "cancel_sent": lambda _: "cancel request",
-    "cancel_answer": lambda e: "will cancel" if e.data["accepted"] else "will not cancel",
-    "result_heard": lambda e: f"{_STATUS.get(e.data['status'], e.data['status'])} {_fields(e.data)}",
-    "log": lambda e: str(e.data["text"]),
-    "output": lambda e: spoken_by(e) or "",
-    "mismatch": lambda e: f"{e.data['policy']} does not fit",
-    "subject": lambda e: e.name.replace("_", " "),
+class _Kind(NamedTuple):
+    """A kind of event that the timeline shows.
+
+    Attributes:
+        direction: Of its dot.
+        label: Its words.
+        key: Whether it is always kept.
+        numbered: Whether it is about the judge's own goals, and carries a goal's number.
+    """
+
+    direction: str
+    label: Callable[[Event], str] = lambda event: _fields(event.data)
+    key: bool = False
+    numbered: bool = False
+
+
+_HEARD, _SENT, _NOTE = "from_subject", "to_subject", "note"
+_KINDS = {
+    "message": _Kind(_HEARD),
+    "sent": _Kind(_SENT),
+    "request": _Kind(_HEARD),
+    "response": _Kind(_SENT),
+    "goal": _Kind(_HEARD, lambda e: _goal(e.data), key=True),
+    "feedback": _Kind(_SENT),
+    "cancel": _Kind(_HEARD, lambda _: "cancel request", key=True),
+    "result_request": _Kind(_HEARD, lambda _: "asks for the result"),
+    "result": _Kind(_SENT, lambda e: f"{str(e.data['status']).upper()} {_fields(e.data)}".rstrip(), key=True),
+    "asked": _Kind(_SENT),
+    "answered": _Kind(_HEARD),
+    "goal_sent": _Kind(_SENT, lambda e: _goal(e.data), key=True, numbered=True),
+    "goal_answer": _Kind(_HEARD, lambda e: "accepted" if e.data["accepted"] else "rejected", numbered=True),
+    "feedback_heard": _Kind(_HEARD, numbered=True),
+    "cancel_sent": _Kind(_SENT, lambda _: "cancel request", key=True, numbered=True),
+    "cancel_answer": _Kind(
+        _HEARD, lambda e: "will cancel" if e.data["accepted"] else "will not cancel", numbered=True
+    ),
+    "result_heard": _Kind(
+        _HEARD,
+        lambda e: f"{_STATUS.get(e.data['status'], e.data['status'])} {_fields(e.data)}",
+        key=True,
+        numbered=True,
+    ),
+    "log": _Kind(_HEARD, lambda e: str(e.data["text"])),
+    "output": _Kind(_HEARD, lambda e: spoken_by(e) or ""),
+    "mismatch": _Kind(_NOTE, lambda e: f"{e.data['policy']} does not fit", key=True),
+    "subject": _Kind(_NOTE, lambda e: e.name.replace("_", " ")),
 }
 
 
 def _label(event: Event) -> str:
-    label = _LABELS.get(event.kind)
-    text = label(event) if label else _fields(event.data)
+    text = _KINDS[event.kind].label(event)
     return text if len(text) <= MAX_LABEL else f"{text[: MAX_LABEL - 1]}…"
