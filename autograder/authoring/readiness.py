@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 ENOUGH = {"right": 5, "wrong": 8}
 """As many answers as tell something of an exercise. It works with fewer; how fair it is, is then not known."""
 MISTAKES = "docs/mistakes.md"
-"""Where students read of each diagnosis, below a heading with its key."""
+"""The page on which students read of each diagnosis, below a heading with its key."""
 _PACKAGE = Path(course.__file__).resolve().parents[1]
 _SETTINGS = _PACKAGE / "pyproject.toml"
 

@@ -225,14 +225,13 @@ def patience_not_kept(absent: str) -> Mistake:
     )
 
 
-def remark(part: Part) -> str:
-    """The card's remark on a client that goes on waiting; empty where there is nothing to say."""
-    if not goes_on_waiting(part):
-        return ""
-    return (
+def remark(absent: str) -> Callable[[Evidence], str]:
+    """The card's remark on a client that goes on waiting in the run without a server, which is called ``absent``."""
+    words = (
         "When there is no server, your client says again and again that it waits, and waits on. The task allows this; "
         "a robot that must not wait for ever needs a limit as well, such as a number of tries."
     )
+    return lambda evidence: words if goes_on_waiting(evidence.part(absent)) else ""
 
 
 # --- with a server -------------------------------------------------------------------------------------------

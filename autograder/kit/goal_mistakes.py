@@ -123,7 +123,7 @@ NEVER_SPUN = mistake(
 
 
 def _ended_before(evidence: Evidence) -> str:
-    """What was still to come when it ended, in words; empty where it waited for its answers."""
+    """The answer that was still to come when it ended, in words; empty where it waited for its answers."""
     part = _first_time(evidence)
     ending, answered, result = part.ending, part.first("goal_answered"), part.first("result")
     if not asked_for(part) or ending is None or (part.traceback and not meant(part.traceback)):
@@ -213,7 +213,7 @@ REFUSAL_RETURNED = mistake(
 
 
 def _feedback_not_shown(evidence: Evidence) -> tuple[int, int] | None:
-    """How many feedback messages were sent, and how many of them it showed."""
+    """The number of feedback messages that were sent, and of those that it showed."""
     part = _first_time(evidence)
     sent, missing = len(part.of("feedback")), len(unshown_feedback(part))
     return (sent, sent - missing) if missing and part.first("result_request") else None

@@ -16,7 +16,7 @@ from autograder.kit.crashes import SLIPS
 from autograder.kit.evidence import INTERRUPTED
 from autograder.kit.giving_up import looks_elsewhere, objection, remark
 from autograder.kit.model import Finding
-from autograder.kit.texts_said import mentions
+from autograder.kit.texts_said import mentions, said_first_after
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -122,17 +122,8 @@ def _sequence(event: Event) -> list[int]:
 
 
 def said_of_result(part: Part) -> list[str]:
-    """The words after the result was sent, without late echoes of something said before.
-
-    A log line comes twice, as output and on /rosout, and the second of the two may be slow.
-    """
-    result = part.first("result")
-    if result is None:
-        return []
-    later = part.said(after=result)
-    everything = part.said()
-    before = everything[: len(everything) - len(later)]
-    return [line for line in later if line not in before]
+    """The words after the result was sent, without late echoes of something said before."""
+    return said_first_after(part.first("result"), part)
 
 
 def reports_result(part: Part) -> bool:
@@ -403,6 +394,5 @@ def ends_without_a_server(evidence: Evidence) -> Finding:
     return Finding(not wrong, "says so and ends by itself", wrong or "it says so")
 
 
-def may_wait_on(evidence: Evidence) -> str:
-    """A word on limits for a client that waits on."""
-    return remark(evidence.part(ABSENT))
+may_wait_on = remark(ABSENT)
+"""A word on limits for a client that waits on."""

@@ -11,7 +11,7 @@ import re2
 from autograder.kit import giving_up
 from autograder.kit.in_words import counted
 from autograder.kit.model import Advice, Finding
-from autograder.kit.texts_said import mentions
+from autograder.kit.texts_said import mentions, said_first_after
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part, Reference
@@ -124,16 +124,9 @@ def has_reported(part: Part, calls: int) -> bool:
 
 
 def new_words(part: Part, given: Event | None = None) -> list[str]:
-    """The words after an answer, the last one if none is named, without late echoes.
-
-    A log line comes twice, as output and on /rosout, and the second of the two may be slow.
-    """
+    """The words after an answer, the last one if none is named, without late echoes."""
     given = given or next(reversed(part.of("response")), None)
-    if given is None:
-        return []
-    later, everything = part.said(after=given), part.said()
-    before = everything[: len(everything) - len(later)]
-    return [line for line in later if line.strip() and line not in before]
+    return list(filter(str.strip, said_first_after(given, part)))
 
 
 def braces_left(part: Part) -> Advice | None:
@@ -193,9 +186,7 @@ def _reporting(part: Part) -> list[str]:
     return [line for line in new_words(part) if mentions([line], answers(part)[-1])]
 
 
-def no_limit(evidence: Evidence) -> str:
-    """A remark for a client that waits without end, and says so."""
-    return giving_up.remark(evidence.part(ABSENT))
+no_limit = giving_up.remark(ABSENT)
 
 
 def how_it_went(part: Part) -> str:

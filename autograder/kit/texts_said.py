@@ -43,6 +43,18 @@ def is_said(text: str, part: Part, *, after: Event | None = None) -> bool:
     return any(tells(line, text) for line in part.said(after=after))
 
 
+def said_first_after(event: Event | None, part: Part) -> list[str]:
+    """The lines that the subject said after an event and not before it; none where the event is missing.
+
+    A log line comes twice, as output and on /rosout, and the second of the two may be slow.
+    """
+    if event is None:
+        return []
+    later, everything = part.said(after=event), part.said()
+    before = everything[: len(everything) - len(later)]
+    return [line for line in later if line not in before]
+
+
 def has_much_of(line: str, text: str) -> bool:
     """True if a line has a part of a text in it that no line has by chance, in capitals or not."""
     if tells(line, text) or any(byte in line for byte in _BYTE):

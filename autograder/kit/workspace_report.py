@@ -25,7 +25,7 @@ MAX_LINE = 3_900
 _LIMITS = (2_500, 1_200, 600, 200, 50)
 """Characters of each text of a report, tried in turn until its line is short enough."""
 AMENT_PACKAGE = "ament_package()"
-"""What a report says is missing where a package was built that ROS does not find."""
+"""The missing thing, in a report, of a package that was built and that ROS does not find."""
 _FEW = 10
 """Packages beside the needed ones that are named where there is no room for all."""
 

@@ -6,7 +6,7 @@ import pytest
 
 from autograder import exercises
 from autograder.judge.verdicts import reference, trial
-from autograder.kit.evidence import Event, Evidence, Part
+from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.giving_up import PATIENCES, broken_patience, gave_up, objection, remark
 
 ASKED = Event(0.0, "request", "/add_two_ints", {"fields": {"a": 1, "b": 2}})
@@ -264,9 +264,12 @@ def test_no_usual_constant_is_taken_for_a_patience(told: float, seconds: float) 
 
 
 def test_a_wait_without_a_limit_is_worth_a_remark() -> None:
-    assert "limit" in remark(_waits(*EACH_SECOND))
-    assert not remark(_waits((5.0, "nobody there"), ends=5.0))
-    assert not remark(_waits(*EACH_SECOND, told=1.5))
+    def said_of(part: Part) -> str:
+        return remark(part.name)(Evidence([part], Reference("", {})))
+
+    assert "limit" in said_of(_waits(*EACH_SECOND))
+    assert not said_of(_waits((5.0, "nobody there"), ends=5.0))
+    assert not said_of(_waits(*EACH_SECOND, told=1.5))
 
 
 def test_what_ros2_run_says_of_an_exit_code_is_no_word_of_the_program() -> None:

@@ -36,7 +36,7 @@ def commands(publisher: Publisher) -> list[dict[str, float]]:
 
 
 def words(command: dict[str, float]) -> str:
-    """What a command says: the numbers that are not 0."""
+    """A command in words: the numbers in it that are not 0."""
     return ", ".join(f"{name} = {value:g}" for name, value in command.items() if value) or "all numbers 0"
 
 

@@ -1,4 +1,4 @@
-"""What the runs of Exercise 1.3 show of a client: its goal, when it asked to cancel, what it said of the end."""
+"""The runs of Exercise 1.3 as they show a client: its goal, when it asked to cancel, what it said of the end."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def expected_order(evidence: Evidence) -> int:
 
 
 def feedbacks_before_cancel(part: Part) -> int | None:
-    """How many feedback messages were sent before the first cancel request; None where none came."""
+    """The number of feedback messages sent before the first cancel request; None where none came."""
     cancel = part.first("cancel")
     if cancel is None:
         return None
@@ -68,14 +68,14 @@ def left_before_its_answer(part: Part) -> bool:
 
 
 def telling_count(evidence: Evidence) -> int | None:
-    """How many feedback messages were sent before the cancel request, in the run where that is least right."""
+    """The number of feedback messages sent before the cancel request, in the run where that is least right."""
     runs = (evidence.part(HONOURED), evidence.part(CANCEL_REFUSED))
     counts = [feedbacks_before_cancel(part) for part in runs if goals(part)] or [None]
     return next((n for n in counts if n is None or not FIRST_FEEDBACK <= n <= LAST_FEEDBACK), counts[0])
 
 
 def after_result(part: Part) -> list[str]:
-    """What was said after the result."""
+    """The lines that were said after the result."""
     result = part.first("result")
     return part.said(after=result) if result else []
 
@@ -105,7 +105,7 @@ def cancels_every_goal(evidence: Evidence) -> bool:
 
 
 def orders_as_seen(evidence: Evidence) -> str:
-    """What is wrong about the goals that it sent, in words; empty where there is one of the right order in each run."""
+    """The fault of the goals that it sent, in words; empty where there is one of the right order in each run."""
     made = asked_for(evidence.main)
     refused = asked_for(evidence.part(REFUSED))
     if len(made) > 1:

@@ -187,7 +187,7 @@ def status_not_reported(evidence: Evidence) -> Advice | None:
 
 
 def status_misreported(evidence: Evidence) -> Advice | None:
-    """What it says of one goal is true of the other one."""
+    """It says of one goal something that is true of the other one."""
     honoured, refused = evidence.part(HONOURED), evidence.part(CANCEL_REFUSED)
     claim = false_claim(honoured, refused, aborted_run(evidence))
     if claim is None:

@@ -1,4 +1,4 @@
-"""What the judge does with a client that cancels: it honours that, refuses it, agrees and fails, or takes no goal.
+"""The judge's answers to a client that cancels: it honours that, refuses it, agrees and fails, or takes no goal.
 
 The judge is the action server. In a first part it comes late and cancels as it is asked to; in a second one the goal
 succeeds all the same, so that a client that only claims "canceled" is told from one that looked at the status. There
@@ -49,7 +49,7 @@ FEW_LATE = 3
 AT_A_TIME = 3
 """Late feedback messages that are sent before the client has to have taken them; its queue holds ten."""
 ENDS = {HONOURED: "canceled", CANCEL_REFUSED: "succeeded", AGREED: "aborted"}
-"""How a goal ends that somebody asked to cancel, by the name of the part; any other one succeeds."""
+"""The end of a goal that somebody asked to cancel, by the name of the part; any other one succeeds."""
 A_MOMENT = 2
 """Feedback messages that may come before a crowded machine lets a client go on whose sleep is over."""
 LAB_TIME = 1.5

@@ -1,4 +1,4 @@
-"""What a client says of how its goal ended, in the runs in which it was canceled, in which it succeeded, was aborted.
+"""A client's words on how its goal ended, in the runs in which it was canceled, in which it succeeded, was aborted.
 
 Any human language is right, and a number is as good as a name. But a word that names one outcome must not be said of
 the other, whatever number stands beside it.
@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 _NUMBER = re2.compile(r"\d+(?:\.\d+)*")
 WAS_CANCELED, WAS_ABORTED = "was canceled", "was aborted, though the server had agreed to cancel it"
 HAS_SUCCEEDED = "succeeded in spite of the cancel request"
-"""How the goals end."""
+"""The ends of the goals."""
 _ENGLISH = "cancel+ed"
-"""What nobody may say of a goal that was aborted. In other languages one word may stand for both."""
+"""Words that nobody may say of a goal that was aborted. In other languages one word may stand for both."""
 
 
 def says_canceled(lines: Sequence[str], elsewhere: Sequence[str] = (), otherwise: Sequence[str] = ()) -> bool:
@@ -70,7 +70,7 @@ def _shape(line: str) -> str:
 
 
 def false_claim(honoured: Part, refused: Part, aborted: Part | None = None) -> tuple[str, str] | None:
-    """What it says of one of its goals and is true of another only, and how the goal that it says it of ended.
+    """A line about one of its goals that is true of another only, and how the goal that it says it of ended.
 
     None where it says nothing of the kind.
 
@@ -111,7 +111,7 @@ def false_claim(honoured: Part, refused: Part, aborted: Part | None = None) -> t
 
 
 def _claimed(part: Part, truth: str, word: str = "cancel|abgebrochen|annul") -> str | None:
-    """What it says that amounts to "the goal was canceled" where it was not, without a word of doubt.
+    """A line that amounts to "the goal was canceled" where it was not, without a word of doubt.
 
     Args:
         part: The run.

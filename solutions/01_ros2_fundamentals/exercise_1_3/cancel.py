@@ -109,7 +109,7 @@ def _cancels(part: Part) -> list[Event]:
 
 
 def reports_the_status(evidence: Evidence) -> Finding:
-    """When the goal has ended it says "canceled" where it was, and not where it was not."""
+    """It says "canceled" of the goal that was canceled, once that has ended, and of no other."""
     expected = "learns the status and says CANCELED (5), and only where it is so"
     part, refused = evidence.part(HONOURED), evidence.part(CANCEL_REFUSED)
     if part.first("cancel") is None:

@@ -36,7 +36,7 @@ TEMPTING = {
 """The types that are asked for, each with a name that sounds like it and is given to a service of another type."""
 
 HIDDEN = "_parameters"
-"""How the name of one service ends that is asked for."""
+"""The end of the name of one service that is asked for."""
 
 LATE = "the service comes late"
 OTHER = "another type is asked for"
@@ -175,7 +175,7 @@ def answers(part: Part) -> list[Naming]:
 
 
 def named(part: Part) -> list[str]:
-    """What the subject names as its answer: the last service that it tells of, or the end of what it lists."""
+    """The services that it names as its answer: the last one that it tells of, or the end of what it lists."""
     everything = namings(part)
     told = answers(part) or [naming for naming in everything if len(naming.names) == 1] or everything
     return list(told[-1].names) if told else []
@@ -234,11 +234,6 @@ def _found(part: Part) -> Finding:
             part.inputs["right"] if returns_it(part) else "named it, and did not return it",
         )
     return Finding(False, expected, ", ".join(named(part)) or _how_it_went(part))
-
-
-def no_limit(evidence: Evidence) -> str:
-    """A remark for a program that looks without end, and says so."""
-    return giving_up.remark(evidence.part(ABSENT))
 
 
 def _how_it_went(part: Part) -> str:
@@ -419,7 +414,7 @@ EXERCISE = question.exercise(
     limit=90.0,
     arguments="the type of a service, such as std_srvs/srv/Empty",
     sample_arguments=(ADDER,),
-    remarks=(no_limit,),
+    remarks=(giving_up.remark(ABSENT),),
     text={
         "returns the name as soon as it sees a service of the type": "late other",
         "After `patience_sec` seconds without one it raises `TimeoutError`.": "none",

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Part
 
 KEYS = ("topic_published", "topic_subscribed", "type_published", "type_subscribed")
-"""What is asked for."""
+"""The keys of the dictionary that is asked for."""
 CASES = ("the name differs", "the type differs", "both differ")
 ANSWERING = {Pace.FAST: 8.0, Pace.REAL_TIME: 15.0}
 """Seconds of wall time for an answer; discovery takes up to three in a process that has just started."""
@@ -81,7 +81,7 @@ def _is_answered(evidence: Evidence) -> bool:
 
 
 def bystander(planted: Mapping[str, Any]) -> dict[str, dict[str, str]]:
-    """What a third node publishes and subscribes to: topics of its own, and each side's beside the node in question.
+    """The topics of a third node by role: topics of its own, and each side's beside the node in question.
 
     In one participant a topic has one type, so where the two sides share the name it is on the listener's only.
     """
@@ -278,7 +278,7 @@ def no_answer(seen: Evidence, _: Evidence) -> Advice | None:
     next_step="Look at the publishers of the first node, and at the subscriptions of the second.",
 )
 def swapped(seen: Evidence, _: Evidence) -> bool:
-    """What is published is given as what is subscribed to."""
+    """The topic that is published is given as the one that is subscribed to."""
     crossed = dict(zip(KEYS, (KEYS[1], KEYS[0], KEYS[3], KEYS[2]), strict=True))
     return any(
         given and all(_same(key, given.get(crossed[key]), str(part.inputs[key])) for key in KEYS)
@@ -288,7 +288,7 @@ def swapped(seen: Evidence, _: Evidence) -> bool:
 
 @mismatched.mistake("wrong_node")
 def wrong_node(seen: Evidence, _: Evidence) -> Advice | None:
-    """What a node has that every node has, or what another node has, is given as the answer."""
+    """A topic that every node has, or that another node has, is given as the answer."""
     for part, answered in _wrong(seen):
         given = {str(value) for value in (answered or {}).values()}
         if given & {"/rosout", "/parameter_events", "/clock"}:

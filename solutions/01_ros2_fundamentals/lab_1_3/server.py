@@ -18,7 +18,7 @@ ORDINARY = 6
 
 
 def single_calls(random: Random) -> list[Fields]:
-    """What is asked one by one: everyday numbers, negative ones, zeros, and sums just inside an int64.
+    """The calls that are made one by one: everyday numbers, negative ones, zeros, and sums just inside an int64.
 
     One request comes twice, with others in between: a server may remember nothing that changes its answer.
     """
@@ -59,7 +59,7 @@ def small(random: Random) -> list[Fields]:
 
 
 def objection(request: Fields, answer: Fields | None) -> str:
-    """What is wrong about an answer."""
+    """The fault of an answer, in words; empty where it is right."""
     a, b = request["a"], request["b"]
     if answer is None:
         return f"no answer to {a} + {b}"

@@ -167,7 +167,7 @@ def _sent(evidence: Evidence, numbers: Sequence[int]) -> list[FibonacciGoal]:
 
 
 def expected_sequence(evidence: Evidence, order: int) -> list[int]:
-    """What the reference solution answers to one of the orders."""
+    """The reference solution's answer to one of the orders."""
     known = [goal(evidence.reference.part(GOALS), number) for number in PACED]
     longest = max((seen.sequence for seen in known), key=len)
     extra = len(known[0].sequence) - int(known[0].order or 0)
@@ -175,7 +175,7 @@ def expected_sequence(evidence: Evidence, order: int) -> list[int]:
 
 
 def objection(evidence: Evidence, seen: FibonacciGoal) -> str:
-    """What is wrong about how a good goal ended, in words; empty where it is right."""
+    """The fault in the end of a good goal, in words; empty where it is right."""
     order = int(seen.order or 0)
     wanted = [expected_sequence(evidence, order)]
     where = f"order {seen.order}: "
@@ -193,7 +193,7 @@ def objection(evidence: Evidence, seen: FibonacciGoal) -> str:
 
 
 def feedback_objection(evidence: Evidence, seen: FibonacciGoal) -> str:
-    """What is wrong about the feedback of a good goal; empty where it grows by one number each time."""
+    """The fault in the feedback of a good goal, in words; empty where it grows by one number each time."""
     wanted = expected_sequence(evidence, int(seen.order or 0))
     where = f"order {seen.order}: "
     if not seen.partials:
@@ -208,7 +208,7 @@ def feedback_objection(evidence: Evidence, seen: FibonacciGoal) -> str:
 
 
 def feedback_slip(evidence: Evidence, seen: FibonacciGoal) -> str:
-    """What is wrong about the feedback messages that came, however many are missing before or after them."""
+    """The fault in the feedback messages that came, in words, however many are missing before or after them."""
     wanted = expected_sequence(evidence, int(seen.order or 0))
     grows = all(len(after) == len(before) + 1 for before, after in pairwise(seen.partials))
     right = all(partial == wanted[: len(partial)] for partial in seen.partials)
@@ -227,5 +227,5 @@ def is_beginning(numbers: Sequence[int], start: Sequence[int]) -> bool:
 
 
 def first_two(evidence: Evidence) -> list[int]:
-    """What the sequence begins with."""
+    """The numbers with which the sequence begins."""
     return expected_sequence(evidence, min(ORDERS))[:2]

@@ -1,4 +1,4 @@
-"""What lab 1.4 asks of an action server, decided from what the judge's action client has seen."""
+"""The criteria of Lab 1.4 for an action server, decided from what the judge's action client has seen."""
 
 from __future__ import annotations
 

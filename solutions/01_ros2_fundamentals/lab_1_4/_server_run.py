@@ -1,4 +1,4 @@
-"""How the judge drives an action server of Lab 1.4: as its client, in two runs."""
+"""The scenario of Lab 1.4's action server: the judge is its client, in two runs."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ THREADS = 4
 """Threads that spin a notebook's class: with one, no cancel is read while a goal is executed."""
 
 SLEEP_FACTOR = {Pace.FAST: 0.04, Pace.REAL_TIME: 1.0}
-"""What a sleep of a notebook's server is multiplied with: it may pace its work as it likes, and nobody need wait."""
+"""The factor on what a notebook's server sleeps: it may pace its work as it likes, and nobody need wait."""
 
 SERVER_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
 """Seconds in which a server that is on the graph must be matched with the judge's client."""
@@ -115,7 +115,7 @@ def send_good_goals(bench: Bench, caller: ActionCaller) -> bool:
 
 
 def _goals_alone(bench: Bench, caller: ActionCaller, order: int) -> bool:
-    """What is left to send to a server that serves one goal at a time: that policy must not cost other points."""
+    """The goals that are left to send to a server that serves one at a time: that policy must not cost other points."""
     if not one_by_one(bench, caller, order):
         return False
     caller.send_goal(order=LONG_ORDER)
