@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from autograder.kit.evidence import Evidence, Part
-    from autograder.kit.model import Bench, Mistake
+    from autograder.kit.model import Bench, Finding, Mistake
 
 PATIENCE = "patience_sec"
 """The parameter by which a notebook's function is told how long to wait; also its name among a part's inputs."""
@@ -126,6 +126,23 @@ def shape(line: str) -> str:
 def goes_on_waiting(part: Part) -> bool:
     """True if the subject waits without end and may: it says so, and was not told how long to wait."""
     return bool(part.events) and part.ending is None and patience(part) is None and says_that_it_waits(part)
+
+
+def waits_in_silence(part: Part) -> bool:
+    """True if the subject waits without end and may not."""
+    return bool(part.events) and part.ending is None and not goes_on_waiting(part)
+
+
+def hides_its_end(part: Part, finding: Finding) -> str:
+    """The value that it returned as if that were the answer, or :data:`SILENT`; empty where it says what it misses.
+
+    Args:
+        part: The run without a server.
+        finding: The criterion on that run.
+    """
+    if finding.passed:
+        return ""
+    return returned_answer(part) or (SILENT if finding.seen == SILENT else "")
 
 
 def objection(

@@ -148,14 +148,9 @@ FIELDS_NEVER_FILLED = mistake(
 )
 
 
-def _waits_for_nobody(evidence: Evidence) -> bool:
-    part = evidence.part(ABSENT)
-    return bool(part.events) and part.ending is None and not giving_up.goes_on_waiting(part)
-
-
 WAITS_FOR_NOBODY = mistake(
     "waits_forever",
-    _waits_for_nobody,
+    lambda evidence: giving_up.waits_in_silence(evidence.part(ABSENT)),
     f"When the service is not there, your client is still waiting after {giving_up.GIVE_UP_LIMIT:g} s.",
     "Give the wait a limit of a few seconds: `if not client.wait_for_service(timeout_sec=5.0):` say so and stop. A "
     "while loop needs a count.",
@@ -184,14 +179,12 @@ PATIENCE_NOT_KEPT = giving_up.patience_not_kept(ABSENT)
 
 
 def _silent_end(evidence: Evidence) -> Advice | None:
-    """Without a service it ends, and says nothing of that."""
-    finding = gives_up_in_time(evidence)
-    value = giving_up.returned_answer(evidence.part(ABSENT))
-    if finding.passed or not (value or finding.seen == giving_up.SILENT):
+    found = giving_up.hides_its_end(evidence.part(ABSENT), gives_up_in_time(evidence))
+    if not found:
         return None
-    if value:
+    if found != giving_up.SILENT:
         return Advice(
-            f"When the service is not there, your function returns {value}: who calls it takes that for the sum.",
+            f"When the service is not there, your function returns {found}: who calls it takes that for the sum.",
             "Raise TimeoutError instead, with a few words on what was missing.",
         )
     return Advice(

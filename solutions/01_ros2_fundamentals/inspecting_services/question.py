@@ -372,26 +372,22 @@ def type_never_matches(seen: Evidence, _: Evidence) -> bool:
     return looked and not any(named(part) or _crashed(part) for part in runs)
 
 
-@question.mistake(
+question.knows(
     "waits_forever",
+    lambda seen, _: giving_up.waits_in_silence(seen.part(ABSENT)),
+    "When no service has the type, you look for it without end.",
+    "Note the time at the start (time.monotonic()), and raise TimeoutError when patience_sec seconds have passed.",
     late=True,
-    says="When no service has the type, you look for it without end.",
-    next_step="Note the time at the start (time.monotonic()), and raise TimeoutError when patience_sec seconds have "
-    "passed.",
 )
-def waits_forever(seen: Evidence, _: Evidence) -> bool:
-    """Without such a service it never ends, and does not say that it looks."""
-    part = seen.part(ABSENT)
-    return bool(part.events) and part.ending is None and not giving_up.goes_on_waiting(part)
 
 
 @question.mistake("silent_end", certain=True, late=True)
 def silent_end(seen: Evidence, _: Evidence) -> Advice | None:
     """Without such a service it ends, and says nothing of that."""
-    finding, value = says_that_there_is_none(seen, seen), giving_up.returned_answer(seen.part(ABSENT))
-    if finding.passed or not (value or finding.seen == giving_up.SILENT):
+    found = giving_up.hides_its_end(seen.part(ABSENT), says_that_there_is_none(seen, seen))
+    if not found:
         return None
-    did = f"return {value}, which looks like a name" if value else "end and do not say so"
+    did = "end and do not say so" if found == giving_up.SILENT else f"return {found}, which looks like a name"
     return Advice(
         f"When no service has the type, you {did}.",
         "Raise TimeoutError, with a few words on what was not found.",
