@@ -18,7 +18,7 @@ def ros_environment() -> dict[str, str]:
     """Variables that both sides of a check share: loopback only, plain logs, messages over UDP.
 
     Messages do not go through shared memory, which two boxes do not have in common. With discovery on this machine
-    only, rmw_fastrtps makes segments of it all the same (:mod:`autograder.judge.shared_memory`).
+    only, rmw_fastrtps makes segments of it all the same (:mod:`autograder.judge.serving.domain`).
     """
     return {
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
