@@ -56,11 +56,11 @@ class ScriptedActionServer:
         action: str,
         type_name: str,
         *,
-        accept_goal: bool,
-        accept_cancel: bool,
-        goal_answer_takes: float,
-        cancel_answer_takes: float,
         client_is_gone: Callable[[], bool],
+        accept_goal: bool = True,
+        accept_cancel: bool = True,
+        goal_answer_takes: float = 0.0,
+        cancel_answer_takes: float = 0.0,
     ) -> None:
         self._wire = wire
         self._recorder = recorder

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from rclpy.service import Service
 
     Take = Callable[[Any, Any], Any]
-    """What a service does with a request and an empty response."""
+    """A service's callback: it takes a request and an empty response."""
 
 ATTEMPTS = 30
 """The number of times that an answer is tried; the middleware waits about 0.1 s each time for the client's reader."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from autograder.judge.bench import graph
 from autograder.judge.bench.actions import RecordedActionClient, ScriptedActionServer
@@ -31,7 +31,18 @@ SETTLED = {Pace.FAST: 1.0, Pace.REAL_TIME: 3.0}
 """Seconds without a change of the graph after which a command is taken to have made all that it makes."""
 GRAPH_LOOK = 0.02
 """Seconds between two queries of the graph that are written down."""
-_NO_PART = "a scenario begins with bench.part(...)"
+T = TypeVar("T")
+
+
+def _of_a_part(made: T | None) -> T:
+    """Something that every part has, once one has begun.
+
+    Raises:
+        RuntimeError: None has.
+    """
+    if made is None:
+        raise RuntimeError("a scenario begins with bench.part(...)")
+    return made
 
 
 class TestBench:
@@ -152,23 +163,17 @@ class TestBench:
     @property
     def wire(self) -> Wire:
         """The judge's participant in this part."""
-        if self._wire is None:
-            raise RuntimeError(_NO_PART)
-        return self._wire
+        return _of_a_part(self._wire)
 
     @property
     def _presence(self) -> Presence:
         """The subject's presence on the graph in this part."""
-        if self._on_graph is None:
-            raise RuntimeError(_NO_PART)
-        return self._on_graph
+        return _of_a_part(self._on_graph)
 
     @property
     def _time(self) -> SubjectTime:
         """The time of the subject in this part."""
-        if self._time_of_part is None:
-            raise RuntimeError(_NO_PART)
-        return self._time_of_part
+        return _of_a_part(self._time_of_part)
 
     # --- the subject ---------------------------------------------------------------------------------------
 
@@ -289,28 +294,11 @@ class TestBench:
         self._open.callback(caller.close)
         return caller
 
-    def serve_action(
-        self,
-        action: str,
-        type_name: str,
-        *,
-        accept_goal: bool = True,
-        accept_cancel: bool = True,
-        goal_answer_takes: float = 0.0,
-        cancel_answer_takes: float = 0.0,
-    ) -> ScriptedActionServer:
+    def serve_action(self, action: str, type_name: str, **how: Any) -> ScriptedActionServer:
         """Serve an action whose every step the scenario decides, until the part ends."""
         self._take_in_who_is_there()
         server = ScriptedActionServer(
-            self.wire,
-            self._recorder,
-            action,
-            type_name,
-            accept_goal=accept_goal,
-            accept_cancel=accept_cancel,
-            goal_answer_takes=goal_answer_takes,
-            cancel_answer_takes=cancel_answer_takes,
-            client_is_gone=lambda: self._subject.ended,
+            self.wire, self._recorder, action, type_name, client_is_gone=lambda: self._subject.ended, **how
         )
         self._open.callback(server.close)
         self._announce(server.services)

@@ -93,7 +93,7 @@ than ten answers come at once, and those that find no room would be lost by chan
 
 
 class Client(ABC):
-    """What a client of a service and one of an action have in common: a server to wait for, and to count.
+    """A client of a service or of an action, in what the two share: they wait for a server, and count the servers.
 
     Args:
         wire: The judge's participant.
