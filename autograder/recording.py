@@ -1,7 +1,6 @@
 """Record reference outputs: each master's own solution, seen by the same judge as everybody's.
 
-A reference output follows from the master alone, so nothing that is expected is written a second time: change
-the
+A reference output follows from the master alone, so nothing that is expected is written a second time: change the
 solution, record, and the grader expects the new behaviour.
 """
 

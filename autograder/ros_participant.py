@@ -1,11 +1,8 @@
 """Make a participant that hears the answers to its own first announcement.
 
-Fast DDS 2.14 announces a new participant before its receivers are registered. Whoever is there already
-answers within
-0.1 ms, once; if a receiving thread reads that answer too early it is lost, and the next one comes with the
-periodic
-announcement, up to 3 s later: one new participant in three was met that late. So the threads of a new
-participant must
+Fast DDS 2.14 announces a new participant before its receivers are registered. Whoever is there already answers within
+0.1 ms, once; if a receiving thread reads that answer too early it is lost, and the next one comes with the periodic
+announcement, up to 3 s later: one new participant in three was met that late. So the threads of a new participant must
 not run before the one that makes them is done.
 """
 
@@ -25,8 +22,7 @@ if TYPE_CHECKING:
 def receivers_wait() -> Iterator[None]:
     """Hold back the threads that are started inside until the block has ended.
 
-    They are kept on one processor with their maker, under a policy of the scheduler that interrupts no
-    running thread
+    They are kept on one processor with their maker, under a policy of the scheduler that interrupts no running thread
     (sched(7), SCHED_BATCH). Does nothing where the operating system has no such policy.
     """
     if not hasattr(os, "SCHED_BATCH"):

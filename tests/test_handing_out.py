@@ -1,4 +1,4 @@
-"""What students are handed: it checks their nodes, and nothing in it is a solution."""
+"""The hand-out checks students' nodes, and nothing in it is a solution."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ``autograder lab`` prepares before JupyterLab takes over."""
+"""The preparations of ``autograder lab`` before JupyterLab takes over."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the grader expects follows from the reference solution, and from nothing else."""
+"""The reference output follows from the reference solution, and from nothing else."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ TRACEBACK = "Traceback (most recent call last)"
 _FRAME = re2.compile(r'^ +File "(?P<file>[^"]*)", line (?P<line>\d+)')
 _LIBRARIES = ("/site-packages/", "/lib/python3", "/opt/ros/", "<frozen")
 _BUILT = re2.compile(r"/install/(?:[^/.]+/)?lib/python3[^/]*/site-packages/")
-"""Where a build puts the modules of a workspace: they are the student's own."""
+"""The folder into which a build installs the modules of a workspace: they are the student's own."""
 _CALLED_BY_ROS = "/rclpy/task.py"
 """The file of rclpy that is below a line that spins, where a callback went wrong and not that line."""
 _CANNOT_BE_READ = ("SyntaxError", "IndentationError", "TabError")

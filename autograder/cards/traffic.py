@@ -59,7 +59,7 @@ class Part:
 
     @property
     def kind_of_time(self) -> str:
-        """What its axis shows, in words."""
+        """The name of what its axis shows."""
         return "simulated time" if self.simulated else "time"
 
     @functools.cached_property

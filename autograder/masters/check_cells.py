@@ -72,18 +72,12 @@ def _call(master: Path, cell: Cell) -> tuple[str, str, bool]:
     except SyntaxError:
         body = []
     match body:
-        case [
-            ast.Expr(ast.Call(ast.Name("check"), [ast.Constant(str() as exercise), ast.Name(subject)], []))
-        ]:
-            return exercise, subject, False
-        case [
-            ast.Expr(
-                ast.Call(
-                    ast.Name("check"), [ast.Constant(str() as exercise), ast.Constant(str() as path)], []
-                )
-            )
-        ]:
-            return exercise, repr(path), True
+        case [ast.Expr(ast.Call(ast.Name("check"), [ast.Constant(str() as exercise), subject], []))]:
+            match subject:
+                case ast.Name(name):
+                    return exercise, name, False
+                case ast.Constant(str() as path):
+                    return exercise, repr(path), True
     raise MasterError(master, cell.line, "This check cell cannot be read.", f"{FORM}.")
 
 

@@ -68,9 +68,7 @@ def find_region(source: str) -> Region:
         CellError: There is not exactly one well-formed region that opens with a TODO comment.
     """
     lines = source.split("\n")
-    begin, end = _marker(lines, BEGIN), _marker(lines, END)
-    if end < begin:
-        raise CellError(end, f"'{END}' stands before '{BEGIN}'.", "Put the two lines in order.")
+    begin, end = _markers(lines)
     inside = lines[begin + 1 : end]
     length = _stub_length(inside)
     if length == 0:
@@ -97,15 +95,21 @@ def find_model_answer(source: str) -> str:
         CellError: There is not exactly one well-formed region with something in it, and a question above it.
     """
     lines = source.split("\n")
-    begin, end = _marker(lines, BEGIN), _marker(lines, END)
-    if end < begin:
-        raise CellError(end, f"'{END}' stands before '{BEGIN}'.", "Put the two lines in order.")
+    begin, end = _markers(lines)
     answer = "\n".join(lines[begin + 1 : end]).strip()
     if not answer:
         raise CellError(begin + 1, "The region holds no answer.", "Write a good one, and what earns points.")
     if not "".join(lines[:begin]).strip():
         raise CellError(begin, "There is no question.", f"Ask it above '{BEGIN}'.")
     return answer
+
+
+def _markers(lines: list[str]) -> tuple[int, int]:
+    """The lines on which the region begins and ends."""
+    begin, end = _marker(lines, BEGIN), _marker(lines, END)
+    if end < begin:
+        raise CellError(end, f"'{END}' stands before '{BEGIN}'.", "Put the two lines in order.")
+    return begin, end
 
 
 def _marker(lines: list[str], marker: str) -> int:

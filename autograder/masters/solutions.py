@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from autograder.masters.source import NamedCell
 
 _KEPT = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
-"""What a program keeps of a given cell, beside constants."""
+"""The statements of a given cell that a program keeps, beside constants."""
 OTHER_WAY = "## Another way"
 LINES = 2
 """Lines that a reason has at most: whoever has solved a task wants to go on."""

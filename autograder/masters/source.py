@@ -172,31 +172,32 @@ def _defined_names(source: str) -> list[str]:
 
 
 def _region_where_it_belongs(master: Path, cell: Cell) -> None:
-    if cell.kind is CellRole.MANUAL:
-        try:
+    try:
+        if cell.kind is CellRole.MANUAL:
             find_model_answer(cell.source)
-        except CellError as error:
-            raise error.at(master, cell.body_line) from error
-        return
-    if cell.kind is not CellRole.SOLUTION:
-        if mentions_a_region(cell.source):
+        elif cell.kind is CellRole.SOLUTION:
+            _is_python(master, cell, find_region(cell.source).unsolved)
+        elif mentions_a_region(cell.source):
             raise MasterError(
                 master,
                 cell.line,
                 "A solution region in a cell that is no solution.",
                 "Tag it: ':tags: [solution]'.",
             )
-        return
-    try:
-        region = find_region(cell.source)
     except CellError as error:
         raise error.at(master, cell.body_line) from error
+
+
+def _is_python(master: Path, cell: Cell, unsolved: str) -> None:
+    """Make sure that a solution cell can be run with its solution and without."""
     try:
         _defined_names(cell.source)
     except SyntaxError as error:
-        raise _no_python(master, cell, "The solution is no Python", error) from error
+        line = cell.body_line + (error.lineno or 1) - 1
+        problem = f"The solution is no Python ({error.msg})."
+        raise MasterError(master, line, problem, "Correct this line.") from error
     try:
-        _defined_names(region.unsolved)
+        _defined_names(unsolved)
     except SyntaxError as error:
         raise MasterError(
             master,
@@ -216,11 +217,6 @@ def _defined_name(master: Path, cell: Cell) -> str:
             "Let it define one, or name it: ':grade_id: some_name'.",
         )
     return names[0]
-
-
-def _no_python(master: Path, cell: Cell, what: str, error: SyntaxError) -> MasterError:
-    line = cell.body_line + (error.lineno or 1) - 1
-    return MasterError(master, line, f"{what} ({error.msg}).", "Correct this line.")
 
 
 def _unique(master: Path, named: list[NamedCell]) -> None:
@@ -272,13 +268,10 @@ def _subjects_are_solutions(master: Path, named: list[NamedCell]) -> None:
 
 def _node(named: NamedCell) -> NotebookNode:
     cell = named.cell
-    if cell.kind is CellRole.TEXT:
-        figures = {"attachments": from_dict(cell.attachments)} if cell.attachments else {}
-        return new_markdown_cell(cell.source, id=named.name, **figures)
-    metadata: dict[str, Any] = {"nbgrader": _nbgrader(named)}
+    metadata: dict[str, Any] = {} if cell.kind is CellRole.TEXT else {"nbgrader": _nbgrader(named)}
     if cell.kind is CellRole.DEMONSTRATION:
         metadata["tags"] = [CellRole.DEMONSTRATION.value]
-    if cell.kind is CellRole.MANUAL:
+    if cell.kind in (CellRole.TEXT, CellRole.MANUAL):
         figures = {"attachments": from_dict(cell.attachments)} if cell.attachments else {}
         return new_markdown_cell(cell.source, id=named.name, metadata=from_dict(metadata), **figures)
     return new_code_cell(cell.source, id=named.name, metadata=from_dict(metadata))

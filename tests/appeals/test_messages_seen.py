@@ -1,4 +1,4 @@
-"""What a judge saw as MCAP: where each thing is found, and when."""
+"""The events of a check as MCAP, each on its topic and at its time."""
 
 from __future__ import annotations
 

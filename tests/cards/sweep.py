@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 _NO_WORDS = re2.compile(r"\x1b|\[\d+(?:;\d+)*m|\[[A-Z]\]\{|\(\?[:P<]|\\[dws][+*]|%\(|  ---|--- ;")
-"""What comes of a terminal's colours, a pattern, or a value that is empty."""
+"""Traces of a terminal's colours, of a pattern, or of an empty value."""
 _NO_NODE = re2.compile(r"no node (?:subscribed|published)|no (?:subscription|publisher)\b")
 _MEETS = re2.compile(r"^(?:Subscribes|Publishes) ")
 _SINGULAR = re2.compile(r"\b1 (?:\w+ )?(?:messages|calls|goals|times|numbers|runs)\b")

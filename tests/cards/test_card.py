@@ -1,4 +1,4 @@
-"""What a card offers with full marks: the reference solution, folded up."""
+"""The reference solution, which a card offers with full marks, folded up."""
 
 from __future__ import annotations
 

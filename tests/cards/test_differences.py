@@ -1,4 +1,4 @@
-"""What is missing in a text, and what is too much."""
+"""The difference of two texts: the missing characters and the needless ones."""
 
 from __future__ import annotations
 

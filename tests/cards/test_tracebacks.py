@@ -1,4 +1,4 @@
-"""Which line of the student's a traceback is about."""
+"""The line of the student's that a traceback is about."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which moments are shown: a fair share for each part, and a count of what is not."""
+"""The moments that are shown: a fair share for each part, and a count of those that are not."""
 
 from __future__ import annotations
 

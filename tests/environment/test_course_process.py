@@ -1,4 +1,4 @@
-"""How a Python of the environment starts: the variables, and real starts in hostile surroundings."""
+"""The start of a Python of the environment: its variables, and real starts in hostile surroundings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the doctor finds: on things that are broken in a known way, and on this machine."""
+"""The doctor's findings: on things that are broken in a known way, and on this machine."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the environment tells JupyterLab, as Jupyter's own programs read it."""
+"""JupyterLab's settings from the environment, as Jupyter's own programs read them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which ROS 2 is used: the decision, on folders and variables that look like real ones."""
+"""The decision which ROS 2 is used, on folders and variables that look like real ones."""
 
 from __future__ import annotations
 

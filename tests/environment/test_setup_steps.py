@@ -1,4 +1,4 @@
-"""What the steps of the set-up are made from, and what they do to what is there already."""
+"""The steps of the set-up: their inputs, and their effect on an environment that is there already."""
 
 from __future__ import annotations
 

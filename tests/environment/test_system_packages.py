@@ -1,4 +1,4 @@
-"""What is said and done about a missing system package."""
+"""The words and the installation for a missing system package."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What this package builds in milliseconds is byte for byte what nbgrader's own commands build."""
+"""The notebooks of a build are byte for byte those of nbgrader's own commands."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an author types, and what nbgrader gets to see of it."""
+"""The source notebook of a master has all the metadata that nbgrader needs."""
 
 from __future__ import annotations
 

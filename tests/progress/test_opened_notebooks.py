@@ -1,4 +1,4 @@
-"""What the student's server says of a notebook, so that JupyterLab finds nothing to save in it."""
+"""The student's server gives a notebook the kernel's version, so that JupyterLab finds nothing to save in it."""
 
 from __future__ import annotations
 
