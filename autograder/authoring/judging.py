@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 from autograder.boxes.scratch import HeldFolder
-from autograder.clean_stdout import private_stdout
+from autograder.standard_output import private_stdout
 from autograder.verdict import State, Verdict, from_json
 
 if TYPE_CHECKING:

@@ -71,8 +71,8 @@ def check(
         )
     if mcap is not None:
         appeals.check_name(mcap)
-    from autograder.clean_stdout import stray_lines_on_stderr
     from autograder.judge.subjects.command import CommandNotFound, check_and_keep
+    from autograder.standard_output import stray_lines_on_stderr
 
     try:
         with _box(command) if boxed else nullcontext() as box, stray_lines_on_stderr():

@@ -1,18 +1,22 @@
-"""The solutions that may be read later: taken from the master, with a reason beside the exercise."""
+"""The reference solution of an exercise, taken out of its master: to be read with its reason, and as a program."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 from autograder.masters.master_errors import MasterError
-from autograder.masters.solutions import solution_files
-from autograder.masters.source import named_cells
+from autograder.masters.solutions import reference_source, solution_files
+from autograder.masters.source import Points, named_cells
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 ROOT = Path(__file__).resolve().parents[2]
-MASTER = """\
+LAB = """\
 # Lab
 
 ```{code-cell} ipython3
@@ -60,13 +64,52 @@ def half(number: int) -> int:
 check("lab_9_1.half", half)
 ```
 """
+PROGRAM = """\
+Text.
+
+```{code-cell} ipython3
+import math
+
+HALF = 0.5
+noise = print("a demonstration")
+math.mood = "good"
+```
+
+Text.
+
+```{code-cell} ipython3
+:tags: [solution]
+
+def double(number: int) -> int:
+    '''Twice the number.'''
+    ### BEGIN SOLUTION
+    # TODO: return it.
+    return 2 * number
+    ### END SOLUTION
+```
+
+Text.
+
+```{code-cell} ipython3
+:tags: [check]
+
+check("lab_9_1.double", double)
+```
+
+Text.
+
+```{code-cell} ipython3
+@staticmethod
+def later(): ...
+```
+"""
 
 
 def made(folder: Path, why: str | None) -> dict[str, dict[str, object]]:
     master = folder / "lab_9_1" / "lab.md"
     master.parent.mkdir()
     head = (ROOT / "solutions/01_ros2_fundamentals/lab_1_2/lab.md").read_text().partition("# Lab")[0]
-    master.write_text(head + MASTER)
+    master.write_text(head + LAB)
     if why is not None:
         master.with_name("half.why.md").write_text(why)
     files = solution_files(master, named_cells(master, points=lambda _: 10))
@@ -104,3 +147,29 @@ def test_an_exercise_without_a_reason_has_none(tmp_path: Path) -> None:
 def test_a_reason_of_another_form_is_refused(tmp_path: Path, why: str) -> None:
     with pytest.raises(MasterError, match=r"half\.why\.md"):
         made(tmp_path, why)
+
+
+def test_it_defines_the_subject_and_demonstrates_nothing(
+    write_master: Callable[[str], Path], ten_points: Points, capsys: pytest.CaptureFixture[str]
+) -> None:
+    reference = reference_source(write_master(PROGRAM), "lab_9_1.double", points=ten_points)
+    namespace: dict[str, object] = {}
+    exec(reference.source, namespace)
+    assert reference.subject == "double"
+    assert namespace["double"](21) == 42  # type: ignore[operator]
+    assert "math" in namespace
+    assert namespace["HALF"] == 0.5
+    assert "noise" not in reference.source
+    assert "mood" not in reference.source
+    assert "later" not in reference.source
+    assert capsys.readouterr().out == ""
+
+
+def test_a_changed_solution_changes_it(write_master: Callable[[str], Path], ten_points: Points) -> None:
+    path = write_master(PROGRAM.replace("2 * number", "3 * number"))
+    assert "3 * number" in reference_source(path, "lab_9_1.double", points=ten_points).source
+
+
+def test_an_exercise_that_is_not_checked(write_master: Callable[[str], Path], ten_points: Points) -> None:
+    with pytest.raises(MasterError, match=r"No cell checks 'lab_9_1\.triple'"):
+        reference_source(write_master(PROGRAM), "lab_9_1.triple", points=ten_points)

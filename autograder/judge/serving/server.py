@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING, BinaryIO
 import msgspec
 
 from autograder import exercises
-from autograder.clean_stdout import private_stdout
 from autograder.judge.serving import conversation
 from autograder.judge.serving.fork import Child
 from autograder.judge.subjects.command import SPARE
 from autograder.messages.checks import Refused
 from autograder.messages.lines import encode, listen
 from autograder.messages.orders import Close, Open, Order, Report
+from autograder.standard_output import private_stdout
 
 if TYPE_CHECKING:
     import socket

@@ -18,7 +18,7 @@ from autograder.process_trees import (
     end_descendants,
     signal_group,
 )
-from autograder.short_lines import short_lines
+from autograder.standard_output import short_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

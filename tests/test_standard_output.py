@@ -1,7 +1,8 @@
-"""A line that Fast DDS prints never stands among the results."""
+"""Standard output: no line of Fast DDS stands among the results, and a long line is cut."""
 
 from __future__ import annotations
 
+import io
 import os
 import subprocess
 import sys
@@ -11,9 +12,9 @@ from click.testing import CliRunner
 
 from autograder import journal
 from autograder.authoring.judging import Turn, judge_all
-from autograder.clean_stdout import stray_lines_on_stderr
 from autograder.cli import cli
 from autograder.judge.subjects import command
+from autograder.standard_output import short_lines, stray_lines_on_stderr
 from autograder.verdict import State, Verdict, to_json
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ def _say_as_fast_dds() -> None:
 def test_private_stdout_keeps_results_apart() -> None:
     program = f"""
 import os
-from autograder.clean_stdout import private_stdout
+from autograder.standard_output import private_stdout
 print("before")
 results = private_stdout()
 os.write(1, {LOG_LINE!r})
@@ -81,3 +82,12 @@ def test_check_prints_nothing_but_the_verdict(
     assert (done.exit_code, done.stdout) == (0, f"{to_json(VERDICT).decode()}\n")
     said = capfd.readouterr()
     assert (said.out, said.err) == ("", LOG_LINE.decode())
+
+
+def test_a_long_line_is_cut_and_the_next_one_is_whole() -> None:
+    stream = io.BytesIO(b"first\n" + b"x" * 1_100_000 + b"\nlast\nno end")
+    assert list(short_lines(stream, 100)) == [b"first\n", b"x" * 100, b"last\n", b"no end"]
+
+
+def test_a_line_of_just_that_length_is_no_two_lines() -> None:
+    assert list(short_lines(io.BytesIO(b"1234\n12345\n1\n"), 5)) == [b"1234\n", b"12345", b"1\n"]

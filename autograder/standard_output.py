@@ -1,4 +1,4 @@
-"""Standard output for results alone: Fast DDS prints its warnings there, in the middle of what a program is to read.
+"""Standard output: kept free for results while Fast DDS prints its warnings there, and read however long its lines are.
 
 Fast DDS writes its log to standard output (StdoutConsumer in fastdds/dds/log). One such line between two lines of JSON
 makes them unreadable, and it comes only when something rare happens.
@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import sys
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, BinaryIO
+from typing import IO, TYPE_CHECKING, BinaryIO
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -37,3 +37,17 @@ def stray_lines_on_stderr() -> Iterator[None]:
     finally:
         os.dup2(kept, STDOUT)
         os.close(kept)
+
+
+def short_lines(stream: IO[bytes], limit: int) -> Iterator[bytes]:
+    """The lines of a stream as they come, each with its end; of a longer one only the beginning.
+
+    Args:
+        stream: What is read to its end.
+        limit: Bytes of a line that are given.
+    """
+    begins = True
+    while piece := stream.readline(limit):
+        if begins:
+            yield piece
+        begins = piece.endswith(b"\n")
