@@ -10,10 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from autograder.cards import wording
-from autograder.cards.card import ON_A_PAGE, Card, Solution
+from autograder.cards.card import ON_A_PAGE, Card, Choices
 from autograder.cards.readable import one_line
 from autograder.cards.text import card_text
 from autograder.cards.timeline_layout import HALF_WIDTH, WIDTH, Picture, picture
@@ -33,25 +33,9 @@ _SYMBOLS = {State.PASSED: "✓", State.FAILED: "✗", State.NOT_CHECKED: "?"}
 _PLAIN_COLOURS = {State.PASSED: "#2f8f57", State.FAILED: "#c8641a", State.NOT_CHECKED: "#6482c8"}
 
 
-def mimebundle(
-    verdict: Verdict,
-    *,
-    before: float | None = None,
-    notice: str = "",
-    solution: Solution | None = None,
-    short: bool = False,
-) -> dict[str, str]:
-    """The card for ``display(..., raw=True)``: HTML for the browser, text for what shows no HTML.
-
-    Args:
-        verdict: What the judge found.
-        before: The points of the try before this one, where there was one.
-        notice: Why the card is out of date; it is then dimmed. Empty for one that is not.
-        solution: The reference solution, which is shown with full marks only.
-        short: Leave out all but the points, what happened and what to do next.
-    """
-    html = card_html(verdict, before=before, notice=notice, solution=solution, short=short, buttons=True)
-    text = card_text(verdict, before=before, notice=notice, solution=solution, short=short)
+def mimebundle(verdict: Verdict, **choices: Unpack[Choices]) -> dict[str, str]:
+    """The card for ``display(..., raw=True)``: HTML for the browser, text for what shows no HTML."""
+    html, text = card_html(verdict, buttons=True, **choices), card_text(verdict, **choices)
     return {"text/html": html, "text/plain": text}
 
 
@@ -70,27 +54,16 @@ def prepare() -> None:
     _templates()
 
 
-def card_html(
-    verdict: Verdict,
-    *,
-    before: float | None = None,
-    notice: str = "",
-    solution: Solution | None = None,
-    short: bool = False,
-    buttons: bool = False,
-) -> str:
+def card_html(verdict: Verdict, *, buttons: bool = False, **choices: Unpack[Choices]) -> str:
     """Show a verdict in JupyterLab, in nbgrader's feedback or on any page; everything is escaped.
 
     Args:
         verdict: What the judge found.
-        before: As in :func:`mimebundle`, like the others.
-        notice: Likewise.
-        solution: Likewise.
-        short: Likewise.
         buttons: With Check, Watch and Next, which only JupyterLab with the course's commands shows.
+        choices: What else is said, or left out.
     """
     css, template = _templates()
-    card = Card.of(verdict, ON_A_PAGE, before=before, notice=notice, solution=solution, short=short)
+    card = Card.of(verdict, ON_A_PAGE, **choices)
     width = WIDTH if len(card.traffic.parts) <= 2 else HALF_WIDTH
     return template.render(
         card=card,

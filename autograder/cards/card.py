@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict
 
 from autograder.cards import wording
 from autograder.cards.differences import Piece, difference
@@ -65,6 +65,22 @@ class Solution:
         code = tuple(_code(cell) for cell in self.code)
         other_way, other_code = paragraph(self.other_way, 600), _code(self.other_code)
         return Solution(code, paragraph(self.why, 600), other_way, other_code)
+
+
+class Choices(TypedDict, total=False):
+    """The choices of whoever shows a card.
+
+    Attributes:
+        before: The points of the try before this one, where there was one.
+        notice: Why the card is out of date; it is then dimmed. Empty for one that is not.
+        solution: The reference solution, which is shown with full marks only.
+        short: Leave out all but the points, what happened and what to do next.
+    """
+
+    before: float | None
+    notice: str
+    solution: Solution | None
+    short: bool
 
 
 @dataclass(frozen=True)
@@ -148,16 +164,7 @@ class Card:
         solution: Solution | None = None,
         short: bool = False,
     ) -> Card:
-        """The card of a verdict.
-
-        Args:
-            verdict: What the judge found.
-            form: Which kind of card.
-            before: The points of the try before this one, where there was one.
-            notice: Why the card is out of date; empty for one that is not.
-            solution: The reference solution, which is shown with full marks only.
-            short: Leave out all but the points, what happened and what to do next.
-        """
+        """The card of a verdict in one form; the others are its :class:`Choices`."""
         mark = form.mark
         advice = wording.advice(verdict)
         shown = traffic(verdict.timeline, at_most=form.moments)

@@ -7,10 +7,10 @@ survives any terminal; every line stands by itself, without columns that a scree
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 from autograder.cards import wording
-from autograder.cards.card import IN_A_TERMINAL, Card, Row, Solution
+from autograder.cards.card import IN_A_TERMINAL, Card, Choices, Row, Solution
 from autograder.cards.differences import marked
 from autograder.cards.readable import one_line, wrap
 from autograder.cards.readable import width as columns
@@ -33,10 +33,7 @@ def card_text(
     *,
     width: int = 88,
     color: bool = False,
-    before: float | None = None,
-    notice: str = "",
-    solution: Solution | None = None,
-    short: bool = False,
+    **choices: Unpack[Choices],
 ) -> str:
     """Show a verdict in a terminal.
 
@@ -44,15 +41,12 @@ def card_text(
         verdict: What the judge found.
         width: Columns of a line; 40 at least. Lines of a traceback may be longer.
         color: Whether to add ANSI codes (bold, and a colour for the state); they carry no meaning.
-        before: The points of the try before this one, where there was one.
-        notice: Why the card is out of date; empty for one that is not.
-        solution: The reference solution, which is shown with full marks only.
-        short: Leave out all but the points, what happened and what to do next.
+        choices: What else is said, or left out.
 
     Returns:
         Lines without a newline at the end.
     """
-    card = Card.of(verdict, IN_A_TERMINAL, before=before, notice=notice, solution=solution, short=short)
+    card = Card.of(verdict, IN_A_TERMINAL, **choices)
     return "\n".join(_Writer(max(width, _NARROWEST), color).card(card))
 
 
