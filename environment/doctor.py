@@ -77,7 +77,7 @@ def as_text(findings: Iterable[Finding]) -> str:
     return "\n".join(lines)
 
 
-def _output(command: list[str], limit: float = _SHORT) -> tuple[int, str]:
+def _output(command: list[str]) -> tuple[int, str]:
     """Run a command and return its exit code and all it printed; 127 if it could not be started or hung."""
     try:
         done = subprocess.run(
@@ -87,7 +87,7 @@ def _output(command: list[str], limit: float = _SHORT) -> tuple[int, str]:
             stderr=subprocess.STDOUT,
             text=True,
             errors="replace",
-            timeout=limit,
+            timeout=_SHORT,
             check=False,
         )
     except (OSError, subprocess.TimeoutExpired) as error:

@@ -15,7 +15,6 @@ from autograder.execution.plan import Planned, plan
 from autograder.execution.problems import Problem, problems_of, write_report
 from autograder.grading.running import engine
 from autograder.grading.running.progress import BatchProgress
-from autograder.grading.running.worker import JUDGE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -91,7 +90,6 @@ def execute_all(
     *,
     jobs: int | None = None,
     console: Console,
-    judge: str = JUDGE,
 ) -> list[Executed]:
     """Execute notebooks in parallel, each with a kernel, a folder and a judge of its own.
 
@@ -100,7 +98,6 @@ def execute_all(
         reports: Where the page about a notebook that failed is kept.
         jobs: Notebooks at once; as many as processors and memory allow by default.
         console: Where progress is shown.
-        judge: What makes a judge, as ``module:class``.
 
     Returns:
         One for each notebook, in the order in which they were given.
@@ -117,7 +114,6 @@ def execute_all(
             scratch.path,
             jobs,
             on_start=lambda task: progress.started(task.label),
-            judge=judge,
         )
         with contextlib.closing(running):
             for done in running:
