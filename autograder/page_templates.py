@@ -9,7 +9,7 @@ def page_templates(package: str) -> Environment:
     """The templates that are beside a package's modules.
 
     Args:
-        package: Its name, such as ``"autograder.progress"``.
+        package: Its name, such as ``"autograder.student"``.
     """
     return Environment(
         loader=PackageLoader(package, ""),

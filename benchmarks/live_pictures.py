@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import psutil
 from jupyter_client.manager import KernelManager
 
-from autograder.lab import join_domain
+from autograder.student.lab import join_domain
 
 MOST = 3.0
 """Percent of a core that robot and graph may cost while nothing happens."""

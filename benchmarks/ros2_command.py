@@ -26,9 +26,9 @@ from nbclient import NotebookClient
 from nbformat.v4 import new_code_cell, new_notebook
 
 from autograder import course, journal
-from autograder.lab import join_domain
 from autograder.masters.layout import chapter_path, lab_name, masters
 from autograder.masters.source import source_notebook
+from autograder.student.lab import join_domain
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

@@ -35,7 +35,8 @@ _only_sections = click.option(
 )
 def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solutions: bool) -> None:
     """Make in PLACE what a class is handed: notebooks and judge, no solution, no answer, no grader."""
-    from autograder import course, handing_out
+    from autograder import course
+    from autograder.student import handing_out
 
     try:
         made = handing_out.hand_out(

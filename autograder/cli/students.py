@@ -144,8 +144,8 @@ def show(verdict: Verdict, *, as_json: bool) -> None:
 def lab(folder: Path | None, arguments: tuple[str, ...]) -> None:
     """Open JupyterLab on the chapters, with a ROS domain of its own."""
     from autograder import course
-    from autograder.lab import NoSuchFolderError, open_lab
     from autograder.ros_domain import NoFreeDomainError
+    from autograder.student.lab import NoSuchFolderError, open_lab
 
     try:
         open_lab(folder or course.root() / course.CHAPTERS, arguments)
@@ -159,8 +159,8 @@ def lab(folder: Path | None, arguments: tuple[str, ...]) -> None:
 def progress(as_json: bool, folder: Path | None) -> None:
     """Say which points you have reached, and where to go on. It is no grade."""
     from autograder import course, exercises, journal
-    from autograder.progress.progress_text import standing_json, standing_text
-    from autograder.progress.standing import standing
+    from autograder.student.progress_text import standing_json, standing_text
+    from autograder.student.standing import standing
 
     try:
         root = course.root()
@@ -177,7 +177,7 @@ def progress(as_json: bool, folder: Path | None) -> None:
 def reset(notebook: str, folder: Path | None) -> None:
     """Begin NOTEBOOK anew, such as lab_1_2: the released one is put back, and yours is kept as a copy beside it."""
     from autograder import course
-    from autograder.progress import resetting
+    from autograder.student import resetting
 
     try:
         root = course.root()
@@ -193,7 +193,7 @@ def reset(notebook: str, folder: Path | None) -> None:
 def _notebooks_and_journal(root: Path, folder: Path | None) -> tuple[Path, Path | None]:
     """The folder of the notebooks, and its journal."""
     from autograder import course, journal
-    from autograder.lab import NOTEBOOKS_VARIABLE
+    from autograder.student.lab import NOTEBOOKS_VARIABLE
 
     if folder is not None:
         return folder.resolve(), journal.place(folder.resolve())

@@ -9,10 +9,10 @@ import pytest
 
 from autograder import exercises
 from autograder.cards.wording import SOLUTION
-from autograder.handing_out import hand_out
 from autograder.notebook.checking import card_display
 from autograder.notebook.checking.card_display import solution_of
 from autograder.notebook.checking.judge_link import SOCKET_VARIABLE
+from autograder.student.handing_out import hand_out
 from autograder.verdict import State, Verdict
 
 ROOT = Path(__file__).resolve().parents[3]

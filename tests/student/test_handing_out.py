@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import exercises
-from autograder.handing_out import CannotHandOut, hand_out
 from autograder.masters.layout import lab_name, masters
+from autograder.student.handing_out import CannotHandOut, hand_out
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 SOLUTION = re.compile(r"### BEGIN SOLUTION\n(.*?)### END SOLUTION", re.DOTALL)
 
 

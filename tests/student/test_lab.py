@@ -19,7 +19,8 @@ from jupyterlab_server.config import get_page_config
 from nbgrader.server_extensions.validate_assignment.handlers import ValidateAssignmentHandler
 
 from autograder import exercises, journal
-from autograder.lab import (
+from autograder.ros_domain import claim_free_domain
+from autograder.student.lab import (
     NOTEBOOKS_VARIABLE,
     NOTHING_TO_SAVE,
     PANEL,
@@ -27,7 +28,6 @@ from autograder.lab import (
     end_idle_workers,
     open_lab,
 )
-from autograder.ros_domain import claim_free_domain
 
 ROS_VARIABLES = ("ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
 VARIABLES = (*ROS_VARIABLES, "JUPYTER_CONFIG_PATH", journal.VARIABLE, NOTEBOOKS_VARIABLE)

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 from autograder import course, journal
 from autograder.cli import cli
-from autograder.progress.resetting import CannotReset, released_text, reset
+from autograder.student.resetting import CannotReset, released_text, reset
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -29,7 +29,7 @@ KEPT_BACK = (
     "autograder/authoring",
     "autograder/execution",
     "autograder/grading",
-    "autograder/handing_out.py",
+    "autograder/student/handing_out.py",
     "autograder/masters",
     "autograder/recording.py",
 )

@@ -10,7 +10,7 @@ from autograder.cards import certificate
 from autograder.cards.wording import points_of
 
 if TYPE_CHECKING:
-    from autograder.progress.standing import ChapterStanding, NotebookStanding, Standing
+    from autograder.student.standing import ChapterStanding, NotebookStanding, Standing
 
 MARKS = {"done": "[x]", "begun": "[~]", "new": "[ ]"}
 

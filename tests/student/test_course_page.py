@@ -13,9 +13,9 @@ from autograder import course, exercises, journal
 from autograder.cards.certificate import WORDS, certificate_svg
 from autograder.cli import cli
 from autograder.journal import Entry
-from autograder.progress.course_page import page_html, trouble_html
-from autograder.progress.progress_text import hours
-from autograder.progress.standing import standing
+from autograder.student.course_page import page_html, trouble_html
+from autograder.student.progress_text import hours
+from autograder.student.standing import standing
 
 if TYPE_CHECKING:
     from pathlib import Path

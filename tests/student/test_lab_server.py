@@ -10,7 +10,7 @@ from typing import Any
 
 from ipykernel.ipkernel import IPythonKernel
 
-from autograder.progress.lab_server import OpenedNotebooks
+from autograder.student.lab_server import OpenedNotebooks
 
 RELEASED = Path(__file__).resolve().parents[2] / "chapters/01_ros2_fundamentals/lab_1_2.ipynb"
 

@@ -9,8 +9,8 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from autograder import course, journal
-from autograder.progress.standing import notebook_path
 from autograder.regular_files import write_whole
+from autograder.student.standing import notebook_path
 
 if TYPE_CHECKING:
     from pathlib import Path

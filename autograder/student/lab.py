@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 SETTINGS = Path(__file__).with_name("lab_config")
 """No *Create Assignment*, formgrader and lists of courses: those are for whoever grades. *Validate* gives a cell ten
 minutes instead of half of one, because a check may have to build a workspace."""
-PANEL = Path(__file__).parent / "progress" / "labextensions"
+PANEL = Path(__file__).with_name("labextensions")
 """The side panel with the course page: an extension of JupyterLab's, ready to be loaded."""
 COURSE_PAGE = "course"
 """The path of the course page on the server, below its base address."""
-NOTHING_TO_SAVE = "--ServerApp.contents_manager_class=autograder.progress.lab_server.OpenedNotebooks"
+NOTHING_TO_SAVE = "--ServerApp.contents_manager_class=autograder.student.lab_server.OpenedNotebooks"
 """A notebook that was only opened is not marked as unsaved."""
 NOTEBOOKS_VARIABLE = "AUTOGRADER_NOTEBOOKS"
 """Names the folder of the session's notebooks to its terminals."""

@@ -26,9 +26,9 @@ from tornado import web
 
 from autograder import course, exercises, journal
 from autograder.cards import certificate
-from autograder.lab import COURSE_PAGE
-from autograder.progress import course_page, resetting
-from autograder.progress.standing import Standing, standing
+from autograder.student import course_page, resetting
+from autograder.student.lab import COURSE_PAGE
+from autograder.student.standing import Standing, standing
 
 if TYPE_CHECKING:
     from jupyter_server.serverapp import ServerApp

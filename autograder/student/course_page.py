@@ -9,13 +9,13 @@ from urllib.parse import quote
 
 from autograder.cards.certificate import certificate_svg, certificate_text
 from autograder.cards.wording import points, points_of
-from autograder.lab import COURSE_PAGE
-from autograder.progress.progress_text import hours
+from autograder.student.lab import COURSE_PAGE
+from autograder.student.progress_text import hours
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-    from autograder.progress.standing import ChapterStanding, Standing
+    from autograder.student.standing import ChapterStanding, Standing
 
 STATES = {"done": "done", "begun": "begun", "new": "not begun"}
 
@@ -47,10 +47,10 @@ def _environment() -> Environment:
 
     from autograder.page_templates import page_templates
 
-    environment = page_templates("autograder.progress")
+    environment = page_templates("autograder.student")
 
     def own_file(name: str) -> Markup:
-        return Markup(files("autograder.progress").joinpath(name).read_text(encoding="utf-8"))
+        return Markup(files("autograder.student").joinpath(name).read_text(encoding="utf-8"))
 
     def drawn(chapter: ChapterStanding) -> Markup:
         return Markup(certificate_svg(chapter.title, chapter.possible, chapter.finished or 0.0))
