@@ -1,1 +1,1 @@
-"""The student's side: JupyterLab, the course page and its words in a terminal, notebooks begun anew, and the hand-out."""
+"""The student's side: JupyterLab, the course page and its words in a terminal, a notebook begun anew, the hand-out."""
