@@ -159,7 +159,7 @@ def lab(folder: Path | None, arguments: tuple[str, ...]) -> None:
 def progress(as_json: bool, folder: Path | None) -> None:
     """Say which points you have reached, and where to go on. It is no grade."""
     from autograder import course, exercises, journal
-    from autograder.student.progress_text import standing_json, standing_text
+    from autograder.student.course_page import standing_json, standing_text
     from autograder.student.standing import standing
 
     try:

@@ -13,8 +13,7 @@ from autograder import course, exercises, journal
 from autograder.cards.certificate import WORDS, certificate_svg
 from autograder.cli import cli
 from autograder.journal import Entry
-from autograder.student.course_page import page_html, trouble_html
-from autograder.student.progress_text import hours
+from autograder.student.course_page import hours, page_html, trouble_html
 from autograder.student.standing import standing
 
 if TYPE_CHECKING:
