@@ -55,18 +55,13 @@ def lab_name(master: Path) -> str:
 
 def before_and_after(master: Path) -> tuple[Path | None, Path | None]:
     """The masters that are read before and after ``master`` in its chapter; None at the chapter's ends."""
-    folder = master.parents[1]
-    labs = [
-        lab
-        for chapter in course.chapters(master.parents[3])
-        if chapter.folder == folder
-        for lab in chapter.labs
-    ]
-    found = [lab / LAB for lab in labs if (lab / LAB).is_file()]
+    chapters = [one for one in course.chapters(master.parents[3]) if one.folder == master.parents[1]]
+    found = [lab / LAB for chapter in chapters for lab in chapter.labs if (lab / LAB).is_file()]
     if master not in found:
         return None, None
-    here = found.index(master)
-    return (found[here - 1] if here else None), (found[here + 1] if here + 1 < len(found) else None)
+    here = found.index(master) + 1
+    ends = [None, *found, None]
+    return ends[here - 1], ends[here + 1]
 
 
 def chapter_path(root: Path, master: Path) -> Path:

@@ -100,8 +100,7 @@ def _hint(question: str, answer: list[str], offset: int) -> Hint:
 
 def _nested(hints: list[Hint]) -> str:
     text = ""
-    for number in range(len(hints), 0, -1):
-        hint = hints[number - 1]
+    for number, hint in reversed(list(enumerate(hints, 1))):
         inner = f"{hint.answer}\n\n{text}" if text else f"{hint.answer}\n"
         text = (
             f"<details>\n<summary><b>Hint {number} of {len(hints)}.</b> {hint.question}</summary>\n"
