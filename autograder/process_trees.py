@@ -77,6 +77,12 @@ def started_at(pid: int) -> str:
     return fields[19] if fields else ""
 
 
+def send(processes: Iterable[Known], number: int) -> None:
+    """Send a signal to each of these processes that is still there."""
+    for process in processes:
+        _signal(process, number)
+
+
 def kill(processes: Iterable[Known]) -> None:
     """Kill processes that may start others.
 
@@ -84,8 +90,7 @@ def kill(processes: Iterable[Known]) -> None:
     """
     processes = list(processes)
     for number in (signal.SIGSTOP, signal.SIGKILL):
-        for process in processes:
-            _signal(process, number)
+        send(processes, number)
 
 
 def signal_group(leader: int, number: int) -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Self
 
 from autograder.boxes.box import ANSWER_SECONDS
 from autograder.boxes.channel import Channel, ChannelClosed
-from autograder.process_trees import descendants, signal_group
+from autograder.process_trees import descendants, known, send, signal_group
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -206,9 +206,7 @@ class Running:
 
     def interrupt(self) -> None:
         """Ctrl-C at everything below the first process of the box, which only waits for the others."""
-        for pid in descendants(self.pid):
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.kill(pid, signal.SIGINT)
+        send(known(descendants(self.pid)), signal.SIGINT)
 
     def end(self) -> None:
         """Kill it and all that it has started; may be called twice."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import signal
 import subprocess
@@ -16,6 +15,8 @@ from autograder.process_trees import (
     descendants,
     die_with_parent,
     end_descendants,
+    known,
+    send,
     signal_group,
 )
 from autograder.standard_output import short_lines
@@ -149,11 +150,9 @@ class CommandSubject(InOwnProcesses):
         if process is None or self.ended:
             return ""
         self._dying.set()
-        below = descendants(process.pid)
+        below = known(descendants(process.pid))
         process.send_signal(signal.SIGABRT)
-        for child in below:
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.kill(child, signal.SIGABRT)
+        send(below, signal.SIGABRT)
         self._done.wait(READ_LIMIT)
         return "\n".join(self._last_words)
 
