@@ -11,18 +11,19 @@ from __future__ import annotations
 import contextlib
 import os
 import secrets
+import select
 import socket
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import zmq
 from jupyter_client.session import Session
 
 from autograder.boxes.execution import Ended
 from autograder.boxes.guards import INTERVAL, NoGuard
 from autograder.boxes.limits import Left, until, wall_time
+from autograder.boxes.zmtp import ZmtpConnection
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -34,9 +35,6 @@ if TYPE_CHECKING:
 Output = Callable[[str, str, Mapping[str, Any]], None]
 """Called with the id of the request, the message type and the content of each output."""
 
-_RECONNECT_MS = 15
-_WAITING_MESSAGES = 32
-"""Messages that are held here until they are looked at; times ``message_bytes``, that is memory of ours."""
 _ASK_AGAIN_S = 0.5
 _LAST_OUTPUT_S = 2.0
 SHELL, IOPUB = 1, 2
@@ -89,7 +87,7 @@ class Kernel:
     ) -> None:
         self._limits = limits
         self._guard = guard or NoGuard()
-        self._sent = 0
+        self._read_before = self._dropped_before = 0
         self._on_output = on_output
         key = secrets.token_hex(32)
         self._session = Session(key=key.encode(), check_pid=False)
@@ -104,14 +102,9 @@ class Kernel:
             for listener in (shell, iopub):
                 listener.close()
             os.close(log)
-        self._context = zmq.Context()
-        self._shell = self._socket(zmq.DEALER, folder / f"k-{SHELL}")
-        self._iopub_path = folder / f"k-{IOPUB}"
-        self._iopub = self._subscribe()
-        self._poller = zmq.Poller()
-        self._poller.register(self._shell, zmq.POLLIN)
-        self._poller.register(self._iopub, zmq.POLLIN)
-        self._poller.register(self._process.fileno(), zmq.POLLIN)
+        self._shell = ZmtpConnection(folder / f"k-{SHELL}", "DEALER", limits.message_bytes)
+        self._iopub = ZmtpConnection(folder / f"k-{IOPUB}", "SUB", limits.message_bytes)
+        self._closed = False
 
     @property
     def alive(self) -> bool:
@@ -146,7 +139,8 @@ class Kernel:
         """
         if not self.alive:
             return self._died()
-        self._sent = 0
+        self._count_anew()
+        self._dropped_before = self._iopub.dropped
         content = {
             "code": source,
             "silent": False,
@@ -157,12 +151,12 @@ class Kernel:
         }
         message = self._session.msg("execute_request", content)
         request(message["header"]["msg_id"])
-        self._session.send(self._shell, message)
+        self._shell.send(self._session.serialize(message))
         ended = self._await_reply(message["header"]["msg_id"], left)
         if ended is not None:
             return ended
         stopped_for = Ended.TOO_MUCH_OUTPUT if self._floods else self._guard.reason() or Ended.TIMED_OUT
-        self._sent = 0
+        self._count_anew()
         self.interrupt()
         grace = self._limits.interrupt_grace
         if self._await_reply(message["header"]["msg_id"], wall_time(grace)) is None:
@@ -179,11 +173,13 @@ class Kernel:
 
     def close(self) -> None:
         """Kill the kernel and close the sockets; may be called twice."""
-        if self._context.closed:
+        if self._closed:
             return
+        self._closed = True
         self.kill()
         os.close(self._log)
-        self._context.destroy(linger=0)
+        self._shell.close()
+        self._iopub.close()
 
     def _await_reply(self, request: str, left: Left) -> Ended | None:
         """The end of the cell, or None where it is still running when its time is up."""
@@ -200,6 +196,8 @@ class Kernel:
             return None if self.alive else self._died()
         if not idle:
             self._await_idle(request)
+        if self._iopub.dropped > self._dropped_before:
+            self._on_output(request, "stream", {"name": "stdout", "text": _TOO_LARGE})
         if _asks_to_exit(reply):
             self._await_end()
             return self._died()
@@ -214,15 +212,6 @@ class Kernel:
         for channel, message in self._messages(wall_time(_LAST_OUTPUT_S)):
             if channel is self._iopub and _answer(message, request).get("execution_state") == "idle":
                 return
-        if self.alive:
-            # ZeroMQ ends a connection for good when a message is larger than allowed.
-            self._poller.unregister(self._iopub)
-            self._iopub.disable_monitor()
-            self._iopub.close()
-            self._iopub = self._subscribe()
-            self._poller.register(self._iopub, zmq.POLLIN)
-            self._shake_hands(time.monotonic() + self._limits.interrupt_grace)
-            self._on_output(request, "stream", {"name": "stdout", "text": _TOO_LARGE})
 
     def _shake_hands(self, deadline: float) -> bool:
         """Ask until both an answer and its echo among the outputs have arrived; whether they have."""
@@ -245,20 +234,22 @@ class Kernel:
 
     @property
     def _floods(self) -> bool:
-        return self._sent > self._limits.flood_bytes
+        return self._iopub.read + self._shell.read - self._read_before > self._limits.flood_bytes
+
+    def _count_anew(self) -> None:
+        self._read_before = self._iopub.read + self._shell.read
 
     def _died(self) -> Ended:
         """The reason why the kernel is gone."""
         return self._guard.reason() or Ended.KERNEL_DIED
 
-    def _messages(self, left: Left) -> Iterator[tuple[zmq.Socket[bytes], dict[str, Any]]]:
+    def _messages(self, left: Left) -> Iterator[tuple[ZmtpConnection, dict[str, Any]]]:
         """All messages until the time is up, a limit or the kernel's end; outputs are handed on from here."""
         while True:
-            ready = dict(self._poller.poll(_wait_ms(left)))
+            ready = self._ready(_wait_ms(left))
             if self._guard.exceeded():
                 self.kill()
                 return
-            self._count_cuts()
             # Outputs first: they were sent before the reply that ends the cell.
             for channel in (self._iopub, self._shell):
                 if channel in ready:
@@ -266,21 +257,26 @@ class Kernel:
                         if channel is self._iopub:
                             self._hand_on(message)
                         yield channel, message
-            if self._iopub in ready or self._shell in ready:
+            if ready:
                 if left() > 0 and not self._floods:
                     continue
                 return
             if not self.alive or left() <= 0 or self._floods:
                 return
 
-    def _received(self, channel: zmq.Socket[bytes]) -> Iterator[dict[str, Any]]:
-        # Bounded, so that a flood on one socket starves neither the other one nor the deadline.
-        for _ in range(100):
-            try:
-                parts = channel.recv_multipart(zmq.NOBLOCK)
-            except zmq.Again:
-                return
-            self._sent += sum(map(len, parts))
+    def _ready(self, wait_ms: int) -> list[ZmtpConnection]:
+        """The connections on which something has come within so many milliseconds; none at the process's end."""
+        channels = (self._iopub, self._shell)
+        poll = select.poll()
+        poll.register(self._process.fileno(), select.POLLIN)
+        for channel in channels:
+            if (descriptor := channel.fileno()) >= 0:
+                poll.register(descriptor, select.POLLIN | (select.POLLOUT if channel.wants_to_write else 0))
+        come = dict(poll.poll(0 if any(channel.is_waiting for channel in channels) else wait_ms))
+        return [channel for channel in channels if channel.is_waiting or channel.fileno() in come]
+
+    def _received(self, channel: ZmtpConnection) -> Iterator[dict[str, Any]]:
+        for parts in channel.received():
             with contextlib.suppress(Exception):  # a message of no or of a forged form
                 yield self._session.deserialize(self._session.feed_identities(parts)[1])
 
@@ -291,30 +287,8 @@ class Kernel:
 
     def _ask(self, message_type: str, content: dict[str, Any]) -> str:
         message = self._session.msg(message_type, content)
-        self._session.send(self._shell, message)
+        self._shell.send(self._session.serialize(message))
         return str(message["header"]["msg_id"])
-
-    def _subscribe(self) -> zmq.Socket[bytes]:
-        channel = self._socket(zmq.SUB, self._iopub_path)
-        channel.setsockopt(zmq.SUBSCRIBE, b"")
-        self._cuts = channel.get_monitor_socket(zmq.EVENT_DISCONNECTED)
-        return channel
-
-    def _count_cuts(self) -> None:
-        """ZeroMQ cuts a connection on which a message is too large, and makes it anew: it counts as if read."""
-        with contextlib.suppress(zmq.Again):
-            while True:
-                self._cuts.recv_multipart(zmq.NOBLOCK)
-                self._sent += self._limits.message_bytes
-
-    def _socket(self, kind: int, path: Path) -> zmq.Socket[bytes]:
-        channel: zmq.Socket[bytes] = self._context.socket(kind)
-        channel.setsockopt(zmq.LINGER, 0)
-        channel.setsockopt(zmq.RECONNECT_IVL, _RECONNECT_MS)
-        channel.setsockopt(zmq.RCVHWM, _WAITING_MESSAGES)
-        channel.setsockopt(zmq.MAXMSGSIZE, self._limits.message_bytes)
-        channel.connect(f"ipc://{path}")
-        return channel
 
     def _last_words(self) -> str:
         with contextlib.suppress(OSError):
