@@ -205,7 +205,15 @@ def receive(lines: Lines, count: int, path: str, folder: Path) -> None:
     """
     if not 0 <= count <= MAX_FILES:
         raise BadSources("there is too much in src")
-    taken = [lines.hear(Source) for _ in range(count)]
+    taken: list[Source] = []
+    room = MAX_BYTES + MAX_FILES * MAX_PATH
+    for _ in range(count):
+        source = lines.hear(Source)
+        room -= len(source.data or b"") + len(source.path)
+        if room >= 0:  # else it is heard, since more may be said behind it, and not kept
+            taken.append(source)
+    if room < 0:
+        raise _too_much()
     check_path(path)
     Tree(tuple(checked(taken))).write(folder)
 
@@ -243,8 +251,12 @@ def _tree(folder: Path, name: str) -> Iterator[Source]:
 def _bounded(sources: list[Source]) -> list[Source]:
     size = sum(len(source.data or b"") for source in sources)
     if len(sources) > MAX_FILES or size > MAX_BYTES or any(len(s.data or b"") > MAX_FILE for s in sources):
-        raise BadSources(
-            f"there is too much in src: at most {MAX_FILES} files, {MAX_FILE // 1000} kB each and "
-            f"{MAX_BYTES // 10**6} MB together are taken for a check"
-        )
+        raise _too_much()
     return sources
+
+
+def _too_much() -> BadSources:
+    return BadSources(
+        f"there is too much in src: at most {MAX_FILES} files, {MAX_FILE // 1000} kB each and "
+        f"{MAX_BYTES // 10**6} MB together are taken for a check"
+    )

@@ -6,7 +6,9 @@ import json
 import os
 import socket
 import sys
+import tracemalloc
 import unicodedata
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -270,6 +272,22 @@ def test_no_path_leads_out(path: str) -> None:
 def test_what_could_do_harm_is_refused(some: list[Source]) -> None:
     with pytest.raises(BadSources):
         sources.checked(some)
+
+
+@pytest.mark.parametrize("one", [Source("a", b"x" * 700_000), Source("x" * 900_000)], ids=["data", "paths"])
+def test_of_far_too_much_that_is_sent_nothing_is_kept(one: Source, tmp_path: Path) -> None:
+    # A thousand such messages were a gigabyte of the grader's, outside of every box.
+    here, there = socket.socketpair()
+    with here, there, ThreadPoolExecutor(1) as sender:
+        count = 40
+        sent = sender.submit(here.sendall, encode(one) * count)
+        tracemalloc.start()
+        with pytest.raises(BadSources, match="too much in src"):
+            sources.receive(Lines(there), count, "ros2_ws", tmp_path)
+        most = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        sent.result()  # all of it was heard: what is said behind it comes in its turn
+    assert most < 20_000_000
 
 
 @pytest.mark.parametrize(
