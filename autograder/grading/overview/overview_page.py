@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
-from autograder.cards.readable import printable
+from autograder.cards.readable import one_line, printable
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from autograder.grading.reporting.rows import Row
 
 NAME = "report.html"
+_LONGEST_NAME = 200
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,8 @@ def _people(directory: ClassDirectory, table: ClassTable, *, names: bool, folder
                 inside = pages[0].is_relative_to(folder)
                 links[assignment] = quote(str(pages[0].relative_to(folder))) if inside else pages[0].as_uri()
         name = table.roster.students[student].name
-        people[student] = _Person(f"{name} ({student})" if name else student, links)
+        # In an LMS, people name themselves.
+        people[student] = _Person(one_line(f"{name} ({student})" if name else student, _LONGEST_NAME), links)
     return people
 
 

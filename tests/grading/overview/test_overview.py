@@ -23,7 +23,7 @@ from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import read_released
 from autograder.grading.reporting.rows import Row
 from autograder.grading.table.class_table import ClassTable, read_table
-from autograder.verdict import Criterion, Verdict
+from autograder.verdict import Criterion, Diagnosis, Verdict
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -156,6 +156,21 @@ def test_names_can_be_left_out(graded: TinyClass) -> None:
 def test_nothing_of_a_name_is_markup(graded: TinyClass) -> None:
     (graded.path / "students.csv").write_text("id,first_name\nada,<script>alert(1)</script>\n")
     assert "<script>" not in write_report(graded.path).read_text()
+
+
+def test_what_turns_the_direction_of_writing_is_shown_as_an_escape(
+    graded: TinyClass, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    said = Diagnosis("wrong_text", "It says “\u202egro.live\x1b[2J\0”.", "Say the right thing.")
+    plain = tiny_class.verdict
+    monkeypatch.setattr(tiny_class, "verdict", lambda *words: replace(plain(*words), diagnosis=said))
+    graded.submit("ben", 3, 3)
+    graded.grade()
+    (graded.path / "students.csv").write_text("id,first_name\nada,\u202enimda\u2066\x1b\n")
+    text = write_report(graded.path).read_text()
+    assert "\\u202egro.live" in text
+    assert "\\u202enimda" in text
+    assert not set("\u202e\u2066\x1b\0") & set(text)
 
 
 def test_the_command_says_where_the_page_is(graded: TinyClass, tiny: TinyClass, tmp_path: Path) -> None:
