@@ -237,7 +237,8 @@ class Kernel:
         return self._iopub.read + self._shell.read - self._read_before > self._limits.flood_bytes
 
     def _count_anew(self) -> None:
-        self._read_before = self._iopub.read + self._shell.read
+        """Count what is read from now on, without the rest of what was too large: that is an earlier cell's."""
+        self._read_before = self._iopub.read + self._shell.read + self._iopub.owed
 
     def _died(self) -> Ended:
         """The reason why the kernel is gone."""

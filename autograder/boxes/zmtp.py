@@ -60,6 +60,11 @@ class ZmtpConnection:
         return bool(self._messages)
 
     @property
+    def owed(self) -> int:
+        """Bytes of a part that was too large and of which the rest is still to be read past."""
+        return self._to_skip
+
+    @property
     def wants_to_write(self) -> bool:
         """True if not all that was sent has gone."""
         return bool(self._unsent)
