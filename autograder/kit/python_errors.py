@@ -154,6 +154,11 @@ RUNNING: Sequence[Row] = (
         "Give the spin your node: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0).",
     ),
     (
+        r"AttributeError: 'ServerGoalHandle' object has no attribute 'order'",
+        "The goal handle has the goal in its attribute request.",
+        "Write goal_handle.request.order.",
+    ),
+    (
         r"AttributeError: '(?P<class>list|dict|tuple|set|str|bytes|bool|int|float|\w+GoalHandle|Publisher|Subscription"
         r"|Timer|Client|Service|ActionClient|ActionServer|RcutilsLogger)' object has no attribute '(?P<name>\w+)'",
         "The value before .{name} is a {class} here, which has nothing called {name}.",
@@ -269,6 +274,11 @@ RUNNING: Sequence[Row] = (
         r"|\w+_(?:Request|Response|Goal|Result|Feedback))\.__init__\(\) takes 1 positional argument",
         "A message takes its fields by their names.",
         "Name the field between the parentheses, as in String(data='hello'), or set it in the next line.",
+    ),
+    (
+        rf"^ +\w+_callback=(?P<name>\w+)\(\),?{_MARKS}TypeError: \w+\(\) missing",
+        "The parentheses after {name} call it in this line, without the arguments that ROS would give it.",
+        "Write only its name, {name}, without parentheses: ROS calls the function when it is time.",
     ),
     (
         r"^TypeError: isinstance\(\) arg 2 must be a type",

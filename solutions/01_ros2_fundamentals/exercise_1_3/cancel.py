@@ -152,7 +152,7 @@ EXERCISE = cancel.exercise(
         "Ask only **once**, even if more feedback arrives or the server refuses to cancel": "once late_feedback",
         "Send a goal of order 20": "goal",
         "Send the goal: call `send_goal`": "goal",
-        "If it was not accepted (`client.goal_handle.accepted`), raise a `RuntimeError` that says so.": "refused",
+        "If the goal was not accepted (`client.goal_handle.accepted`), raise a `RuntimeError` that says so.": "refused",
         "There will be no result to wait for.": "refused",
         "Otherwise get the result": "status",
         "While you wait, the client is spun": "cancel status",

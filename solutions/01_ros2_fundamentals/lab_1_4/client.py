@@ -32,7 +32,7 @@ EXERCISE = client.exercise(
         "Make the goal, `Fibonacci.Goal(order=...)`, and send it": "goal feedback",
         "Wait for the future that you get, and return its result": "goal",
         "it must say so and end within 12 seconds, or say at least every three seconds that it still waits.": "limit",
-        "In every case it must log or print how the goal ended": "refused aborted",
+        "In every case your function must log or print how the goal ended": "refused aborted",
         "If the goal was not accepted, log that it was `REJECTED`, and return an empty list.": "refused",
         "(Other words, or an exception that says so, are accepted as well.)": "refused",
         "(A sequence that is returned need not be logged.)": "result",
