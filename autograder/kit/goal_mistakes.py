@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
 
 
-def _first_time(evidence: Evidence) -> Part:
+def _successful_run(evidence: Evidence) -> Part:
     """The run in which a goal succeeds."""
     return evidence.part(LATE)
 
@@ -51,14 +51,12 @@ WAITS_FOR_NOBODY = mistake(
     "Give the wait a limit of a few seconds: `if not client.wait_for_server(timeout_sec=5.0):` say so and stop.",
     certain=True,
 )
-
-
 WAITS_FOREVER = mistake(
     "waits_forever",
     lambda evidence: (
-        _first_time(evidence).endpoints("action_client")
-        and _first_time(evidence).ending is None
-        and not asked_for(_first_time(evidence))
+        _successful_run(evidence).endpoints("action_client")
+        and _successful_run(evidence).ending is None
+        and not asked_for(_successful_run(evidence))
     ),
     "The server was there, but your client never sent a goal and never ended.",
     "Wait with a limit, `client.wait_for_server(timeout_sec=5.0)`, and send the goal as soon as it is True.",
@@ -107,14 +105,12 @@ CANCELED_UNASKED = mistake(
     "The task asks for the whole goal: leave out cancel_goal_async(), and wait for the result.",
     certain=True,
 )
-
-
 NEVER_SPUN = mistake(
     "never_spun",
     lambda evidence: (
-        asked_for(_first_time(evidence))
-        and _first_time(evidence).of("unanswered")
-        and not _first_time(evidence).first("result_request")
+        asked_for(_successful_run(evidence))
+        and _successful_run(evidence).of("unanswered")
+        and not _successful_run(evidence).first("result_request")
     ),
     "Your client sent its goal, but it receives no answer: none of its callbacks is called any more.",
     "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future, timeout_sec=5.0), in one "
@@ -124,7 +120,7 @@ NEVER_SPUN = mistake(
 
 def _ended_before(evidence: Evidence) -> str:
     """The answer that was still to come when it ended, in words; empty where it waited for its answers."""
-    part = _first_time(evidence)
+    part = _successful_run(evidence)
     ending, answered, result = part.ending, part.first("goal_answered"), part.first("result")
     if not asked_for(part) or ending is None or (part.traceback and not meant(part.traceback)):
         return ""
@@ -214,7 +210,7 @@ REFUSAL_RETURNED = mistake(
 
 def _feedback_not_shown(evidence: Evidence) -> tuple[int, int] | None:
     """The number of feedback messages that were sent, and of those that it showed."""
-    part = _first_time(evidence)
+    part = _successful_run(evidence)
     sent, missing = len(part.of("feedback")), len(unshown_feedback(part))
     return (sent, sent - missing) if missing and part.first("result_request") else None
 
@@ -227,7 +223,9 @@ FEEDBACK_NOT_SHOWN = mistake(
 )
 RESULT_NOT_REQUESTED = mistake(
     "result_not_reported",
-    lambda evidence: asked_for(_first_time(evidence)) and not _first_time(evidence).first("result_request"),
+    lambda evidence: (
+        asked_for(_successful_run(evidence)) and not _successful_run(evidence).first("result_request")
+    ),
     "Your client sent its goal and never asked for the result.",
     "Call goal_handle.get_result_async() once the goal is accepted, and wait for that future.",
 )
@@ -249,7 +247,7 @@ RESULT_REPEATED = mistake(
 
 
 def _feedback_for_result(evidence: Evidence) -> bool:
-    part = _first_time(evidence)
+    part = _successful_run(evidence)
     feedback = part.of("feedback")
     if part.first("result") is None or reports_result(part) or not feedback:
         return False
@@ -265,7 +263,7 @@ WRONG_RESULT_REPORTED = mistake(
 
 
 def _returns_another(evidence: Evidence) -> str:
-    part = _first_time(evidence)
+    part = _successful_run(evidence)
     result = part.first("result")
     said = result is not None and reports_result(part)
     return returned_instead(part, result.data["fields"]["sequence"]) if result and said else ""
@@ -279,7 +277,7 @@ RESULT_NOT_RETURNED = mistake(
 )
 STATUS_MISREPORTED = mistake(
     "status_misreported",
-    lambda evidence: miscalled(_first_time(evidence)),
+    lambda evidence: miscalled(_successful_run(evidence)),
     "The goal succeeded (status 4), but your client said “{}”.",
     "Look the number up in GoalStatus (from action_msgs.msg): 4 is SUCCEEDED, 5 is CANCELED, 6 is ABORTED.",
 )
@@ -321,7 +319,7 @@ ABORT_NOT_REPORTED = mistake(
 )
 SILENT_END = mistake(
     "silent_end",
-    lambda evidence: given_up(evidence) == SILENT and asked_for(_first_time(evidence)),
+    lambda evidence: given_up(evidence) == SILENT and asked_for(_successful_run(evidence)),
     "When there is no action server, your client ends without a word.",
     "Log an error (or raise TimeoutError) before you return.",
 )

@@ -146,8 +146,6 @@ FIELDS_NEVER_FILLED = mistake(
     "A request has the fields a and b. A misspelt keyword in AddTwoInts.Request(...) is ignored silently.",
     certain=True,
 )
-
-
 WAITS_FOR_NOBODY = mistake(
     "waits_forever",
     lambda evidence: giving_up.waits_in_silence(evidence.part(ABSENT)),
