@@ -1,9 +1,7 @@
 """Mistakes that a hung program's stack gives away: who waits for what, and in which thread.
 
-The stack is what Python's faulthandler prints (innermost call first); the judge asks for it once a subject
-that should
-go on has fallen silent. From rclpy 7.1: ``Client.call`` waits in ``client.py``, the action client's blocking
-calls in
+The stack is what Python's faulthandler prints (innermost call first); the judge asks for it once a subject that should
+go on has fallen silent. From rclpy 7.1: ``Client.call`` waits in ``client.py``, the action client's blocking calls in
 ``action/client.py``, ``Rate.sleep`` in ``timer.py``, callbacks run below ``executors.py``.
 """
 

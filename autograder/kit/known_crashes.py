@@ -1,7 +1,6 @@
 """Mistakes that a traceback of rclpy gives away: pattern, cause, next step.
 
-The patterns are what rclpy 7.1 and Python say; each was reproduced. The order matters: the first that fits
-wins.
+The patterns are what rclpy 7.1 and Python say; each was reproduced. The order matters: the first that fits wins.
 """
 
 from __future__ import annotations

@@ -185,8 +185,7 @@ def answering(scripted: Sequence[int]) -> Callable[[Mapping[str, Any]], Mapping[
 
 
 def _as_int64(number: int) -> int:
-    # A client that adds in another order may leave the range; C++ servers wrap around, rclpy's would die of
-    # it.
+    # A client that adds in another order may leave the range; C++ servers wrap around, rclpy's would die of it.
     return (number + 2**63) % 2**64 - 2**63
 
 
