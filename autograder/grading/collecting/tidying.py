@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import unicodedata
-from collections import defaultdict
+from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -13,6 +13,10 @@ from autograder.grading.collecting.forms import base_and_number
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+
+MOST_BESIDE = 50
+"""Notebooks and archives beside their place in one folder that are looked at; a browser's copies are three or four."""
 
 
 @dataclass
@@ -90,16 +94,15 @@ def _tidy_student(student: Path, notebooks: dict[str, list[str]], found: Tidied)
     targets = {
         name.casefold(): (assignment, name) for assignment, names in notebooks.items() for name in names
     }
-    for entry in _entries(student):
-        if _is_folder(entry):
-            if entry.name in notebooks:
-                _tidy_assignment(entry, notebooks[entry.name], found)
-            continue
-        if not _is_work(entry):
-            continue
+    entries = _entries(student)
+    for entry in entries:
+        if entry.name in notebooks and _is_folder(entry):
+            _tidy_assignment(entry, notebooks[entry.name], found)
+    for entry in _first(list(filter(_is_work, entries)), found):
         target = targets.get(base_and_number(entry.stem)[0].casefold())
         place = student / target[0] / f"{target[1]}{SUFFIX}" if target else None
-        if place is None or place.exists() or entry.suffix.lower() != SUFFIX:
+        # A link in the folder's place may lead to somebody else's; that it is one is said of it.
+        if place is None or place.parent.is_symlink() or place.exists() or entry.suffix.lower() != SUFFIX:
             beside = f"; {place} is graded" if place and place.exists() else ""
             found.refused.append(
                 Refused(
@@ -118,13 +121,13 @@ def _tidy_assignment(folder: Path, names: list[str], found: Tidied) -> None:
         for entry in _entries(folder)
         if _is_work(entry) and not (entry.suffix == SUFFIX and entry.stem in names)
     ]
-    for entry in others:
-        base = base_and_number(entry.stem)[0].casefold()
-        name = expected.get(base)
-        alike = [other for other in others if base_and_number(other.stem)[0].casefold() == base]
+    bases = {entry: base_and_number(entry.stem)[0].casefold() for entry in others}
+    alike = Counter(bases.values())
+    for entry in _first(others, found):
+        name = expected.get(bases[entry])
         place = folder / f"{name}{SUFFIX}"
         label = f"{folder.parent.name}/{folder.name}/{entry.name}"
-        if name and entry.suffix.lower() == SUFFIX and not place.exists() and len(alike) == 1:
+        if name and entry.suffix.lower() == SUFFIX and not place.exists() and alike[bases[entry]] == 1:
             _move(entry, place, found)
         elif (name and place.exists()) or (
             not name and all((folder / f"{one}{SUFFIX}").exists() for one in names)
@@ -134,6 +137,14 @@ def _tidy_assignment(folder: Path, names: list[str], found: Tidied) -> None:
             )
         elif name or entry.suffix.lower() == ".zip":
             found.refused.append(Refused(entry, f"it is not graded: put the notebook that counts at {place}"))
+
+
+def _first(entries: list[Path], found: Tidied) -> list[Path]:
+    """As many of the entries of a folder as anybody wants to read of."""
+    if more := entries[MOST_BESIDE:]:
+        where = f"{more[0].parent.parent.name}/{more[0].parent.name}"
+        found.notices.append(f"{where} has {len(more)} more notebooks and archives, which were not looked at")
+    return entries[:MOST_BESIDE]
 
 
 def _move(entry: Path, place: Path, found: Tidied) -> None:

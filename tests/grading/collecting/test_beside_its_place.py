@@ -11,6 +11,8 @@ from downloads import zipped
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
+from autograder.grading.collecting.forms import base_and_number
+from autograder.grading.collecting.tidying import MOST_BESIDE
 from autograder.grading.errors import MasterUnusable
 
 if TYPE_CHECKING:
@@ -131,6 +133,43 @@ def own_assignment(tiny: TinyClass, *, manual: bool) -> None:
     notebook.metadata["kernelspec"] = {"name": "python3", "display_name": "Python 3", "language": "python"}
     nbformat.write(notebook, path)
     release(ClassDirectory(tiny.path))
+
+
+def test_nothing_is_moved_into_a_neighbours_folder_through_a_link(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    one = tiny.submit("ada", 4, 7)
+    neighbours = tiny.path / "submitted" / "ben" / "lab_1_2"
+    neighbours.mkdir(parents=True)
+    one.rename(one.parent.parent / one.name)
+    one.parent.rmdir()
+    one.parent.symlink_to(neighbours)
+    report = tiny.grade()
+    assert not list(neighbours.iterdir())
+    assert "lab_1_2.ipynb: it lies one folder too high" in refused(report)
+    assert "lab_1_2: it is a link" in refused(report)
+
+
+@pytest.mark.parametrize("folder", ["ada/lab_1_2", "ada"])
+def test_a_thousand_notebooks_beside_one_are_a_line_and_take_no_time(
+    tiny: TinyClass, fake_engine: FakeEngine, folder: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looked_at: list[str] = []
+
+    def counted(stem: str) -> tuple[str, int]:
+        looked_at.append(stem)
+        return base_and_number(stem)
+
+    monkeypatch.setattr("autograder.grading.collecting.tidying.base_and_number", counted)
+    tiny.submit("ada", 4, 7)
+    for number in range(1_000):
+        (tiny.path / "submitted" / folder / f"beside_{number}.ipynb").touch()
+    report = tiny.grade()
+    lines = [*report.notices, *(one.reason for one in report.refused)]
+    assert len(lines) == MOST_BESIDE + 1
+    assert f"{folder} has 950 more notebooks and archives" in "\n".join(lines)
+    assert len(looked_at) <= 1_000
+    assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
 
 
 def test_an_assignment_that_the_judge_cannot_grade_holds_up_no_other(
