@@ -413,7 +413,7 @@ EXERCISE = question.exercise(
     remarks=(giving_up.remark(ABSENT),),
     text={
         "returns the name as soon as it sees a service of the type": "late other",
-        "After `patience_sec` seconds without one it raises `TimeoutError`.": "none",
+        "After `patience_sec` seconds without such a service it raises `TimeoutError`.": "none",
         "You may also raise another exception, or log that there is no such service and return `None`.": "none",
         "Without such a service it must say so and end within 12 seconds, "
         "or say at least every three seconds that it still looks.": "none",
