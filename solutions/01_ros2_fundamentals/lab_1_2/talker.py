@@ -106,7 +106,7 @@ def wrong_text(seen: Publisher, expected: Publisher) -> Advice | None:
         )
     if re2.search(r"\d[.,]\d", finding.seen):
         return Advice(
-            f"Your talker says {finding.seen}: its number is no whole number; the task asks for {finding.expected}",
+            f"Your talker says {finding.seen}: its number is not a whole number; the task asks for {finding.expected}",
             "Begin with self.count = 0 (not 0.0) and add 1, or write int(...) around the number.",
         )
     return Advice(

@@ -97,7 +97,7 @@ def wrong_arguments(seen: Client, expected: Client) -> Advice | None:
     late=True,
     says="Your client never called the service.",
     next_step="Make a request, fill a and b, and send it with call_async. "
-    "What you add up yourself is no answer of the server.",
+    "What you add up yourself is not the answer of the server.",
 )
 def no_call(seen: Client, _: Client) -> bool:
     """It ends by itself, with a client and without a call."""
