@@ -25,7 +25,7 @@ In a file of `bank/*/*.py` cells follow:
 What is not mentioned stays as it was handed out. Words in double angle brackets are things that an attacker might know,
 filled in by `attack_class.py`, or the name of a file of `parts/`, whose text stands there.
 
-A file of `doors/` is a program of the tests' own that makes a submission which no notebook file could hold: its
+A file of `crafted/` is a program of the tests' own that makes a submission which no notebook file could hold: its
 function `hand_in(folder, notebook)` writes into the submission's folder.
 """
 
@@ -52,7 +52,7 @@ FAMILIES = {
     "crowding": "using up what all boxes of a user share",
     "network": "reaching beyond the box",
     "shadowing": "replacing modules",
-    "doors": "submissions that are no notebooks, or too much of one",
+    "crafted": "submissions that are no notebooks, or too much of one",
 }
 USUAL = "lab_1_2"
 
@@ -91,7 +91,7 @@ class Attack:
     @property
     def is_program(self) -> bool:
         """Whether the file is a program that makes the submission."""
-        return self.path.parent.name == "doors"
+        return self.path.parent.name == "crafted"
 
     def cells(self) -> list[tuple[str, str, str]]:
         """Kind, name and text of each cell that the file gives."""
@@ -103,8 +103,8 @@ class Attack:
         return found
 
     def program(self) -> Any:
-        """The module of a file of `doors/`."""
-        spec = importlib.util.spec_from_file_location(f"door_{self.name}", self.path)
+        """The module of a file of `crafted/`."""
+        spec = importlib.util.spec_from_file_location(f"crafted_{self.name}", self.path)
         assert spec is not None
         assert spec.loader is not None
         module = importlib.util.module_from_spec(spec)
@@ -114,7 +114,7 @@ class Attack:
 
 def attacks() -> Iterator[Attack]:
     """Every attack of the bank."""
-    for path in sorted([*HERE.glob("bank/*/*.py"), *HERE.glob("doors/*.py")]):
+    for path in sorted([*HERE.glob("bank/*/*.py"), *HERE.glob("crafted/*.py")]):
         yield Attack(name=path.stem, path=path, **_header(path))
 
 

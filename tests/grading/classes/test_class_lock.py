@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from conftest import LISTENER, TALKER, FakeEngine, TinyClass
 from nbgrader.converters import NbGraderException
-from test_doors import nbgrader_autograde, nbgrader_generate_feedback
+from test_nbgrader_and_ours import nbgrader_autograde, nbgrader_generate_feedback
 from tiny_class import GRADE
 
 from autograder.grading.classes.class_directory import ClassDirectory

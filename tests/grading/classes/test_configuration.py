@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from nbgrader.converters import NbGraderException
-from test_doors import nbgrader_autograde, nbgrader_generate_feedback
+from test_nbgrader_and_ours import nbgrader_autograde, nbgrader_generate_feedback
 from tiny_class import TALKER, FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory

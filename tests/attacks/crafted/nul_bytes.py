@@ -1,4 +1,4 @@
-# family = "doors"
+# family = "crafted"
 # tries = "NUL bytes and other control characters in the text of cells, and lone surrogates, as JSON may write them."
 # could_earn = "A batch that ends over a text that no file can hold."
 

@@ -1,7 +1,7 @@
 # family = "socket"
 # tries = "Every socket that can be found in the box, beside the judge's, is asked for a check, a build and an order, with paths of the attacker's choice."
 # could_earn = "The grader's own side of builds, which runs outside of this box."
-# undefended = "LEAK: without a box, the doors of the grader's other processes can be found in the scratch folders."
+# undefended = "LEAK: without a box, the sockets of the grader's other processes can be found in the scratch folders."
 
 # %% extra
 import glob
@@ -30,6 +30,6 @@ for name in {os.path.realpath(name) for pattern in patterns for name in glob.glo
                 for word in words:
                     link.sendall(json.dumps(word).encode() + b"\n")
                 if os.path.realpath(name) != os.path.realpath(builds):
-                    print("LEAK: another door", name)
+                    print("LEAK: another socket", name)
     except OSError:
         pass

@@ -1,5 +1,5 @@
-# family = "doors"
-# tries = "The notebook is a symbolic link to the neighbour's."
+# family = "crafted"
+# tries = "The notebook is the neighbour's file under a second name."
 # could_earn = "The neighbour's points."
 # refused = true
 
@@ -12,4 +12,4 @@ if TYPE_CHECKING:
 
 
 def hand_in(folder: Path, notebook: Any) -> None:
-    (folder / "lab_1_2.ipynb").symlink_to(folder.parents[1] / "honest_ada" / "lab_1_2" / "lab_1_2.ipynb")
+    (folder / "lab_1_2.ipynb").hardlink_to(folder.parents[1] / "honest_ada" / "lab_1_2" / "lab_1_2.ipynb")

@@ -1,4 +1,4 @@
-# family = "doors"
+# family = "crafted"
 # tries = "Text whose conversion into a page takes ages: brackets, emphasis, quotations, tables and HTML that open and never close, half a million characters of each."
 # could_earn = "A grader that is busy for hours with one student's page, outside of every box."
 

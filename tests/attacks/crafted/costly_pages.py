@@ -1,4 +1,4 @@
-# family = "doors"
+# family = "crafted"
 # tries = "A million characters of Markdown and code, each cell below its limit: nested HTML, formulas that open, headings, and attributes of attributes for the highlighter."
 # could_earn = "A grader whose own process makes this student's page for minutes, while nobody else is graded."
 # undefended = "86 s in the grader's main process for 0.9 MB of Markdown; one cell of code alone took more than a minute."

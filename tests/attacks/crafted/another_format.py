@@ -1,4 +1,4 @@
-# family = "doors"
+# family = "crafted"
 # tries = "The file says that it is of format 99, with the cells where the format of 2011 has them."
 # could_earn = "A batch that ends over it, or cells that nobody has checked."
 

@@ -1,4 +1,4 @@
-# family = "doors"
+# family = "crafted"
 # tries = "There is no notebook at all, only files with strange names."
 # could_earn = "Yesterday's points, or a batch that ends."
 

@@ -1,4 +1,4 @@
-# family = "doors"
+# family = "crafted"
 # tries = "Everything has another type than it should: cells are numbers, sources are numbers, metadata is a list, the format's version is a text, names are objects."
 # could_earn = "A batch that ends with an error of types."
 

@@ -1,4 +1,4 @@
-# family = "doors"
+# family = "crafted"
 # tries = "In the notebook's place lies an archive of 10 kB that unpacks to 10 MB, to 10 GB if one goes on, and another one beside it."
 # could_earn = "A disk that is full, where archives are unpacked."
 

@@ -1,4 +1,4 @@
-# family = "doors"
+# family = "crafted"
 # tries = "Bytes that are no UTF-8, in the middle of a solution."
 # could_earn = "A batch that ends with an error of encoding."
 

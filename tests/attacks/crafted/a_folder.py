@@ -1,4 +1,4 @@
-# family = "doors"
+# family = "crafted"
 # tries = "The notebook is a folder of that name, with the notebook in it."
 # could_earn = "A batch that ends over it."
 # refused = true

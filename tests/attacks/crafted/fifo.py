@@ -1,4 +1,4 @@
-# family = "doors"
+# family = "crafted"
 # tries = "The notebook is a named pipe into which nobody writes, and another one lies beside it."
 # could_earn = "A grader that waits for ever."
 # refused = true

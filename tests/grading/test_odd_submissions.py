@@ -17,7 +17,7 @@ from conftest import LISTENER, TALKER, FakeEngine, TinyClass
 from nbgrader.api import Gradebook
 from nbgrader.converters import NbGraderException
 from rich.console import Console
-from test_doors import nbgrader_autograde
+from test_nbgrader_and_ours import nbgrader_autograde
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.errors import ClassIncomplete
@@ -131,17 +131,17 @@ def test_plain_nbgrader_is_not_held_up_either(tiny: TinyClass, fake_engine: Fake
     assert tiny.scores("ada") == {TALKER: 7, LISTENER: 8}
 
 
-@pytest.mark.parametrize("door", ["ours", "nbgrader's"])
+@pytest.mark.parametrize("command", ["ours", "nbgrader's"])
 @pytest.mark.parametrize("name", ["timestamp.txt", "robot.py", "deep/robot.py"])
 @pytest.mark.parametrize("kind", ["pipe", "device", "folder", "link to itself", "link"])
 def test_what_lies_beside_the_notebook_holds_nothing_up_and_costs_nothing(
-    tiny: TinyClass, fake_engine: FakeEngine, kind: str, name: str, door: str
+    tiny: TinyClass, fake_engine: FakeEngine, kind: str, name: str, command: str
 ) -> None:
     tiny.submit("ada")
     path = tiny.submit("eve", 3, 4).parent / name
     path.parent.mkdir(exist_ok=True)
     ODD[kind][0](path, tiny)
-    if door == "ours":
+    if command == "ours":
         assert tiny.grade().exit_code == 0
     else:
         nbgrader_autograde(tiny)
@@ -149,9 +149,9 @@ def test_what_lies_beside_the_notebook_holds_nothing_up_and_costs_nothing(
     assert [file.name for file in (tiny.path / "autograded" / "eve").rglob("*.*")] == ["lab_1_2.ipynb"]
 
 
-@pytest.mark.parametrize("door", ["ours", "nbgrader's"])
+@pytest.mark.parametrize("command", ["ours", "nbgrader's"])
 def test_a_file_with_a_hole_of_a_terabyte_fills_no_disk(
-    tiny: TinyClass, fake_engine: FakeEngine, door: str
+    tiny: TinyClass, fake_engine: FakeEngine, command: str
 ) -> None:
     beside = tiny.submit("eve", 3, 4).parent / "huge.bin"
     instead = tiny.path / "submitted" / "mallory" / "lab_1_2" / "lab_1_2.ipynb"
@@ -159,7 +159,7 @@ def test_a_file_with_a_hole_of_a_terabyte_fills_no_disk(
     for path in (beside, instead):
         with path.open("wb") as file:
             file.truncate(1 << 40)
-    if door == "ours":
+    if command == "ours":
         report = tiny.grade()
         assert report.exit_code == 0
         reason = next(row.reason for row in report.rows if row.student == "mallory")

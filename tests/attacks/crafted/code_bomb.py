@@ -1,4 +1,4 @@
-# family = "doors"
+# family = "crafted"
 # tries = "Code and output whose colouring takes ages: half a million characters of open strings, backslashes, brackets, escape sequences for colours and carriage returns."
 # could_earn = "A grader that is busy for hours with one student's page, outside of every box."
 

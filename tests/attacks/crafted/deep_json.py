@@ -1,4 +1,4 @@
-# family = "doors"
+# family = "crafted"
 # tries = "JSON nested a hundred thousand times, where metadata should be."
 # could_earn = "A grader that overflows its stack."
 

@@ -1,4 +1,4 @@
-"""Plain nbgrader and ``./course grade`` are two doors to one engine: the same points behind both."""
+"""Plain nbgrader and ``./course grade`` are two ways to one engine: the same points by both."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def hand_in_all_kinds(tiny: TinyClass) -> list[str]:
     ]
 
 
-def test_both_doors_give_the_same_points(tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path) -> None:
+def test_both_ways_give_the_same_points(tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path) -> None:
     students = hand_in_all_kinds(tiny)
     other = TinyClass(tmp_path / "other")
     shutil.copytree(tiny.path, other.path)
@@ -160,7 +160,7 @@ def test_files_of_the_assignment_are_there_and_cannot_be_replaced(
     assert (tiny.path / "autograded" / "eve" / "lab_1_2" / "map.txt").read_text() == "the real one"
 
 
-def test_without_our_door_nothing_is_executed(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+def test_without_our_commands_nothing_is_executed(tiny: TinyClass, fake_engine: FakeEngine) -> None:
     """Else a submission's own metadata would be believed."""
     config = tiny.path / "nbgrader_config.py"
     config.write_text(config.read_text().replace("c.Autograde.exporter_class", "unused"))

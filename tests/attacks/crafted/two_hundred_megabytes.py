@@ -1,4 +1,4 @@
-# family = "doors"
+# family = "crafted"
 # tries = "A notebook of 200 MB."
 # could_earn = "A grader that runs out of memory."
 

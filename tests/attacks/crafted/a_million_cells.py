@@ -1,4 +1,4 @@
-# family = "doors"
+# family = "crafted"
 # tries = "A notebook of a million cells, each of them next to nothing."
 # could_earn = "A grader that runs out of memory or time."
 
