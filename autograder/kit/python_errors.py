@@ -143,6 +143,12 @@ RUNNING: Sequence[Row] = (
         "Write a single one: self.{name} = ...",
     ),
     (
+        r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute 'publish'",
+        "A node cannot publish by itself: its publisher does.",
+        "Keep what create_publisher returns, self.publisher = self.create_publisher(...), and call "
+        "self.publisher.publish(msg).",
+    ),
+    (
         rf"^{_OWN}\. Did you mean: '(?P<meant>\w+)'",
         "{class} has nothing called {name}, and has {meant}.",
         "If that is what you mean, write {meant}. If {name} is a value of your own, set self.{name} in __init__.",
@@ -176,12 +182,6 @@ RUNNING: Sequence[Row] = (
         "{class} has no method {name} at this line.",
         "Write def {name} in the class, spelled the same and indented by four spaces, like def __init__: indented "
         "further, it is only a part of the method above.",
-    ),
-    (
-        r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute 'publish'",
-        "A node cannot publish by itself: its publisher does.",
-        "Keep what create_publisher returns, self.publisher = self.create_publisher(...), and call "
-        "self.publisher.publish(msg).",
     ),
     (
         rf"^{_OWN}",
