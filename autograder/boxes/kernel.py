@@ -158,8 +158,11 @@ class Kernel:
         stopped_for = Ended.TOO_MUCH_OUTPUT if self._floods else self._guard.reason() or Ended.TIMED_OUT
         self._count_anew()
         self.interrupt()
-        grace = self._limits.interrupt_grace
-        if self._await_reply(message["header"]["msg_id"], wall_time(grace)) is None:
+        # An interrupt that meets the kernel's own code, such as its flush of what was printed, takes the answer away.
+        # What is asked behind it is answered all the same.
+        next_one = self._ask("kernel_info_request", {})
+        grace = wall_time(self._limits.interrupt_grace)
+        if self._await_reply(message["header"]["msg_id"], grace, next_one) is None:
             self.kill()
         return stopped_for
 
@@ -181,8 +184,14 @@ class Kernel:
         self._shell.close()
         self._iopub.close()
 
-    def _await_reply(self, request: str, left: Left) -> Ended | None:
-        """The end of the cell, or None where it is still running when its time is up."""
+    def _await_reply(self, request: str, left: Left, next_one: str = "") -> Ended | None:
+        """The end of the cell, or None where it is still running when its time is up.
+
+        Args:
+            request: The id of the request that executes it.
+            left: The seconds that it has left.
+            next_one: The id of a request behind it, whose answer says as well that it has ended.
+        """
         reply: Mapping[str, Any] | None = None
         idle = False
         for channel, message in self._messages(left):
@@ -190,6 +199,8 @@ class Kernel:
             idle = idle or (channel is self._iopub and content.get("execution_state") == "idle")
             if channel is self._shell and content and message.get("msg_type") == "execute_reply":
                 reply = content
+            if channel is self._shell and next_one and _parent(message) == next_one:
+                return Ended.TIMED_OUT
             if reply is not None:
                 break
         if reply is None:

@@ -182,6 +182,17 @@ def test_a_line_of_100_megabytes(run: Run) -> None:
     assert "alive" in str(execution.cells[1].outputs)
 
 
+def test_an_interrupt_that_meets_the_kernel_itself_leaves_it_alive(run: Run) -> None:
+    """It is stopped behind the cell's code, where its output is flushed: then no answer to the cell ever comes."""
+    hangs_once = (
+        "import sys, time\nflush = sys.stdout.flush\ndef once():\n    sys.stdout.flush = flush\n    time.sleep(600)\n"
+        "sys.stdout.flush = once"
+    )
+    execution = run(hangs_once, cell_seconds=2.0)
+    assert execution.cells[0].ended is Ended.TIMED_OUT
+    assert "alive" in str(execution.cells[1].outputs)
+
+
 def test_an_error_of_a_limit_has_its_own_word() -> None:
     from autograder.boxes.execution import CellRun
     from autograder.boxes.verdicts_without_judge import without_verdict
