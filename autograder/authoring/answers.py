@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 from autograder import exercises
 from autograder.authoring.answer_tables import WORKSPACE, Listed, listed, settings
 from autograder.authoring.edits import unpack
-from autograder.authoring.judging import checked
+from autograder.boxes.scratch import HeldFolder
 from autograder.verdict import to_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
+    from autograder.judge.verdicts.trial import Checked
     from autograder.verdict import Verdict
 
 _PROGRAMS = {"python3": sys.executable, "ros2": str(Path(sys.executable).with_name("ros2"))}
@@ -83,9 +84,17 @@ class Answer:
             file.write_text(self.text, encoding="utf-8")
         return [part.format(file=file, workspace=workspace) for part in self.command]
 
+    def checked(self, seed: str) -> tuple[Verdict, Checked | None]:
+        """Judge it in this very process; the evidence, too, where the judge itself had no trouble."""
+        from autograder.judge.subjects.command import checked_here
+
+        exercise = exercises.get(self.exercise)
+        with HeldFolder("autograder-answer-") as folder:
+            return checked_here(exercise, self.unpack(folder.path), seed, None)
+
     def verdict(self, seed: str) -> bytes:
         """Judge it in this very process; the verdict as JSON."""
-        return to_json(checked(self, seed)[0])
+        return to_json(self.checked(seed)[0])
 
     def objection(self, verdict: Verdict) -> str:
         """The difference from the expected verdict, or an empty string."""

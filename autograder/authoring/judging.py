@@ -6,15 +6,11 @@ import select
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
-from autograder.boxes.scratch import HeldFolder
 from autograder.standard_output import private_stdout
 from autograder.verdict import State, Verdict, from_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
-
-    from autograder.authoring.answers import Answer
-    from autograder.judge.verdicts.trial import Checked
 
 LIMIT = 240.0
 """Seconds of wall time in which an answer must have been judged."""
@@ -100,16 +96,6 @@ def _verdict_in_child(turn: Turn[T]) -> bytes:
     # The parent's standard output is for verdicts.
     private_stdout().close()
     return turn.subject.verdict(turn.seed)
-
-
-def checked(answer: Answer, seed: str) -> tuple[Verdict, Checked | None]:
-    """Judge an answer of the bank in this process; the evidence, too, where the judge itself had no trouble."""
-    from autograder import exercises
-    from autograder.judge.subjects.command import checked_here
-
-    exercise = exercises.get(answer.exercise)
-    with HeldFolder("autograder-answer-") as folder:
-        return checked_here(exercise, answer.unpack(folder.path), seed, None)
 
 
 def warm_up() -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from autograder import exercises, recording
 from autograder.authoring.answers import Answer, answers, folder_of
-from autograder.authoring.judging import Turn, checked, judge_all, warm_up
+from autograder.authoring.judging import Turn, judge_all, warm_up
 from autograder.authoring.readiness import still_to_do
 from autograder.cards.text import card_text
 from autograder.verdict import to_json
@@ -55,7 +55,7 @@ class Transcribed(Answer):
 
     def verdict(self, seed: str) -> bytes:
         """Judge it in this very process; the verdict as JSON."""
-        verdict, found = checked(self, seed)
+        verdict, found = self.checked(seed)
         if found is not None:
             file = self.folder / f"{self.short_name}.txt"
             file.parent.mkdir(parents=True, exist_ok=True)

@@ -22,7 +22,7 @@ import msgspec
 from autograder import exercises
 from autograder.appeals.replaying import CannotReplay, replay
 from autograder.authoring.answers import Answer, answers, longest_first
-from autograder.authoring.judging import Turn, checked, judge_all, warm_up
+from autograder.authoring.judging import Turn, judge_all, warm_up
 from autograder.judge.verdicts import reference
 from autograder.judge.verdicts.keeping import Kept, evidence_of, packed, plain, restored, unpack
 from autograder.verdict import State, to_json
@@ -84,7 +84,7 @@ class Seen:
 
     def verdict(self, seed: str) -> bytes:
         """Judge it in this process; the verdict as JSON."""
-        verdict, found = checked(self.answer, seed)
+        verdict, found = self.answer.checked(seed)
         if found is not None:
             # When that was must not tell two makings of the same evidence apart.
             seen = msgspec.structs.replace(unpack(packed(found)), at=0.0)
