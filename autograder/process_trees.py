@@ -150,8 +150,7 @@ def end_below(pid: int) -> None:
     """
     left: set[Known] = set()
     while living := known(one for one in descendants(pid) if _lives(one)) - left:
-        for process in living:  # so that none can start another while they are gone through
-            _signal(process, signal.SIGSTOP)
+        send(living, signal.SIGSTOP)  # so that none can start another while they are gone through
         left |= {process for process in living if not _signal(process, signal.SIGKILL, wait=True)}
 
 

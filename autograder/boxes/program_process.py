@@ -121,22 +121,16 @@ def _loads_the_same_libraries() -> bool:
     if [*own, *given] != wanted or len(own) > len(_library_folders):
         return False
     leads_there = all(
-        os.path.realpath(folder) == os.path.realpath(wanted)
-        for folder, wanted in zip(_library_folders, own, strict=False)
+        os.path.realpath(here) == os.path.realpath(there)
+        for here, there in zip(_library_folders, own, strict=False)
     )
-    names = {
-        entry.name.partition(".so")[0]
-        for folder in map(Path, own)
-        if folder.is_dir()
-        for entry in folder.iterdir()
-    }
-    return leads_there and not names & {*_loaded_libraries(), _OF_PROCESSORS}
+    return leads_there and not _names_in(own) & {*_loaded_libraries(), _OF_PROCESSORS}
 
 
 def _loaded_libraries() -> set[str]:
-    """The names of the libraries in this process, without ``.so`` and a version."""
+    """The names of the libraries in this process, as :func:`_names_in` has names."""
     lines = Path("/proc/self/maps").read_text(encoding="utf-8", errors="replace").splitlines()
-    return {line.rpartition("/")[2].partition(".so")[0] for line in lines if ".so" in line}
+    return {line.rpartition("/")[2].partition(".")[0] for line in lines if ".so" in line}
 
 
 def _python_path(environment: Mapping[str, str]) -> list[str]:
@@ -159,7 +153,7 @@ def _imported() -> set[str]:
 
 
 def _names_in(folders: Sequence[str]) -> set[str]:
-    """The names that could be imported from these folders, and some that could not."""
+    """The names that could be imported or loaded from these folders, and some that could not."""
     return {
         entry.name.partition(".")[0]
         for folder in map(Path, folders)
