@@ -25,9 +25,10 @@ from jupyter_client.manager import KernelManager
 from nbclient import NotebookClient
 from nbformat.v4 import new_code_cell, new_notebook
 
-from autograder import course, journal
+from autograder import course
 from autograder.masters.layout import chapter_path, lab_name, masters
 from autograder.masters.source import source_notebook
+from autograder.student import journal
 from autograder.student.lab import join_domain
 
 if TYPE_CHECKING:

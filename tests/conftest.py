@@ -29,15 +29,15 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 
 TOGETHER = ("tests/attacks", "tests/boxes")
 """Folders whose tests share what takes long to make, so that one process runs them all."""
-APART = ("tests/test_recording.py", "tests/authoring/test_new_exercise.py")
+APART = ("tests/authoring/test_recording.py", "tests/authoring/test_new_exercise.py")
 """Files with long tests that share nothing, so that several processes take them."""
 LONGEST = (
     "tests/judge/test_bank.py",
     "tests/attacks",
-    "tests/execution/test_notebooks.py",
+    "tests/authoring/test_notebooks.py",
     "tests/grading/cluster/test_cluster.py",
     "tests/grading/classes/test_sample_class.py",
-    "tests/test_recording.py",
+    "tests/authoring/test_recording.py",
     "tests/grading/day/test_killed_at_random.py",
     "tests/benchmarks/test_short_run.py",
     "tests/grading/running/test_workers.py",

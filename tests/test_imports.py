@@ -30,13 +30,11 @@ MAY_IMPORT = {
     "cards": frozenset({"verdict"}),
     "boxes": frozenset({"verdict", "process_trees"}),
     "masters": frozenset({"course", "exercises", "regular_files"}),
-    "journal": frozenset({"course", "verdict"}),
     "message_files": frozenset[str](),
     "process_trees": frozenset[str](),
     "appeals": ALL - {"grading", "boxes", "notebook"},
-    "notebook": ALL
-    - {"judge", "exercises", "kit", "masters", "boxes", "grading", "execution", "recording", "appeals"},
-    "judge": ALL - {"notebook", "cards", "masters", "boxes", "grading", "execution", "recording", "appeals"},
+    "notebook": ALL - {"judge", "exercises", "kit", "masters", "boxes", "grading", "authoring", "appeals"},
+    "judge": ALL - {"notebook", "cards", "masters", "boxes", "grading", "authoring", "appeals"},
     "__main__": frozenset({"cli"}),
 }
 

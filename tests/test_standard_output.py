@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 from click.testing import CliRunner
 
-from autograder import journal
 from autograder.authoring.judging import Turn, judge_all
 from autograder.cli import cli
 from autograder.judge.subjects import command
 from autograder.standard_output import short_lines, stray_lines_on_stderr
+from autograder.student import journal
 from autograder.verdict import State, Verdict, to_json
 
 if TYPE_CHECKING:

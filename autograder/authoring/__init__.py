@@ -1,1 +1,1 @@
-"""The tools of authors of exercises: a new exercise from a recipe, its answers, and what the judge says of them."""
+"""What authors use: new exercises, their answers and recordings, the words of the judge, all notebooks executed."""

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder import exercises, recording
+from autograder import exercises
+from autograder.authoring import recording
 from autograder.authoring.answers import Answer, answers, folder_of
 from autograder.authoring.judging import Turn, judge_all, warm_up
 from autograder.authoring.readiness import still_to_do
@@ -101,7 +102,7 @@ def try_exercise(
         autograder.exercises.UnknownExercise: There is no such exercise.
         autograder.exercises.BrokenExercise: Its file is none.
         autograder.authoring.answer_tables.BadTable: A table of its answers cannot be used.
-        autograder.recording.CannotRecord: The solution of its master cannot be recorded.
+        autograder.authoring.recording.CannotRecord: The solution of its master cannot be recorded.
         NothingToTry: There is no such answer.
     """
     exercises.get(exercise_id)

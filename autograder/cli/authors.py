@@ -35,8 +35,8 @@ def build(only_check: bool) -> None:
 def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) -> None:
     """Run every notebook: masters must earn full marks, chapters none, without an error."""
     from autograder import course
-    from autograder.execution.execute_command import execute_command
-    from autograder.execution.plan import NothingToExecuteError
+    from autograder.authoring.executing import execute_command
+    from autograder.authoring.execution_plan import NothingToExecuteError
     from autograder.masters.master_errors import MasterError
 
     try:
@@ -50,7 +50,7 @@ def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) 
 @click.option("--check", "only_check", is_flag=True, help="Write nothing; fail where a recording differs.")
 def record(exercises: tuple[str, ...], only_check: bool) -> None:
     """Record what the reference solutions do on the wire: the grader expects that from then on."""
-    from autograder import recording
+    from autograder.authoring import recording
 
     try:
         changed = recording.record(exercises, only_check=only_check, tell=click.echo)
@@ -102,8 +102,8 @@ def new_exercise(exercise: str, recipe: str, chapter: str | None, interfaces: tu
 )
 def try_exercise(exercise: str, only: tuple[str, ...], jobs: int, transcript: Path | None) -> None:
     """Record EXERCISE where it is new, judge its right and wrong answers, and show what is not as expected."""
-    from autograder import exercises, recording
-    from autograder.authoring import trying
+    from autograder import exercises
+    from autograder.authoring import recording, trying
     from autograder.authoring.answer_tables import BadTable
     from autograder.masters.master_errors import MasterError
 

@@ -80,7 +80,7 @@ def check(
     except CommandNotFound as error:
         fail(str(error))
     if not boxed:  # what somebody else wrote is no progress of the user's
-        from autograder import journal
+        from autograder.student import journal
 
         journal.note_check(verdict)
     show(verdict, as_json=as_json)
@@ -158,7 +158,8 @@ def lab(folder: Path | None, arguments: tuple[str, ...]) -> None:
 @_notebooks
 def progress(as_json: bool, folder: Path | None) -> None:
     """Say which points you have reached, and where to go on. It is no grade."""
-    from autograder import course, exercises, journal
+    from autograder import course, exercises
+    from autograder.student import journal
     from autograder.student.course_page import standing_json, standing_text
     from autograder.student.standing import standing
 
@@ -192,7 +193,8 @@ def reset(notebook: str, folder: Path | None) -> None:
 
 def _notebooks_and_journal(root: Path, folder: Path | None) -> tuple[Path, Path | None]:
     """The folder of the notebooks, and its journal."""
-    from autograder import course, journal
+    from autograder import course
+    from autograder.student import journal
     from autograder.student.lab import NOTEBOOKS_VARIABLE
 
     if folder is not None:

@@ -105,7 +105,7 @@ def _chapter(chapter: ChapterStanding) -> list[str]:
 def _environment() -> Environment:
     from markupsafe import Markup
 
-    from autograder.page_templates import page_templates
+    from autograder.cards.page_templates import page_templates
 
     environment = page_templates("autograder.student")
 

@@ -27,11 +27,9 @@ WHOLE = ("course", "pyproject.toml", "LICENSE", "environment", "autograder", ".d
 """Files and folders that are handed out as they are, but for what follows."""
 KEPT_BACK = (
     "autograder/authoring",
-    "autograder/execution",
     "autograder/grading",
     "autograder/student/handing_out.py",
     "autograder/masters",
-    "autograder/recording.py",
 )
 """Parts that make notebooks, know their solutions or grade a class."""
 PAGES = ("students-guide.md", "mistakes.md", "fairness.md", "ros2-command.md", "robot.md")

@@ -11,8 +11,8 @@ import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder import journal
 from autograder.ros_domain import DOMAIN_VARIABLE, DomainClaim, claim_free_domain, domain_from_environment
+from autograder.student import journal
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

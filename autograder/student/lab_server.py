@@ -24,9 +24,9 @@ from jupyter_server.services.contents.largefilemanager import AsyncLargeFileMana
 from jupyter_server.utils import url_path_join
 from tornado import web
 
-from autograder import course, exercises, journal
+from autograder import course, exercises
 from autograder.cards import certificate
-from autograder.student import course_page, resetting
+from autograder.student import course_page, journal, resetting
 from autograder.student.lab import COURSE_PAGE
 from autograder.student.standing import Standing, standing
 

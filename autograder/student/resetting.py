@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
-from autograder import course, journal
+from autograder import course
 from autograder.regular_files import write_whole
+from autograder.student import journal
 from autograder.student.standing import notebook_path
 
 if TYPE_CHECKING:

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
 
-from autograder import course, exercises, journal
+from autograder import course, exercises
+from autograder.student import journal
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from autograder.journal import Entry
+    from autograder.student.journal import Entry
 
 State = Literal["new", "begun", "done"]
 

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder import exercises, journal
+from autograder import exercises
 from autograder.cards.bundle import card_html, waiting_html
-from autograder.journal import Entry
+from autograder.student import journal
+from autograder.student.journal import Entry
 from autograder.verdict import from_json
 
 sys.path.insert(0, str(Path(__file__).parent))

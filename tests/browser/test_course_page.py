@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder import exercises, journal
-from autograder.journal import Entry
+from autograder import exercises
+from autograder.student import journal
+from autograder.student.journal import Entry
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -22,10 +22,11 @@ from typing import TYPE_CHECKING
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 
-from autograder import course, journal
+from autograder import course
 from autograder.masters.layout import lab_name, masters
 from autograder.masters.source import source_notebook
 from autograder.ros_domain import DOMAIN_VARIABLE, claim_free_domain
+from autograder.student import journal
 
 if TYPE_CHECKING:
     import argparse

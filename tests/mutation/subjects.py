@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from autograder import exercises
 from autograder.authoring.answers import Answer, answers
-from autograder.recording import CannotRecord, program
+from autograder.authoring.recording import CannotRecord, program
 from tests.judge.notebooks import verdict_in_notebook
 
 if TYPE_CHECKING:

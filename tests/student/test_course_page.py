@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 from click.testing import CliRunner
 
-from autograder import course, exercises, journal
+from autograder import course, exercises
 from autograder.cards.certificate import WORDS, certificate_svg
 from autograder.cli import cli
-from autograder.journal import Entry
+from autograder.student import journal
 from autograder.student.course_page import hours, page_html, trouble_html
+from autograder.student.journal import Entry
 from autograder.student.standing import standing
 
 if TYPE_CHECKING:

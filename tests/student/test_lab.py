@@ -18,8 +18,9 @@ from jupyterlab.labapp import LabApp
 from jupyterlab_server.config import get_page_config
 from nbgrader.server_extensions.validate_assignment.handlers import ValidateAssignmentHandler
 
-from autograder import exercises, journal
+from autograder import exercises
 from autograder.ros_domain import claim_free_domain
+from autograder.student import journal
 from autograder.student.lab import (
     NOTEBOOKS_VARIABLE,
     NOTHING_TO_SAVE,

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import pytest
 from click.testing import CliRunner
 
-from autograder import course, journal
+from autograder import course
 from autograder.cli import cli
+from autograder.student import journal
 from autograder.student.resetting import CannotReset, released_text, reset
 
 if TYPE_CHECKING:

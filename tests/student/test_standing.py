@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from autograder import course, exercises
-from autograder.journal import Entry
 from autograder.student.handing_out import hand_out
+from autograder.student.journal import Entry
 from autograder.student.standing import Standing, standing
 
 if TYPE_CHECKING:

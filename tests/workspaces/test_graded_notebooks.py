@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import course
+from autograder.authoring.execution_plan import NotebookKind, plan
 from autograder.boxes.sandbox import why_impossible
-from autograder.execution.plan import NotebookKind, plan
 from autograder.grading.running import engine
 
 sys.path.insert(0, str(Path(__file__).parent))

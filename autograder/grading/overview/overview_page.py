@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
+from autograder.cards.page_templates import page_templates
 from autograder.cards.readable import one_line, printable
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
@@ -16,7 +17,6 @@ from autograder.grading.overview import statistics as figures
 from autograder.grading.reporting.rows import DROPPED, EXCUSED, columns
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.table.class_table import ClassTable, by_exercise, read_table
-from autograder.page_templates import page_templates
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import TYPE_CHECKING
 
+from autograder.cards.page_templates import page_templates
 from autograder.cards.readable import one_line
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.similarity.pairs import HINT, LEAST_SHARE, SHORTEST, nothing_found
-from autograder.page_templates import page_templates
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import inspect
 import os
 from typing import TYPE_CHECKING, Any, Protocol
 
-from autograder import course, journal
+from autograder import course
 from autograder.cards import bundle
 from autograder.messages import checks as messages
 from autograder.notebook.cells.cell_output import notebook_shell
@@ -20,6 +20,7 @@ from autograder.notebook.checking.shorter_waits import GraphQuestions, ShorterWa
 from autograder.notebook.checking.subject_run import SubjectRun, Tell
 from autograder.notebook.checking.validating import raise_unless_full
 from autograder.notebook.nodes.ros_session import prepare_environment
+from autograder.student import journal
 from autograder.verdict import Verdict, not_checked
 
 if TYPE_CHECKING:

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from autograder import course, exercises, journal
-from autograder.journal import Entry
+from autograder import course, exercises
 from autograder.notebook.checking import check as check_cell
 from autograder.notebook.checking.judge_link import SOCKET_VARIABLE
+from autograder.student import journal
+from autograder.student.journal import Entry
 from autograder.verdict import State, Verdict
 
 if TYPE_CHECKING:

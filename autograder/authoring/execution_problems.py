@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import html
-import re  # noqa: TID251  (the course's own notebooks)
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from nbconvert import HTMLExporter
 
+from autograder.authoring.execution_plan import NotebookKind
 from autograder.boxes.execution import CellType, Ended
-from autograder.execution.plan import NotebookKind
 from autograder.grading.rebuilding import nodes
 
 if TYPE_CHECKING:
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     from nbformat import NotebookNode
 
+    from autograder.authoring.execution_plan import Planned
     from autograder.boxes.execution import Cell, CellRun, Execution
-    from autograder.execution.plan import Planned
     from autograder.verdict import Verdict
 
 TRACEBACK = "Traceback (most recent call last)"

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 from rich.console import Console
 
-from autograder.execution.execute_command import execute_command
-from autograder.execution.plan import NothingToExecuteError
+from autograder.authoring.executing import execute_command
+from autograder.authoring.execution_plan import NothingToExecuteError
 from autograder.masters.chapters import build
 from autograder.masters.parsing import HEADER
 

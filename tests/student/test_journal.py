@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder import journal
-from autograder.journal import Entry
+from autograder.student import journal
+from autograder.student.journal import Entry
 from autograder.verdict import State, Verdict, not_checked
 
 if TYPE_CHECKING:

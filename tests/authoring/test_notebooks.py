@@ -9,13 +9,13 @@ import pytest
 from rich.console import Console
 
 from autograder import course
-from autograder.execution.execute_command import REPORTS, execute_all
-from autograder.execution.plan import plan
+from autograder.authoring.executing import REPORTS, execute_all
+from autograder.authoring.execution_plan import plan
 from autograder.masters.layout import lab_name, masters
 from tests.tiers import asked_for
 
 if TYPE_CHECKING:
-    from autograder.execution.execute_command import Executed
+    from autograder.authoring.executing import Executed
 
 
 @pytest.fixture(scope="module")

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
+from autograder.authoring.execution_plan import Planned, plan
+from autograder.authoring.execution_problems import Problem, problems_of, write_report
 from autograder.boxes.execution import CellType
 from autograder.boxes.scratch import HeldFolder
-from autograder.execution.plan import Planned, plan
-from autograder.execution.problems import Problem, problems_of, write_report
 from autograder.grading.running import engine
 from autograder.grading.running.progress import BatchProgress
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
+from autograder.authoring.execution_plan import NotebookKind, Planned
+from autograder.authoring.execution_problems import problems_of
 from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution
-from autograder.execution.plan import NotebookKind, Planned
-from autograder.execution.problems import problems_of
 from autograder.grading.rebuilding import nodes
 from autograder.grading.task import Task
 from autograder.verdict import Diagnosis, State, Verdict
