@@ -30,7 +30,7 @@ MAY_IMPORT = {
     "cards": frozenset({"verdict"}),
     "boxes": frozenset({"verdict", "process_trees"}),
     "masters": frozenset({"course", "exercises", "regular_files"}),
-    "message_files": frozenset[str](),
+    "mcap_files": frozenset[str](),
     "process_trees": frozenset[str](),
     "appeals": ALL - {"grading", "boxes", "notebook"},
     "notebook": ALL - {"judge", "exercises", "kit", "masters", "boxes", "grading", "authoring", "appeals"},

@@ -18,7 +18,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 from autograder.judge.bench.interfaces import filled, interface
 from autograder.judge.verdicts.keeping import plain
-from autograder.message_files import ROS_2, MessageFile, definition
+from autograder.mcap_files import ROS_2, MessageFile, definition
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -292,7 +292,7 @@ def export(
 )
 def report(folder: Path, sections: tuple[str, ...], without_names: bool, output: Path | None) -> None:
     """Write one page about the class FOLDER: points, mistakes, exercises, who is where."""
-    from autograder.grading.overview.overview_page import write_report
+    from autograder.grading.report_page.page import write_report
 
     with grading_errors():
         click.echo(write_report(folder, names=not without_names, to=output, sections=sections))

@@ -15,7 +15,7 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
-from autograder.message_files import ROS_2, MessageFile, definition
+from autograder.mcap_files import ROS_2, MessageFile, definition
 from autograder.notebook.observing.live_picture import GONE
 from autograder.notebook.observing.ros_graph import hidden_node
 from autograder.notebook.observing.topic_traffic import message_class

@@ -23,7 +23,7 @@ from autograder.grading.collecting.outcomes import CollectReport, State, Waiting
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.errors import GradingError
 from autograder.grading.exporting.export_files import export
-from autograder.grading.overview.overview_page import write_report
+from autograder.grading.report_page.page import write_report
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:

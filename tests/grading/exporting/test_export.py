@@ -22,7 +22,7 @@ from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.forms import read_path
 from autograder.grading.errors import GradingError
 from autograder.grading.exporting.export_files import export
-from autograder.grading.overview.overview_page import write_report
+from autograder.grading.report_page.page import write_report
 from autograder.grading.running import engine
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import String
 
-from autograder.message_files import definition
+from autograder.mcap_files import definition
 from autograder.notebook.observing.recordings import read_recording, recording
 
 if TYPE_CHECKING:

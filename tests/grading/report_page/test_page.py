@@ -17,10 +17,10 @@ from autograder.cli import cli
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.errors import GradingError
-from autograder.grading.overview import statistics as figures
-from autograder.grading.overview.overview_page import write_report
 from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import read_released
+from autograder.grading.report_page import statistics as figures
+from autograder.grading.report_page.page import write_report
 from autograder.grading.reporting.rows import Row
 from autograder.grading.table.class_table import ClassTable, read_table
 from autograder.verdict import Criterion, Diagnosis, Verdict

@@ -13,7 +13,7 @@ from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.errors import GradingError, clear_disk_errors
-from autograder.grading.overview import statistics as figures
+from autograder.grading.report_page import statistics as figures
 from autograder.grading.reporting.rows import DROPPED, EXCUSED, columns
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.table.class_table import ClassTable, by_exercise, read_table
@@ -72,12 +72,12 @@ def write_report(
 def _page(
     directory: ClassDirectory, store: ClassStore, table: ClassTable, *, names: bool, folder: Path
 ) -> str:
-    environment = page_templates("autograder.grading.overview")
+    environment = page_templates("autograder.grading.report_page")
     people = _people(directory, table, names=names, folder=folder)
     there = figures.handed_in(table)
     totals = figures.totals(table)
     environment.filters["printable"] = printable
-    template = environment.get_template("overview.html.j2")
+    template = environment.get_template("report.html.j2")
     return template.render(
         policy=POLICY,
         title=directory.path.name,
