@@ -16,7 +16,7 @@ from rich.console import Console
 
 from autograder.boxes.execution import CellRun, Ended, Execution
 from autograder.grading import batch
-from autograder.grading.running import places
+from autograder.grading.running import backends
 from autograder.grading.running.engine import Done
 from autograder.verdict import State, Verdict
 from benchmarks.ours import GRADE
@@ -65,12 +65,12 @@ def _cpu() -> float:
 
 
 def _fill(path: Path) -> None:
-    with mock.patch.object(places, "here", _nobody):
+    with mock.patch.object(backends, "local", _nobody):
         batch.grade(path, console=Console(file=io.StringIO()))
 
 
 @contextlib.contextmanager
-def _nobody(*_: object) -> Iterator[places.Execute]:
+def _nobody(*_: object) -> Iterator[backends.Execute]:
     def execute(tasks: Iterable[Task], on_start: Callable[[Task], None]) -> Generator[Done, None, None]:
         for task in tasks:
             on_start(task)

@@ -31,7 +31,7 @@ from autograder.grading.rebuilding.source_points import check_release, read_rele
 from autograder.grading.reporting.report import GradeReport
 from autograder.grading.reporting.rows import rows_of, write_csv
 from autograder.grading.returning.up_to_date import UpToDate
-from autograder.grading.running import places
+from autograder.grading.running import backends
 from autograder.grading.running.progress import BatchProgress
 from autograder.grading.running.timings import Timings
 from autograder.grading.table.roster import enter_roster, read_roster
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from autograder.grading.entering.gradebook_reading import Entries
     from autograder.grading.entering.writer import Writer
     from autograder.grading.rebuilding.source_points import GradedCell
-    from autograder.grading.running.places import Execute
+    from autograder.grading.running.backends import Execute
     from autograder.grading.table.point_differences import Difference
     from autograder.grading.table.roster import Roster
     from autograder.grading.task import Task
@@ -99,16 +99,16 @@ def grade(
         from autograder.grading.running import sandboxing
 
         sandboxing.require(directory)
-        place = places.here(directory, jobs, judge)
+        backend = backends.local(directory, jobs, judge)
     else:
         from autograder.grading.cluster.connection import check_address, check_dask
 
         check_dask()
         check_address(scheduler)
         tell = functools.partial(console.print, markup=False, highlight=False, soft_wrap=True)
-        place = places.on_cluster(directory, scheduler, judge, tell)
+        backend = backends.cluster(directory, scheduler, judge, tell)
     with directory.lock(), contextlib.ExitStack() as stack:
-        places.remove_leftovers(directory)
+        backends.remove_leftovers(directory)
         roster = read_roster(directory)
         in_sections = roster.of_sections(sections) if sections else ()
         asked = AskedFor(assignments, [*students, *in_sections])
@@ -117,7 +117,7 @@ def grade(
         batch.collect()
         batch.plan(again)
         # Before anything is taken back: where nobody can execute anything, all stays as it is.
-        execute = stack.enter_context(place) if batch.unsettled else None
+        execute = stack.enter_context(backend) if batch.unsettled else None
         if not dry_run:
             batch.take_back()
         batch.run(execute)

@@ -1,4 +1,4 @@
-"""The place where tasks are executed: this machine, or the workers of a cluster."""
+"""The backends that execute tasks: this machine, or the workers of a Dask cluster."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ def remove_leftovers(directory: ClassDirectory) -> None:
 
 
 @contextlib.contextmanager
-def here(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[Execute]:
-    """This machine.
+def local(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[Execute]:
+    """Execute on this machine.
 
     Args:
         directory: The class.
@@ -53,10 +53,10 @@ def here(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[Ex
 
 
 @contextlib.contextmanager
-def on_cluster(
+def cluster(
     directory: ClassDirectory, scheduler: str, judge: str, tell: Callable[[str], None]
 ) -> Iterator[Execute]:
-    """The workers of a Dask cluster.
+    """Execute on the workers of a Dask cluster.
 
     Args:
         directory: The class.
