@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Self
 
 from autograder.boxes.box import ANSWER_SECONDS
 from autograder.boxes.channel import Channel, ChannelClosed
-from autograder.process_trees import descendants, known, send, signal_group
+from autograder.process_trees import signal_group
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -205,8 +205,12 @@ class Running:
         return self.wait(_ITS_TIME).returncode
 
     def interrupt(self) -> None:
-        """Ctrl-C at everything below the first process of the box, which only waits for the others."""
-        send(known(descendants(self.pid)), signal.SIGINT)
+        """Ctrl-C, as a terminal sends it: to all of the process group at once.
+
+        One after the other, a program might have ended, and `ros2 run` with it, before Ctrl-C came to `ros2 run`. The
+        first process of the box, which leads the group, takes no notice: it has no handler (pid_namespaces(7)).
+        """
+        signal_group(self.pid, signal.SIGINT)
 
     def end(self) -> None:
         """Kill it and all that it has started; may be called twice."""

@@ -141,7 +141,9 @@ class _Supervisor:
         if name in self._started:
             raise ValueError(f"there is a box named {name} already")
         info, writing = os.pipe()
-        words, kept = bubblewrap([*arguments, "--info-fd", str(writing)], hidden_memory=hidden_memory)
+        # A session of its own: Ctrl-C is for the command and its process group, and not for bubblewrap.
+        words = [*arguments, "--new-session", "--info-fd", str(writing)]
+        words, kept = bubblewrap(words, hidden_memory=hidden_memory)
         kept.append(writing)
 
         idle = not command

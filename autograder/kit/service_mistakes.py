@@ -70,7 +70,8 @@ def _does_not_wait_for_answers(evidence: Evidence) -> bool:
     # Who has made all its calls where an answer came just as late waits for answers, and has not liked this one.
     waits = any(len(requests(part)) >= calls for part in served if part.of("response"))
     return any(
-        ended_before_its_answer(part) or (calls > 1 and not waits and _made_nothing_of_its_answer(part))
+        ended_before_its_answer(part)
+        or (((calls > 1 and not waits) or part.traceback) and _made_nothing_of_its_answer(part))
         for part in served
     )
 
@@ -79,6 +80,7 @@ def _made_nothing_of_its_answer(part: Part) -> bool:
     """True if the subject ended with its first answer, and neither called again nor said a number that came of it.
 
     A process takes its time to end, so the answer may be given while one that has not waited for it is on its way out.
+    Of a client with one call only an exception tells that it has not waited, and not just kept the sum to itself.
     """
     if part.ending is None or len(requests(part)) != 1 or len(part.of("response")) != 1:
         return False

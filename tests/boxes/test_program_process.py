@@ -56,6 +56,10 @@ PROGRAMS = {
     "sleeps": f"import time\nprint('{READY}')\ntime.sleep(60)",
     "catches_ctrl_c": f"import time\ntry:\n    print('{READY}')\n    time.sleep(60)\n"
     "except KeyboardInterrupt:\n    print('ok')",
+    "has_a_child_in_another_session": "import os, signal, time\ntry:\n    if not os.fork():\n        os.setsid()\n"
+    "        signal.signal(signal.SIGINT, lambda *_: print('me, too'))\n"
+    f"        print('{READY}')\n        time.sleep(1)\n        os._exit(0)\n    time.sleep(60)\n"
+    "except KeyboardInterrupt:\n    os.wait()",
     "starts_python": "import subprocess, sys\n"
     "print(subprocess.run([sys.executable, '-c', 'import sys; print(sys.path)'], capture_output=True).stdout)",
     "leaves_a_process": "import subprocess; subprocess.Popen(['sleep', '60']); print('left')",
@@ -89,10 +93,20 @@ UNEQUAL = re.compile(
 )
 
 
+MET_BY_CHANCE = re.compile(
+    r"Traceback \(most recent call last\):\n(?:(?!Traceback).*\n)*?"
+    r"(?m:^During handling of the above exception, another exception occurred:\n)"
+)
+"""The exception that was being handled just when Ctrl-C came."""
+
+
 def comparable(text: str) -> list[str]:
     """The lines that must be equal; the line at which Ctrl-C met a program is chance."""
-    lines = [line for line in UNEQUAL.sub("", text).splitlines() if line]
-    return [line for line in lines if not line.startswith(" ")] if READY in text else lines
+    text = UNEQUAL.sub("", text)
+    if READY not in text:
+        return [line for line in text.splitlines() if line]
+    lines = MET_BY_CHANCE.sub("", text).splitlines()
+    return [line for line in lines if line and not line.startswith(" ")]
 
 
 @dataclass(frozen=True)

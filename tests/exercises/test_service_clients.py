@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from random import Random
 from types import SimpleNamespace
 from typing import Any
@@ -11,6 +12,7 @@ import pytest
 from exercise_1_2 import three_ints as exercise_1_2_three_ints
 from lab_1_3 import client as lab_1_3_client
 
+from autograder.judge.verdicts import reference, trial
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.model import Pace
 from autograder.kit.recipes import service_client
@@ -28,9 +30,23 @@ from autograder.kit.service_calls import (
 from autograder.kit.texts_said import mentions
 
 SEEDS = range(60)
+REFERENCE = reference.load("lab_1_3.client")
+TYPE = "my_robot_interfaces/srv/AddTwoInts"
 RETURNED = Event(0.4, "subject", "returned", {"value": "-987654321"})
 RAISED = Event(
     0.4, "subject", "raised", {"traceback": "AttributeError: 'Response' object has no attribute 'total'"}
+)
+
+ON_PURPOSE = Event(
+    0.4,
+    "subject",
+    "raised",
+    {
+        "traceback": "Traceback (most recent call last):\n"
+        '  File "client.py", line 20, in ask\n'
+        "    raise RuntimeError('no answer')\n"
+        "RuntimeError: no answer"
+    },
 )
 
 
@@ -179,6 +195,23 @@ def _reported(*after: Event) -> Part:
 )
 def test_one_wrong_report_beside_a_right_one_is_wrong(after: list[Event], right: bool) -> None:
     assert reports(_reported(*after)) is right
+
+
+@pytest.mark.parametrize(
+    ("after", "key"),
+    [
+        ([ON_PURPOSE], "result_read_too_early"),
+        ([Event(0.4, "subject", "exited", {"code": 0})], "sum_not_reported"),
+    ],
+)
+def test_who_raises_has_not_waited_also_where_the_answer_came_before_its_end(
+    after: list[Event], key: str
+) -> None:
+    known = Event(0.05, "interface", "graph", {"nodes": ["/n"], "client": {"/add_two_ints": TYPE}})
+    part = _reported(*after)
+    seen = Evidence([replace(part, events=[known, *part.events])], REFERENCE)
+    found, _ = trial.diagnose(lab_1_3_client.EXERCISE, seen)
+    assert found.key == key
 
 
 @pytest.mark.parametrize("lateness", [0.0, 1.5])

@@ -138,6 +138,13 @@ def test_a_wrong_period_that_both_clocks_show_is_wrong(fast: float, slow: float,
     assert judged("rate", replace(again, before=before)) is right
 
 
+def test_the_simulated_rate_of_a_talker_with_another_mistake_is_no_matter_of_load() -> None:
+    before = _evidence(_messages(list(range(1, 21)), 0.5))
+    again = _evidence(_spaced([0.62, 0.0, 0.82, 0.18] * 5), real_time=True)
+    assert not judged("rate", again)
+    assert judged("rate", replace(again, before=before))
+
+
 def test_who_stumbles_in_simulated_time_is_listened_to_for_longer_in_real_time() -> None:
     before = _evidence(_spaced(([0.5] * 3 + [1.0]) * 5, simulated=True))
     again = _evidence(_spaced(([0.5] * 3 + [1.0]) * 5), real_time=True)
