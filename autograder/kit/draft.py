@@ -2,7 +2,8 @@
 
 A function is given two views of the same kind that the recipe makes: what was seen of the subject, and what was
 recorded of the reference solution. Its name and its docstring are for whoever reads the exercise; what a student reads
-are the texts in the decorators, which may quote from both views: ``"It carries {seen.counters[0]}."``.
+are the texts in the decorators, which may quote from both views: ``"It carries {seen.counters[0]}."``. Those of a
+mistake may also quote what its function found, as ``{}``.
 """
 
 from __future__ import annotations
@@ -19,10 +20,12 @@ if TYPE_CHECKING:
 
 View = TypeVar("View")
 View_co = TypeVar("View_co", covariant=True)
+Found = TypeVar("Found")
 Judge = Callable[[View, View], Finding]
 """Decides a criterion from what was seen and from what was recorded."""
-Recognise = Callable[[View, View], "bool | Advice | None"]
-"""True if a mistake was made; advice of its own where the decorator's texts do not fit."""
+Recognise = Callable[[View, View], object]
+"""What shows that a mistake was made, or anything that is false; advice of its own where the decorator's texts do not
+fit."""
 
 
 class Recipe(Protocol[View_co]):
@@ -117,19 +120,19 @@ class Draft(Generic[View]):
         certain: bool | Callable[[View], bool] = False,
         late: bool = False,
         before: str = "",
-    ) -> Callable[[Recognise[View]], Recognise[View]]:
+    ) -> Callable[[Callable[[View, View], Found]], Callable[[View, View], Found]]:
         """Add a known mistake, most telling first.
 
         Args:
             key: A stable name, explained in ``docs/mistakes.md``.
-            says: What the student is told, with places such as ``{seen.texts[0]}``.
+            says: What the student is told, with places such as ``{seen.texts[0]}``; ``{}`` stands for what was found.
             next_step: What to do about it, with the same places.
             certain: What was seen proves it whatever the machine's load was; or on what that depends.
             late: A node that hangs or is not spun would show it as well, so that is asked first.
             before: The key of the common mistake before which it is asked, where its place is neither of the two.
         """
 
-        def add(recognise: Recognise[View]) -> Recognise[View]:
+        def add(recognise: Callable[[View, View], Found]) -> Callable[[View, View], Found]:
             self.knows(key, recognise, says, next_step, certain=certain, late=late, before=before)
             return recognise
 
@@ -151,11 +154,12 @@ class Draft(Generic[View]):
         def advice(evidence: Evidence) -> Advice | None:
             seen, expected = self._views(evidence)
             found = recognise(seen, expected)
-            if not found or isinstance(found, Advice):
-                return found or None
-            return Advice(
-                says.format(seen=seen, expected=expected), next_step.format(seen=seen, expected=expected)
-            )
+            if isinstance(found, Advice):
+                return found
+            if not found:
+                return None
+            views = {"seen": seen, "expected": expected}
+            return Advice(says.format(found, **views), next_step.format(found, **views))
 
         def proven(evidence: Evidence) -> Advice | None:
             return advice(evidence) if callable(certain) and certain(self._recipe.seen(evidence)) else None

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import pytest
 
 from autograder.kit.draft import OWN, OWN_LATE, Draft
-from autograder.kit.model import Bench, Mistake
-
-if TYPE_CHECKING:
-    from autograder.kit.evidence import Evidence, Part
+from autograder.kit.evidence import Evidence, Part, Reference
+from autograder.kit.model import Advice, Bench, Mistake
 
 
 class Recipe:
@@ -48,3 +44,21 @@ def test_a_place_that_the_recipe_has_not_is_an_error() -> None:
     draft.mistake("one", before="blind")(lambda *_: False)
     with pytest.raises(ValueError, match="no mistake blind"):
         draft.exercise()
+
+
+@pytest.mark.parametrize(
+    ("found", "text"),
+    [
+        (True, "It is True in rolling."),
+        (7, "It is 7 in rolling."),
+        (0, None),
+        (None, None),
+        (Advice("Its own words.", ""), "Its own words."),
+    ],
+    ids=["true", "a value", "a value that is false", "nothing", "advice"],
+)
+def test_a_text_may_quote_what_was_found(found: object, text: str | None) -> None:
+    draft = Draft("lab.it", "", "", Recipe())
+    draft.knows("usual", lambda *_: found, "It is {} in {seen.name}.")
+    advice = draft.exercise().mistakes[0].recognise(Evidence([Part("rolling")], Reference("lab.it", {})))
+    assert (advice and advice.text) == text
