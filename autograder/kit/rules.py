@@ -29,11 +29,17 @@ class Rule(Generic[View, Given, Made]):
     made: Callable[[View], Sequence[Made]]
     rule: Callable[[Sequence[Given]], Sequence[Made]]
 
-    def finding(self, seen: View, _: View) -> Finding:
-        """A criterion: it was given something, and made of it what the rule makes."""
+    def finding(self, seen: View, expected: View) -> Finding:
+        """A criterion: it was given something, and made of it what the rule makes.
+
+        Where it was given nothing, the card says what the reference solution makes, in place of "expected: nothing".
+        """
         given, made = self.given(seen), list(self.made(seen))
+        if not given:
+            usual = self.rule(self.given(expected))
+            return Finding(False, f"such as {_in_words(usual)}", _in_words(made))
         due = list(self.rule(given))
-        return Finding(bool(given) and made == due, _in_words(due), _in_words(made))
+        return Finding(made == due, _in_words(due), _in_words(made))
 
     def taken_for(self, wrong: Callable[[Sequence[Given]], Sequence[Made]]) -> Callable[[View, View], bool]:
         """A mistake: all that it made is what a wrong rule makes, and not what the right one does.

@@ -52,3 +52,8 @@ def test_the_card_says_what_was_due_and_what_came() -> None:
     seen = run([2, 3], [4])
     finding = RULE.finding(seen, seen)
     assert (finding.expected, finding.seen) == ("4, 6", "4")
+
+
+def test_where_nothing_was_given_the_card_says_what_the_reference_made() -> None:
+    finding = RULE.finding(run([], []), run([2, 3], [4, 6]))
+    assert (finding.passed, finding.expected, finding.seen) == (False, "such as 4, 6", "nothing")
