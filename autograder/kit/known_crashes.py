@@ -177,13 +177,21 @@ KNOWN = (
         "message_type",
         r"AttributeError: type object '(?P<got>\w+)' has no attribute '_TYPE_SUPPORT'",
         "The type of a message or a service is needed here, and your code gives a value of the type {got}.",
-        "Import the type, and write its name without quotation marks: create_publisher(String, 'topic', 10).",
+        "First the type, without quotation marks, then the name: create_publisher(String, 'topic', 10), "
+        "ActionServer(self, Fibonacci, 'fibonacci', ...).",
     ),
     Crash(
         "request_not_instantiated",
         r"(?:Service|Action|Interface)\w* classes can not be instantiated",
         "The type of a service or an action only holds its parts together: no object can be made of it.",
         "Make the part that you need, such as AddTwoInts.Request() or Fibonacci.Goal().",
+    ),
+    Crash(
+        "raw_value_published",
+        r"TypeError: Expected <class '[\w.]+', got <class '[\w.]+\.Metaclass_(?P<type>\w+)'>",
+        "What your code published is the type {type} itself; a message of this type is expected.",
+        "Write parentheses after the type: msg = {type}(). In a notebook, then choose Kernel, Restart Kernel and Run "
+        "All Cells: a field that was set on the type itself stays there.",
     ),
     Crash(
         "raw_value_published",
@@ -265,9 +273,24 @@ KNOWN = (
         "In an action's feedback callback the fields are one level down: msg.feedback.partial_sequence.",
     ),
     Crash(
+        "field_type",
+        r"AttributeError: '(?P<type>\w+)' object attribute '(?P<field>\w+)' is read-only",
+        "The field {field} was set on the type {type} itself, by this code or by an older version of it. Now no "
+        "message of this type can be filled any more.",
+        "Write parentheses after each {type} that makes a message: msg = {type}(). Then choose Kernel, Restart Kernel "
+        "and Run All Cells: only this makes the type whole again.",
+    ),
+    Crash(
         "field_typo",
-        r"AttributeError: '(?:String|U?Int\d+|Vector3"
-        r"|\w+_(?:Request|Response|Goal|Result|Feedback))' object has no attribute '(?P<name>\w+)'"
+        r"AttributeError: '(?P<type>\w+)_(?P<part>Request|Response|Goal|Result|Feedback)' object has no attribute "
+        r"'(?P<name>\w+)'",
+        "The {part} of {type} has no field called {name}.",
+        "`ros2 interface show` lists the fields: write the name exactly as it is there, and look whether it belongs to "
+        "another part.",
+    ),
+    Crash(
+        "field_typo",
+        r"AttributeError: '(?:String|U?Int\d+|Vector3)' object has no attribute '(?P<name>\w+)'"
         r"|Invalid arguments passed to constructor: '?(?P<keyword>\w+(?:, \w+)*)",
         "The message has no field called {name}{keyword}.",
         "`ros2 interface show` lists the fields of a type: write the name exactly as it is there.",

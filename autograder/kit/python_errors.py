@@ -10,8 +10,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import re2
 
+from autograder.kit.python_names import MARKS, NAMES
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from autograder.kit.python_names import Row
 
 
 class Meaning(NamedTuple):
@@ -26,23 +30,6 @@ class Meaning(NamedTuple):
     next_step: str
 
 
-Row = tuple[str, str, str]
-"""A pattern that is searched in a traceback, and the two texts, which may name its groups."""
-
-_MARKS = r"\n(?:[ ~^]*\n)?"
-"""From a line of code to what Python says of it: perhaps a line of marks below the code."""
-_OWN = r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute '(?P<name>\w+)'"
-_IMPORTED_FROM = {
-    "action_msgs.msg": "GoalStatus",
-    "geometry_msgs.msg": "Twist",
-    "rclpy.action": "ActionClient|ActionServer|CancelResponse|GoalResponse",
-    "rclpy.callback_groups": "MutuallyExclusiveCallbackGroup|ReentrantCallbackGroup",
-    "rclpy.executors": "ExternalShutdownException|MultiThreadedExecutor|SingleThreadedExecutor",
-    "rclpy.node": "Node",
-    "rclpy.qos": "DurabilityPolicy|QoSProfile|ReliabilityPolicy",
-    "std_msgs.msg": "String",
-}
-"""The module of each name that beginners import from another one, or forget to import."""
 _READS = r"^(?:SyntaxError|IndentationError|TabError): "
 
 READING: Sequence[Row] = (
@@ -113,6 +100,11 @@ READING: Sequence[Row] = (
         "Indent it as the other lines of its method.",
     ),
     (
+        rf"{_READS}incomplete input",
+        "The cell ends in the middle of something.",
+        "Close each bracket and each quotation mark that you have opened, or write the line that is missing.",
+    ),
+    (
         _READS,
         "",
         "Go to the line that the message names; a bracket, a quote, a colon or the indentation is off there or just "
@@ -122,127 +114,40 @@ READING: Sequence[Row] = (
 """Python's words about a text that it cannot read."""
 
 RUNNING: Sequence[Row] = (
-    *(
-        (
-            rf"^(?:NameError: name|ImportError: cannot import name) '(?P<name>{names})'",
-            f"{{name}} comes from the module {module}.",
-            f"Write `from {module} import {{name}}` at the top of the program. In a notebook, run the cell with the "
-            "imports.",
-        )
-        for module, names in _IMPORTED_FROM.items()
-    ),
-    (
-        r"^ImportError: cannot import name",
-        "",
-        "Compare the import with the lab's text, letter by letter: is it .msg, .srv or .action, and are the capitals "
-        "the same?",
-    ),
-    (
-        rf"^ +self\.(?P<name>\w+) == .*{_MARKS}AttributeError: '[A-Z]\w*' object has no attribute",
-        "Two equals signs compare, so self.{name} gets no value.",
-        "Write a single one: self.{name} = ...",
-    ),
-    (
-        r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute 'publish'",
-        "A node cannot publish by itself: its publisher does.",
-        "Keep what create_publisher returns, self.publisher = self.create_publisher(...), and call "
-        "self.publisher.publish(msg).",
-    ),
-    (
-        rf"^{_OWN}\. Did you mean: '(?P<meant>\w+)'",
-        "{class} has nothing called {name}, and has {meant}.",
-        "If that is what you mean, write {meant}. If {name} is a value of your own, set self.{name} in __init__.",
-    ),
-    (
-        r"^ +.*\bspin\w*\((?P<what>\w+)[,)].*\n(?:.*\n)*AttributeError: '(?P<class>Client|ActionClient|Publisher"
-        r"|Service|Timer|Future)' object has no attribute",
-        "Only a node can be spun, and {what} is a {class}.",
-        "Give the spin your node: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0).",
-    ),
-    (
-        r"AttributeError: 'ServerGoalHandle' object has no attribute 'order'",
-        "The goal handle has the goal in its attribute request.",
-        "Write goal_handle.request.order.",
-    ),
-    (
-        r"AttributeError: '(?P<class>list|dict|tuple|set|str|bytes|bool|int|float|\w+GoalHandle|Publisher|Subscription"
-        r"|Timer|Client|Service|ActionClient|ActionServer|RcutilsLogger)' object has no attribute '(?P<name>\w+)'",
-        "The value before .{name} is a {class} here, which has nothing called {name}.",
-        "Look at the line that sets it: it may be another value than you mean. If it is the right one, compare the "
-        "name, letter by letter.",
-    ),
-    (
-        r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>(?:create|declare|get)_\w+)'",
-        "A node has no method {name}.",
-        "Compare the spelling: create_publisher, create_subscription, create_timer, create_service, create_client, "
-        "get_logger.",
-    ),
-    (
-        rf"^ +.*(?:create_\w+|ActionServer|ActionClient|\w*callback\w*)\(?.*self\..*{_MARKS}{_OWN}",
-        "{class} has no method {name} at this line.",
-        "Write def {name} in the class, spelled the same and indented by four spaces, like def __init__: indented "
-        "further, it is only a part of the method above.",
-    ),
-    (
-        rf"^{_OWN}",
-        "Nothing has set self.{name} so far.",
-        "Set it in __init__, above the line that needs it, and write self. before it there, too: a variable without "
-        "self. is forgotten at the end of its method. If it is a method, compare its name and its indentation.",
-    ),
-    (
-        r"AttributeError: '(?:builtin_function_or_method|function|method)' object has no attribute '(?P<name>\w+)'",
-        "What is before .{name} is a method without its parentheses, so it was not called.",
-        "Write the parentheses after the method's name, as in self.get_logger().info(...).",
-    ),
-    (
-        r"AttributeError: 'NoneType' object has no attribute '(?P<name>\w+)'",
-        "The value before .{name} is None: it was not set yet, or the function that should give it has no return.",
-        "Look where it gets its value, and whether that line has run before this one.",
-    ),
-    (
-        r"AttributeError: partially initialized module '(?P<name>[\w.]+)'",
-        "A file of yours is called like the module {name}, and Python imports that instead.",
-        "Give your file another name.",
-    ),
-    (
-        r"AttributeError: module '(?P<module>[\w.]+)' has no attribute '(?P<name>\w+)'",
-        "The module {module} has nothing called {name}.",
-        "Compare the name with the lab's text, letter by letter.",
-    ),
-    (
-        r"^(?:UnboundLocalError: )(?:cannot access local variable|local variable) '(?P<name>\w+)'",
-        "Without self. before it, {name} is a variable of this method alone, and has no value yet.",
-        "If it is a value of the node, write self.{name}, here and in all other lines that use it.",
-    ),
-    (
-        r"^NameError: name '(?P<name>[A-Z]\w*)' is not defined",
-        "Python does not know {name}: it was never imported or defined, or the cell that does so has not run.",
-        "Compare the spelling. Run the notebook's cells from the top; a program needs the import in its own file.",
-    ),
-    (
-        rf"^ +.*\bcreate_\w+\(.*\w\(.*\b(?:request|response|message|msg|goal_handle|future)\b.*\).*{_MARKS}"
-        r"NameError: name '(?P<name>request|response|message|msg|goal_handle|future)' is not defined",
-        "Your code calls the method in this line, but only ROS can give it {name}, when it calls the method later.",
-        "Write only the name of the method, without parentheses and arguments, as in self.on_message.",
-    ),
-    (
-        r"^NameError: name '(?P<name>a|b|c|order)' is not defined",
-        "Python does not know {name}.",
-        "If {name} is a field of the request or the goal, write what it belongs to before it, with a dot: "
-        "request.{name}, or goal_handle.request.{name} in an action. Otherwise give {name} a value above that line.",
-    ),
-    (
-        r"^NameError: name '(?P<name>\w+)' is not defined",
-        "Python does not know {name}.",
-        "If it belongs to your node, as a value or a method, write self.{name}. If a cell above defines it, run that "
-        "cell; in a program, copy it into this file, above the line. If it is neither, compare the spelling.",
-    ),
+    *NAMES,
     (
         r"^TypeError: (?:can only concatenate str|unsupported operand type\(s\) for \+=?: '(?:int|float|str)' and "
         r"'(?:int|float|str)')",
         "A string and a number are added.",
         "To join them to a string, write f'... {{number}}'. To add numbers, turn the string into a number "
         "first: int(...).",
+    ),
+    (
+        r"^TypeError: (?:unsupported operand type\(s\) for|'[<>]=?' not supported between).*'\w+_(?P<part>Request"
+        r"|Response|Goal|Result|Feedback)'",
+        "A whole {part} is used as if it were a number.",
+        "Name its field, with a dot, as in request.a, response.sum or goal.order.",
+    ),
+    (
+        r"^TypeError: 'NoneType' object is not (?:iterable|subscriptable)",
+        "A list is needed here, and the value is None.",
+        "append changes the list and returns None: write numbers.append(...) alone, without numbers = before it. If "
+        "the value comes from a function of yours, look for a missing return.",
+    ),
+    (
+        r"^TypeError: can only concatenate list",
+        "A list and something that is no list are joined with +.",
+        "To put one more value at the end of a list, write numbers.append(value).",
+    ),
+    (
+        r"^TypeError: '(?P<kind>method|function|builtin_function_or_method)' object is not (?:subscriptable|iterable)",
+        "A method is used as if it were its answer.",
+        "Write parentheses after its name: that calls it.",
+    ),
+    (
+        r"^TypeError: '(?P<kind>[A-Z]\w*_?\w*)' object is not (?:subscriptable|iterable)",
+        "A {kind} is no list and no dictionary.",
+        "Take its field, with a dot: message.data, request.a, answer.result.sequence.",
     ),
     (
         r"^TypeError: '[<>]=?' not supported between instances of '\w+' and '\w+'",
@@ -260,9 +165,11 @@ RUNNING: Sequence[Row] = (
         "Give it in seconds: create_timer(0.5, self.say_hello).",
     ),
     (
-        r"^TypeError: '(?P<kind>int|float|str|list|String|Publisher|Timer|Client|Service)' object is not callable",
-        "A {kind} is called as if it were a method: perhaps a value of yours has the name of a method.",
-        "Leave out the parentheses, or give the value another name.",
+        r"^TypeError: '(?P<kind>int|float|str|bool|list|dict|array|String|Publisher|Timer|Client|Service)' object "
+        r"is not callable",
+        "A value of the type {kind} is called as if it were a method.",
+        "To read the value, leave out the parentheses; to set it, write = after its name. A list or a dictionary takes "
+        "square brackets: names[key]. If you mean a method of this name, give the value another name.",
     ),
     (
         r"^TypeError: (?:\w+\.)?publish\(\) missing",
@@ -276,7 +183,7 @@ RUNNING: Sequence[Row] = (
         "Name the field between the parentheses, as in String(data='hello'), or set it in the next line.",
     ),
     (
-        rf"^ +\w+_callback=(?P<name>\w+)\(\),?{_MARKS}TypeError: \w+\(\) missing",
+        rf"^ +(?:.*[ (])?\w+_callback=(?P<name>\w+)\(\).*{MARKS}TypeError: \w+\(\) missing",
         "The parentheses after {name} call it in this line, without the arguments that ROS would give it.",
         "Write only its name, {name}, without parentheses: ROS calls the function when it is time.",
     ),
@@ -315,6 +222,25 @@ RUNNING: Sequence[Row] = (
         r"^TypeError: spin\(\) missing 1 required positional argument: 'node'",
         "rclpy.spin has to know which node it spins.",
         "Write rclpy.spin(node).",
+    ),
+    (
+        r"^TypeError: __init__\(\): incompatible constructor arguments",
+        "One of the arguments in this line has the wrong type.",
+        "First the type, then the name in quotation marks, then the method without parentheses: "
+        "create_service(AddTwoInts, 'add_two_ints', self.add).",
+    ),
+    (
+        r"^TypeError: (?P<what>ActionServer|ActionClient)\.__init__\(\) missing \d+ required positional arguments?: "
+        r"(?:.*')?action_name'",
+        "The node is missing: it is the first argument of every {what}.",
+        "Write self first: {what}(self, Fibonacci, 'fibonacci', ...).",
+    ),
+    (
+        r"^TypeError: (?:\w+\.)*?(?P<what>\w+)(?:\.__init__)?\(\) missing \d+ required positional arguments?: "
+        r"(?P<names>.+)",
+        "{what} got less than it needs: {names} is missing.",
+        "Give it one value for each of its arguments, in their order. Its first line, def ..., or the lab's text names "
+        "them.",
     ),
     (
         r"Invalid(?:Topic|Service|Node|Namespace)\w*NameException|InvalidNamespaceException",
@@ -367,6 +293,12 @@ RUNNING: Sequence[Row] = (
         r"^TypeError: '(?P<kind>\w+)' object cannot be interpreted as an integer",
         "A {kind} was given where a whole number belongs.",
         "Leave out the str(...) or the quotation marks around it; int(...) makes a whole number of a string.",
+    ),
+    (
+        r"^TypeError: (?:\w+\.)?(?P<what>publish\w*)\(\) got an unexpected keyword argument '(?P<name>\w+)'",
+        "{what} takes a message, and {name} is a field of one.",
+        "Put the field into a message: publish(String(data='hello')), or "
+        "publish_feedback(Fibonacci.Feedback(partial_sequence=numbers)).",
     ),
     (
         r"^TypeError: (?:\w+\.)*?(?P<what>\w+)(?:\.__init__)?\(\) got an unexpected keyword argument '(?P<name>\w+)'",

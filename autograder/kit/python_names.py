@@ -1,0 +1,215 @@
+"""What Python says of a name or an attribute that it does not find: the rows of ``python_errors`` about them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+Row = tuple[str, str, str]
+"""A pattern that is searched in a traceback, and the two texts, which may name its groups."""
+
+MARKS = r"\n(?:[ ~^]*\n)?"
+"""From a line of code to what Python says of it: perhaps a line of marks below the code."""
+_OWN = r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute '(?P<name>\w+)'"
+_TYPE = r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>[A-Z]\w*)'"
+_MODULES = (
+    "action_msgs|geometry_msgs|math|my_robot_interfaces|random|rclpy|std_msgs|std_srvs|sys|threading|time"
+)
+_IMPORTED_FROM = {
+    "action_msgs.msg": "GoalStatus",
+    "geometry_msgs.msg": "Twist",
+    "rclpy.action": "ActionClient|ActionServer|CancelResponse|GoalResponse",
+    "rclpy.callback_groups": "MutuallyExclusiveCallbackGroup|ReentrantCallbackGroup",
+    "rclpy.executors": "ExternalShutdownException|MultiThreadedExecutor|SingleThreadedExecutor",
+    "rclpy.node": "Node",
+    "rclpy.qos": "DurabilityPolicy|QoSProfile|ReliabilityPolicy",
+    "std_msgs.msg": "String",
+}
+"""The module of each name that beginners import from another one, or forget to import."""
+
+NAMES: Sequence[Row] = (
+    *(
+        (
+            rf"^(?:NameError: name|ImportError: cannot import name) '(?P<name>{names})'",
+            f"{{name}} comes from the module {module}.",
+            f"Write `from {module} import {{name}}` at the top of the program. In a notebook, run the cell with the "
+            "imports.",
+        )
+        for module, names in _IMPORTED_FROM.items()
+    ),
+    (
+        r"^ImportError: cannot import name",
+        "",
+        "Compare the import with the lab's text, letter by letter: is it .msg, .srv or .action, and are the capitals "
+        "the same?",
+    ),
+    (
+        rf"^ +self\.(?P<name>\w+) == .*{MARKS}AttributeError: '[A-Z]\w*' object has no attribute",
+        "Two equals signs compare, so self.{name} gets no value.",
+        "Write a single one: self.{name} = ...",
+    ),
+    (
+        r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute 'publish'",
+        "A node cannot publish by itself: its publisher does.",
+        "Keep what create_publisher returns, self.publisher = self.create_publisher(...), and call "
+        "self.publisher.publish(msg).",
+    ),
+    (
+        r"AttributeError: 'NoneType' object has no attribute '(?P<name>append)'",
+        "The list before .{name} is None.",
+        "append changes the list and returns None: write numbers.append(...) alone, without numbers = before it.",
+    ),
+    (
+        r"AttributeError: 'NoneType' object has no attribute '(?P<name>\w+)'",
+        "The value before .{name} is None: it was not set yet, or the function that should give it has no return.",
+        "Look where it gets its value, and whether that line has run before this one.",
+    ),
+    (
+        rf"^{_OWN}\. Did you mean: '(?P<meant>\w+)'",
+        "{class} has nothing called {name}, and has {meant}.",
+        "If that is what you mean, write {meant}. If {name} is a value of your own, set self.{name} in __init__.",
+    ),
+    (
+        r"^ +.*\bspin\w*\((?P<what>\w+)[,)].*\n(?:.*\n)*AttributeError: '(?P<class>Client|ActionClient|Publisher"
+        r"|Service|Timer|Future)' object has no attribute",
+        "Only a node can be spun, and {what} is a {class}.",
+        "Give the spin your node: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0).",
+    ),
+    (
+        r"AttributeError: 'ServerGoalHandle' object has no attribute 'order'",
+        "The goal handle has the goal in its attribute request.",
+        "Write goal_handle.request.order.",
+    ),
+    (
+        r"AttributeError: '(?P<class>list|dict|tuple|set|str|bytes|bool|int|float|\w+GoalHandle|Publisher|Subscription"
+        r"|Timer|Client|Service|ActionClient|ActionServer|RcutilsLogger)' object has no attribute '(?P<name>\w+)'",
+        "The value before .{name} is a {class} here, which has nothing called {name}.",
+        "Look at the line that sets it: it may be another value than you mean. If it is the right one, compare the "
+        "name, letter by letter.",
+    ),
+    (
+        r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>(?:create|declare|get)_\w+)'",
+        "A node has no method {name}.",
+        "Compare the spelling: create_publisher, create_subscription, create_timer, create_service, create_client, "
+        "get_logger. Actions have no such method: ActionServer(self, ...) and ActionClient(self, ...) make them.",
+    ),
+    (
+        rf"^{_TYPE}",
+        "{name} is a name of the program, and not of the node.",
+        "Leave out the self. before it: write {name}.",
+    ),
+    (
+        rf"^ +.*(?:create_\w+|ActionServer|ActionClient|\w*callback\w*)\(?.*self\..*{MARKS}{_OWN}",
+        "{class} has no method {name} at this line.",
+        "Write def {name} in the class, spelled the same and indented by four spaces, like def __init__: indented "
+        "further, it is only a part of the method above. If {name} is a function outside of the class, leave out self.",
+    ),
+    (
+        r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>wait_for_(?:service|server)|call_async"
+        r"|send_goal_async)'",
+        "A node has no method {name}: its client has.",
+        "Call it on what create_client(...) or ActionClient(...) gave you, as in client.wait_for_service(...). Where a "
+        "node keeps its client in an attribute, name both: client.actions.wait_for_server(...).",
+    ),
+    (
+        r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>cancel_goal_async|get_result_async|accepted"
+        r"|publish_feedback|is_cancel_requested)'",
+        "A node has no {name}: the handle of a goal has.",
+        "Write the goal handle before it: goal_handle.{name}, or self.goal_handle.{name} where the node keeps it.",
+    ),
+    (
+        rf"^{_OWN}",
+        "{class} has nothing called {name} so far.",
+        "A value: Set it in __init__, above the line that needs it, and write self. before it there, too, or it is "
+        "forgotten at the end of the method. A method: compare its name and its indentation. A function outside of "
+        "the class: leave out what is before its name, and the dot.",
+    ),
+    (
+        r"AttributeError: '(?:builtin_function_or_method|function|method)' object has no attribute '(?P<name>\w+)'",
+        "What is before .{name} is a method without its parentheses, so it was not called.",
+        "Write the parentheses after the method's name, as in self.get_logger().info(...).",
+    ),
+    (
+        r"^AttributeError: (?:type object '\w+' has no attribute ')?(?P<name>\w+)'?(?:\.|$)",
+        "There is no constant or attribute {name} there.",
+        "Compare the name with the lab's text, letter by letter: constants have capitals only, such as "
+        "GoalResponse.ACCEPT.",
+    ),
+    (
+        r"AttributeError: partially initialized module '(?P<name>[\w.]+)'",
+        "A file of yours is called like the module {name}, and Python imports that instead.",
+        "Give your file another name.",
+    ),
+    (
+        r"AttributeError: module '(?P<module>[\w.]+)' has no attribute '(?P<name>\w+)'",
+        "The module {module} has nothing called {name}.",
+        "Compare the name with the lab's text, letter by letter.",
+    ),
+    (
+        r"^(?:UnboundLocalError: )(?:cannot access local variable|local variable) '(?P<name>\w+)'",
+        "Without self. before it, {name} is a variable of this method alone, and has no value yet.",
+        "If it is a value of the node, write self.{name}, here and in all other lines that use it.",
+    ),
+    (
+        rf"^ +.*\bcreate_\w+\(.*\w\(.*\b(?:request|response|message|msg|goal_handle|future)\b.*\).*{MARKS}"
+        r"NameError: name '(?P<name>request|response|message|msg|goal_handle|future)' is not defined",
+        "Your code calls the method in this line, but only ROS can give it {name}, when it calls the method later.",
+        "Write only the name of the method, without parentheses and arguments, as in self.on_message.",
+    ),
+    (
+        r"^NameError: name 'self' is not defined",
+        "Python knows self only inside a method whose first argument is self.",
+        "In a method write self first between its parentheses, def say_hello(self), and indent its lines by eight "
+        "spaces. In a function there is no self: write the name that the node has there, such as node or client.",
+    ),
+    (
+        r"^NameError: name '(?P<name>ACCEPT|REJECT)' is not defined",
+        "{name} is a constant of GoalResponse and of CancelResponse.",
+        "Write GoalResponse.{name} where a goal is answered, and CancelResponse.{name} where a cancel request is.",
+    ),
+    (
+        rf"^NameError: name '(?P<name>{_MODULES})' is not defined",
+        "{name} is a module, and it is not imported.",
+        "Write import {name} at the top of the program, or run the cell with the imports. A type that has an import of "
+        "its own is written alone: String in place of std_msgs.msg.String.",
+    ),
+    (
+        r"^NameError: name '(?P<name>\w+)' is not defined\. Did you mean: '(?P<meant>self\.\w+)'",
+        "Python does not know {name}; the node has it.",
+        "To use it, write {meant}.",
+    ),
+    (
+        rf"^ +.*(?:\bcreate_(?:publisher|subscription|service|client)\([\w.]+, *|\bAction(?:Server|Client)\(self, *"
+        rf"[\w.]+, *|\b__init__\()[a-z]\w*[,)].*{MARKS}NameError: name '(?P<name>[a-z]\w*)' is not defined",
+        "Python does not know {name}.",
+        "If {name} is the name of a node, a topic, a service or an action, put it in quotation marks. If it is a "
+        "method of your class, write self.{name}.",
+    ),
+    (
+        r"^NameError: name '(?P<name>a|b|c|order)' is not defined",
+        "Python does not know {name}.",
+        "If {name} is a field of the request or the goal, write what it belongs to before it, with a dot: "
+        "request.{name}, or goal_handle.request.{name} in an action. Otherwise give {name} a value above that line.",
+    ),
+    (
+        r"^NameError: name '(?P<name>\w+)' is not defined\. Did you mean: '(?P<meant>\w+)'",
+        "Python does not know {name}, and knows {meant}.",
+        "If that is what you mean, write {meant}. If {name} belongs to your node, write self.{name}. If a cell defines "
+        "it, run that cell.",
+    ),
+    (
+        r"^NameError: name '(?P<name>[A-Z]\w*)' is not defined",
+        "Python does not know {name}: it was never imported or defined, or the cell that does so has not run.",
+        "Compare the spelling. Run the notebook's cells from the top; a program needs the import in its own file.",
+    ),
+    (
+        r"^NameError: name '(?P<name>\w+)' is not defined",
+        "Python does not know {name}.",
+        "If it belongs to your node, as a value or a method, write self.{name}; in a function, which has no self, "
+        "write the node's name in place of self. If a cell above defines it, run that cell; in a program, copy it into "
+        "this file, above the line. If it is neither, compare the spelling.",
+    ),
+)
+"""Python's words about names and attributes; the first row that fits wins."""
