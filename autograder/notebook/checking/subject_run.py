@@ -15,6 +15,7 @@ from std_msgs.msg import Empty
 
 from autograder.messages.checks import Constructed, Raised, Returned, Started
 from autograder.notebook.cells.cell_output import student_frames
+from autograder.notebook.cells.meant_names import meant_name
 from autograder.notebook.checking.judge_link import MAX_TEXT
 from autograder.notebook.nodes.spin_threads import Failure, SpinThreads
 
@@ -118,8 +119,9 @@ def formatted(error: BaseException) -> str:
     collected = getattr(error, "errors", ())
     if collected and isinstance(getattr(collected[0], "error", None), BaseException):
         error = collected[0].error
-    shown = traceback.format_exception(type(error), error, student_frames(error.__traceback__))
-    text = "".join(shown).strip()
+    trace = student_frames(error.__traceback__)
+    shown = traceback.format_exception(type(error), error, trace)
+    text = "".join(shown).strip() + meant_name(error, trace)
     # The beginning says where it began, the end what was raised.
     return text if len(text) <= MAX_TEXT else f"{text[: MAX_TEXT // 2]}\n{text[-MAX_TEXT // 2 + 1 :]}"
 

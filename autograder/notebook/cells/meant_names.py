@@ -1,0 +1,44 @@
+"""The name that a student may have meant, as Python says it where it prints an error itself."""
+
+from __future__ import annotations
+
+import builtins
+import difflib
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+_NEAR = 0.75
+"""From 0 to 1, how much of two names is the same; ``sefl`` and ``self`` have 0.75 in common."""
+
+
+def meant_name(error: BaseException, trace: TracebackType | None) -> str:
+    """``. Did you mean: 'command'?``; empty where no name is near, or where the error says it already.
+
+    From Python 3.12 on ``traceback`` says it. Before, only a program that ends with the error does.
+
+    Args:
+        error: A NameError or an AttributeError; any other has no such name.
+        trace: Where it came up.
+    """
+    missing = getattr(error, "name", None)
+    if sys.version_info >= (3, 12) or not missing or not isinstance(error, (NameError, AttributeError)):
+        return ""
+    if isinstance(error, AttributeError):
+        known = _attributes(error.obj)
+    else:
+        while trace is not None and trace.tb_next is not None:
+            trace = trace.tb_next
+        local = trace.tb_frame.f_locals if trace is not None else {}
+        if missing in _attributes(local.get("self")):
+            return f". Did you mean: 'self.{missing}'?"
+        known = [*local, *(trace.tb_frame.f_globals if trace is not None else {}), *dir(builtins)]
+    near = difflib.get_close_matches(missing, [name for name in known if name[:1] != "_"], 1, _NEAR)
+    return f". Did you mean: '{near[0]}'?" if near else ""
+
+
+def _attributes(value: object) -> list[str]:
+    """The names of a value's attributes; none of its own code is asked for them."""
+    return [*dir(type(value)), *getattr(value, "__dict__", {})]
