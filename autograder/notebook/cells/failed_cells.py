@@ -9,12 +9,15 @@ from __future__ import annotations
 import dis
 import re  # noqa: TID251  (a student's cells, in their own kernel)
 from dataclasses import dataclass
+from pathlib import Path
 from types import CodeType, FunctionType
 from typing import Any
 
 from autograder.notebook.cells.cell_output import last_student_line, notebook_shell
 
-_DEFINED = re.compile(r"^(?:class|(?:async\s+)?def)\s+(\w+)", re.MULTILINE)
+_ENTRY_POINTS = "entry_points"
+"""The list that a cell hands to ``package_files.add_entry_points``."""
+_DEFINED = re.compile(rf"^(?:(?:class|(?:async\s+)?def)\s+(\w+)|({_ENTRY_POINTS})\s*=)", re.MULTILINE)
 """Also finds names in a cell that Python cannot parse."""
 _CHECKED = r"^[^#\n]*\b(?:check|watch)\(.*\b{}\b"
 
@@ -92,7 +95,7 @@ def _cell(info: Any) -> str:
 
 
 def _defined(source: str) -> set[str]:
-    return set() if source.lstrip().startswith("%%") else set(_DEFINED.findall(source))
+    return set() if source.lstrip().startswith("%%") else {a or b for a, b in _DEFINED.findall(source)}
 
 
 def _named(error: BaseException) -> str:
@@ -118,10 +121,16 @@ class StaleCodeError(Exception):
 def raise_if_stale(subject: Any) -> None:
     """End a check of old code with words that say so; nothing happens outside a notebook.
 
+    A check of files goes on, since they may be right all the same: they can be written in an editor, too.
+
     Raises:
         StaleCodeError: The cell that defines the subject anew, or what it uses, ended with an error.
     """
     if _cells is None:
+        return
+    if isinstance(subject, (str, Path)):
+        if why := _cells.why_missing(_ENTRY_POINTS):
+            print(f"{why} So setup.py does not have them. Correct that cell and run it, then check again.")
         return
     for name in (getattr(subject, "__name__", ""), *sorted(_names_read(subject))):
         if why := _cells.why_missing(name):

@@ -29,6 +29,8 @@ CHECK = "check('lab', Talker)"
 def text_of(output: Any) -> str:
     if output.output_type == "error":
         assert output.ename in {"NameError", "StaleCodeError"}
+    if output.output_type == "stream":
+        return " ".join(output.text.split())
     text = "\n".join(output.traceback) if output.output_type == "error" else output.data["text/plain"]
     return " ".join(text.replace("│", "").split())
 
@@ -42,7 +44,7 @@ def said(run_cells: Callable[..., list[Any]]) -> Callable[..., list[str]]:
             cell.replace("Talker", f"Talker{number}") for number, group in enumerate(groups) for cell in group
         ]
         shown = run_cells(JUDGE, *cells, allow_errors=True)[1:]
-        return [text_of(shown[end - 1][0]) for end in accumulate(map(len, groups))]
+        return [" ".join(map(text_of, shown[end - 1])) for end in accumulate(map(len, groups))]
 
     return run
 
@@ -75,6 +77,19 @@ def test_a_class_that_the_checked_function_uses_must_not_be_older_than_its_cell(
     told = said(*((RIGHT, use, broken, f"check('lab', {name})") for name, use in uses.items()))
     for number, words in enumerate(told):
         assert f"Your cell that defines Talker{number} stopped before Talker{number} was defined" in words
+
+
+def test_a_check_of_files_says_that_the_cell_with_the_entry_points_failed(
+    said: Callable[..., list[str]],
+) -> None:
+    files = "check('lab', 'ros2_ws')"
+    broken = "entry_points = [\n    'talker = my_robot_pkg.talker:main\n]\nprint(entry_points)"
+    told, unbroken = said((broken, files), (broken, "entry_points = []", files))
+    assert "Your cell that defines entry_points" in told
+    assert "SyntaxError in line 2, unterminated string literal" in told
+    assert "So setup.py does not have them" in told
+    assert "the judge was asked" in told
+    assert "So setup.py" not in unbroken
 
 
 def test_any_other_class_is_judged(said: Callable[..., list[str]]) -> None:
