@@ -316,6 +316,15 @@ KNOWN = (
     ),
     Crash(
         "result_read_too_early",
+        r"^ +(?:.*[^\w.])?(?P<what>(?:\w+\.)*goal_handle)\.\w+.*\n(?:[ ~^]*\n)?AttributeError: 'NoneType' object has "
+        r"no attribute '(?:accepted|cancel_goal_async|get_result_async)'",
+        "{what} is None: nothing has kept the handle of the goal there, or it was kept before the answer had arrived, "
+        "or the function that should give it returns nothing.",
+        "Wait until the future of send_goal_async is done, then keep its result in {what}. Where another function "
+        "keeps the handle in an attribute, such as client.goal_handle, call that function first and read the handle there.",
+    ),
+    Crash(
+        "result_read_too_early",
         r"'NoneType' object has no attribute '(?:sum|result|accepted|status|sequence|cancel_goal_async|"
         r"get_result_async|goals_canceling)'",
         "The answer was read before it was there: future.result() is None until the future is done.",

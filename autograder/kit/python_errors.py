@@ -214,6 +214,12 @@ RUNNING: Sequence[Row] = (
         "Put the numbers into the request first: client.call_async(AddTwoInts.Request(a=a, b=b)).",
     ),
     (
+        r"^TypeError: (?:\w+\.)*(?P<what>\w+)\(\) takes (?P<takes>.*\d) positional arguments? but (?P<got>\d+) "
+        r"w\w+ given",
+        "{what} takes {takes} arguments and got {got}; in a method, self is counted as well.",
+        "Its first line, def ..., or the lab's text names its arguments: give it one value for each, in their order.",
+    ),
+    (
         r"^TypeError: (?P<what>AddTwoInts|SetBool|Trigger|Fibonacci|WalkTo)\.__init__\(\) got an unexpected keyword",
         "{what} itself only holds its parts together: the fields are in a part.",
         "Make the part that you need, such as AddTwoInts.Request(a=a, b=b) or Fibonacci.Goal(order=order).",
@@ -238,7 +244,7 @@ RUNNING: Sequence[Row] = (
     (
         r"^TypeError: (?:\w+\.)*?(?P<what>\w+)(?:\.__init__)?\(\) missing \d+ required positional arguments?: "
         r"(?P<names>.+)",
-        "{what} got less than it needs: {names} is missing.",
+        "{what} got less than it needs. Missing: {names}.",
         "Give it one value for each of its arguments, in their order. Its first line, def ..., or the lab's text names "
         "them.",
     ),

@@ -122,9 +122,9 @@ NAMES: Sequence[Row] = (
     (
         rf"^{_OWN}",
         "{class} has nothing called {name} so far.",
-        "A value: Set it in __init__, above the line that needs it, and write self. before it there, too, or it is "
-        "forgotten at the end of the method. A method: compare its name and its indentation. A function outside of "
-        "the class: leave out what is before its name, and the dot.",
+        "If it is a value, set it in __init__, above the line that needs it, with self. before it there, too: without "
+        "self. it is forgotten at the end of the method. If it is a method, compare its name and its indentation. If "
+        "it is a function outside of the class, call it by its name alone: {name}(...).",
     ),
     (
         r"AttributeError: '(?:builtin_function_or_method|function|method)' object has no attribute '(?P<name>\w+)'",

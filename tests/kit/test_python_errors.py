@@ -8,7 +8,7 @@ from autograder.kit.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 
 SAID = {
-    "AttributeError: 'Talker' object has no attribute 'count'": "Set it in __init__",
+    "AttributeError: 'Talker' object has no attribute 'count'": "set it in __init__",
     "AttributeError: 'Talker' object has no attribute 'cuont'. Did you mean: 'count'?": "write count.",
     "AttributeError: 'Talker' object has no attribute 'create_timr'": "Compare the spelling: create_publisher",
     "AttributeError: 'function' object has no attribute 'info'": "Write the parentheses after the method's name",
@@ -27,7 +27,7 @@ SAID = {
     "AttributeError: 'Node' object has no attribute 'wait_for_service'": "its client has",
     "AttributeError: 'FibonacciClient' object has no attribute 'wait_for_server'": "client.actions.wait_for_server",
     "AttributeError: 'CancelingClient' object has no attribute 'cancel_goal_async'": "self.goal_handle.cancel",
-    "AttributeError: 'CancelingClient' object has no attribute 'send_goal'": "leave out what is before its name",
+    "AttributeError: 'CancelingClient' object has no attribute 'send_goal'": "by its name alone: send_goal(...)",
     "AttributeError: 'String' object attribute 'data' is read-only": "Restart Kernel and Run All Cells",
     "AttributeError: 'AddTwoInts_Request' object has no attribute 'sum'": "The Request of AddTwoInts has no field",
     "AttributeError: 'NoneType' object has no attribute 'append'": "without numbers = before it",
@@ -45,6 +45,7 @@ SAID = {
     "TypeError: __init__(): incompatible constructor arguments. Supported are:": "the name in quotation marks",
     "TypeError: ActionServer.__init__() missing 1 required positional argument: 'action_name'": "Write self first",
     "TypeError: ask() missing 3 required positional arguments: 'a', 'b', and 'patience_sec'": "'a', 'b', and",
+    "TypeError: ask() takes 5 positional arguments but 6 were given": "takes 5 arguments and got 6",
     "TypeError: Publisher.publish() got an unexpected keyword argument 'data'": "publish(String(data=",
     "TypeError: Expected <class 'std_msgs.msg._string.String'>, got <class 'std_msgs.msg._string.Metaclass_String'>": (
         "msg = String()"
@@ -132,6 +133,16 @@ def test_the_card_names_what_to_mend(last: str) -> None:
             "self.server = ActionServer(self, Fibonacci, 'fibonacci', execute_callback=self.compute)",
             "AttributeError: 'FibonacciServer' object has no attribute 'compute'",
             "If compute is a function outside of the class",
+        ),
+        (
+            "if not client.goal_handle.accepted:",
+            "AttributeError: 'NoneType' object has no attribute 'accepted'",
+            "client.goal_handle is None",
+        ),
+        (
+            "cancel_future = self.goal_handle.cancel_goal_async()",
+            "AttributeError: 'NoneType' object has no attribute 'cancel_goal_async'",
+            "keep its result in self.goal_handle",
         ),
         ("self.log(message)", "NameError: name 'message' is not defined", "write self.message"),
     ],
