@@ -321,7 +321,7 @@ KNOWN = (
         "{what} is None: nothing has kept the handle of the goal there, or it was kept before the answer had arrived, "
         "or the function that should give it returns nothing.",
         "Wait until the future of send_goal_async is done, then keep its result in {what}. Where another function "
-        "keeps the handle in an attribute, such as client.goal_handle, call that function first and read the handle there.",
+        "keeps the handle in an attribute, such as client.goal_handle, call that one first and read the handle there.",
     ),
     Crash(
         "result_read_too_early",
