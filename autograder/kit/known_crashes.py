@@ -177,8 +177,8 @@ KNOWN = (
         "message_type",
         r"AttributeError: type object '(?P<got>\w+)' has no attribute '_TYPE_SUPPORT'",
         "The type of a message or a service is needed here, and your code gives a value of the type {got}.",
-        "First the type, without quotation marks, then the name: create_publisher(String, 'topic', 10), "
-        "ActionServer(self, Fibonacci, 'fibonacci', ...).",
+        "Import the type, and write its name without quotation marks, before that of the topic, service or action: "
+        "create_publisher(String, 'topic', 10), ActionServer(self, Fibonacci, 'fibonacci', ...).",
     ),
     Crash(
         "request_not_instantiated",

@@ -323,7 +323,7 @@ class Hears:
         return Advice(
             "Your node is there with its publisher, but no message arrives while the judge listens.",
             "If your cell still has its TODO, begin there. Let the timer's method call publish(...), with the message "
-            "between the parentheses: a log line is not a message. The timer takes its period in seconds, "
+            "between the parentheses: a log line is not a message. Give the timer its period in seconds, "
             f"{reference_period(evidence.reference):g} and not {1000 * reference_period(evidence.reference):g}.",
         )
 
