@@ -188,7 +188,7 @@ KNOWN = (
     ),
     Crash(
         "raw_value_published",
-        r"TypeError: Expected <class '[\w.]+', got <class '[\w.]+\.Metaclass_(?P<type>\w+)'>",
+        r"TypeError: Expected <class '[\w.]+'>, got <class '[\w.]+\.Metaclass_(?P<type>\w+)'>",
         "What your code published is the type {type} itself; a message of this type is expected.",
         "Write parentheses after the type: msg = {type}(). In a notebook, then choose Kernel, Restart Kernel and Run "
         "All Cells: a field that was set on the type itself stays there.",
@@ -329,7 +329,8 @@ KNOWN = (
         r"get_result_async|goals_canceling)'",
         "The answer was read before it was there: future.result() is None until the future is done.",
         "Wait first: spin_until_future_complete(node, future, timeout_sec=5.0), or go on in "
-        "future.add_done_callback(...).",
+        "future.add_done_callback(...). If your code does wait, no answer came in time: wait for the service before "
+        "you call it, with client.wait_for_service(timeout_sec=5.0), and look at future.done() before you read.",
     ),
     Crash(
         "module_not_found",
