@@ -39,9 +39,9 @@ def test_the_first_notebook_lists_them_all() -> None:
 
 @dataclass(frozen=True)
 class Row:
-    """A row of the table: a part of the text, and where it is."""
+    """A row of the table: one or more parts of the text, and where they are."""
 
-    number: int
+    numbers: tuple[int, ...]
     part: str
     chapter: Path
     heading: str
@@ -51,22 +51,24 @@ class Row:
 def rows() -> list[Row]:
     """The rows of the table that says where each part of the text is."""
     found = re.findall(
-        r"^\| (\d+) \| (.+?) \| \[[^\]]+\]\(\.\./(chapters/\S+)\) \| (.+?) \| (.*)\|$",
+        r"^\| (\d+)(?:–(\d+))? \| (.+?) \| (?:\[[^\]]+\]\(\.\./(chapters/\S+)\) )?\| (.+?) \| (.*)\|$",
         PAGE,
         flags=re.MULTILINE,
     )
-    return [
-        Row(int(number), part, ROOT / chapter, heading, tuple(re.findall(r"`([^`]+)`", cells)))
-        for number, part, chapter, heading, cells in found
-    ]
+    made = []
+    chapter = ""
+    for first, last, part, linked, heading, cells in found:
+        chapter = linked or chapter  # an empty one is that of the row above
+        numbers = tuple(range(int(first), int(last or first) + 1))
+        made.append(Row(numbers, part, ROOT / chapter, heading, tuple(re.findall(r"`([^`]+)`", cells))))
+    return made
 
 
 def test_the_table_has_every_part_of_the_text() -> None:
-    assert [row.number for row in rows()] == list(range(1, PARTS_OF_THE_TEXT + 1))
-    assert len({row.part for row in rows()}) == PARTS_OF_THE_TEXT
+    assert [number for row in rows() for number in row.numbers] == list(range(1, PARTS_OF_THE_TEXT + 1))
 
 
-@pytest.mark.parametrize("row", rows(), ids=lambda row: str(row.number))
+@pytest.mark.parametrize("row", rows(), ids=lambda row: str(row.numbers[0]))
 def test_a_part_of_the_text_is_where_the_table_says(row: Row) -> None:
     """The heading is in the notebook, and the cells are below it, before the next heading of its level."""
     level, below = 0, set[str]()
