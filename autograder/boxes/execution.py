@@ -102,7 +102,7 @@ class Execution:
         seconds: Wall time, start of the kernel included.
         start_seconds: Of these, until kernel and judge were ready.
         as_typed: The places of the cells whose text is too costly to be rendered on a page.
-        crowded_out: It came to a limit that it may well keep when nothing runs beside it: it says nothing then.
+        crowded_out: It came to a limit, or failed, where it may well do better with nothing beside it: it says nothing.
         cpu_seconds: Processor time of what was in the student's boxes; 0 where nobody counts it.
         evidence: What the judge's verdicts follow from, by exercise, as the judge has packed it. Nothing looks into it
             while a class is graded.

@@ -39,12 +39,14 @@ class Report(msgspec.Struct, frozen=True):
         trouble: Why there is no verdict, in words; empty where nobody asked.
         evidence: What the verdict follows from, as :mod:`autograder.judge.verdicts.keeping` packs it; empty where it
             was not asked for.
+        crowded: It did not pass, and that may be because the machine was crowded.
     """
 
     verdict: Verdict | None = None
     reference: str | None = None
     trouble: str = ""
     evidence: bytes = b""
+    crowded: bool = False
 
 
 Order = Open | Close

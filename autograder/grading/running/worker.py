@@ -137,7 +137,9 @@ def _execute(
         patient=patiently,
     )
     short_of_memory = place.guard.reason() is Ended.OUT_OF_MEMORY
-    crowded_out = task.limits.beside and (short_of_memory or a_check_was_stopped(task.cells, execution))
+    crowded_out = task.limits.beside and (
+        short_of_memory or judges.crowded or a_check_was_stopped(task.cells, execution)
+    )
     return replace(
         execution, crowded_out=crowded_out, cpu_seconds=place.guard.cpu_seconds, evidence=judges.evidence
     )
@@ -171,6 +173,7 @@ class _Judges:
 
     Attributes:
         evidence: What the verdicts follow from, by exercise.
+        crowded: One of them may be due to a crowded machine.
     """
 
     def __init__(self, made: Callable[[bool], Any], runners: Collection[str], first: str) -> None:
@@ -179,6 +182,7 @@ class _Judges:
         self._of_programs = False
         self._asked = ""
         self.evidence: dict[str, bytes] = {}
+        self.crowded = False
 
     def __enter__(self) -> Self:
         self._start(self._first in self._runners)
@@ -205,6 +209,7 @@ class _Judges:
             raise RuntimeError(report.trouble)
         if sum(map(len, self.evidence.values())) + len(report.evidence) <= MOST_EVIDENCE and report.evidence:
             self.evidence[self._asked] = report.evidence
+        self.crowded = self.crowded or report.crowded
         verdict: Verdict | None = report.verdict
         return verdict
 

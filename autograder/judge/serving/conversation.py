@@ -109,7 +109,7 @@ def _report(
             if not recording:
                 stored = reference.load(exercise.id)
                 checked = trial.check(exercise, subject, stored, seed=seed, domain_id=domain_id)
-                return Report(checked.verdict), checked
+                return Report(checked.verdict, crowded=checked.crowded), checked
             recorded = record.record(exercise, subject, domain_id=domain_id)
             verdict = trial.judge(exercise, record.as_evidence(recorded), seed)
             return Report(verdict, reference.dump(recorded, exercise.recorded)), None

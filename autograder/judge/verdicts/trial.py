@@ -8,6 +8,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from autograder.judge.bench.bench import TestBench
+from autograder.judge.bench.patience import machine_slowness
 from autograder.judge.verdicts import timeline
 from autograder.judge.verdicts.deciding import Undecided, limited, undecidable
 from autograder.kit.evidence import Evidence, Reference
@@ -21,6 +22,8 @@ MAX_DETAIL = 6_000
 """Characters of a traceback that a card shows."""
 MAX_WORDS = 500
 """Characters of one sentence of a verdict; what a subject said is quoted in them."""
+CROWDED = 2.0
+"""The slowness of the machine (seconds a second of patience lasts) from which a look in real time proves little."""
 
 
 @dataclass(frozen=True)
@@ -43,10 +46,12 @@ class Checked:
     Attributes:
         verdict: What the judge found.
         evidence: What that follows from.
+        crowded: It did not pass in real time, nothing proves a mistake, and the machine was crowded.
     """
 
     verdict: Verdict
     evidence: Evidence
+    crowded: bool = False
 
 
 def check(
@@ -58,6 +63,7 @@ def check(
     the machine's load is. What cannot be decided within :data:`autograder.judge.verdicts.deciding.LIMIT` has failed.
     """
     began = time.monotonic()
+    crowded = False
     subject.begin(domain_id)
     seen = look(exercise, subject, reference, Pace.FAST, seed=seed, domain_id=domain_id)
     evidence = seen.evidence
@@ -67,12 +73,16 @@ def check(
             again = exercise.second_look and (seen.doubtful or not verdict.passed)
             again = again and not is_certain(exercise, evidence)
         if again:
+            slowness = machine_slowness()
             evidence = _look_again(exercise, subject, reference, seen, seed=seed, domain_id=domain_id)
+            slowness = max(slowness, machine_slowness())
             with limited():
                 verdict = judge(exercise, evidence, seed)
+                proven = verdict.passed or is_certain(exercise, evidence)
+            crowded = slowness >= CROWDED and not proven
     except Undecided:
         verdict = undecidable(exercise, seed)
-    return Checked(replace(verdict, seconds=round(time.monotonic() - began, 3)), evidence)
+    return Checked(replace(verdict, seconds=round(time.monotonic() - began, 3)), evidence, crowded)
 
 
 def decide(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:

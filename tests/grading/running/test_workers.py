@@ -76,6 +76,24 @@ def test_a_check_of_the_judge_that_was_stopped_says_nothing_while_others_ran_bes
     assert a_check_was_stopped([Cell("x = 1"), Cell("check(x)", check=check)], execution) is stopped
 
 
+@pytest.mark.parametrize(("said", "times"), [("6", 1), ("crowded 6", 2)])
+def test_a_failure_on_a_crowded_machine_counts_only_where_nothing_else_runs(
+    tiny: TinyClass,
+    with_fake_judge: str,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    said: str,
+    times: int,
+) -> None:
+    notes = tmp_path / "notes"
+    monkeypatch.setenv("NOTES_OF_THE_FAKE_JUDGE", str(notes))
+    tiny.submit("ada", repr(said), 10)
+    tiny.submit("ben", 10, 10)
+    tiny.grade(judge=with_fake_judge, jobs=2)
+    assert tiny.scores("ada") == {TALKER: 6, LISTENER: 10}
+    assert notes.read_text().splitlines().count(said) == times
+
+
 def test_a_submission_that_costs_the_worker_costs_nobody_else(tiny: TinyClass, with_fake_judge: str) -> None:
     tiny.submit("ada", "'kill worker'")
     tiny.submit("ben", 8)

@@ -67,6 +67,31 @@ def test_the_last_look_that_is_needed_decides(
     assert (checked.evidence.before is not None) is (len(looks) == 2)
 
 
+@pytest.mark.parametrize(
+    ("judged", "seen", "slowness", "crowded"),
+    [
+        pytest.param(exercise(), ["bad", "bad"], [1.0, 2.5], True, id="the machine was crowded at its end"),
+        pytest.param(exercise(), ["bad", "bad"], [2.5, 1.0], True, id="or at its beginning"),
+        pytest.param(exercise(), ["bad", "bad"], [1.5, 1.5], False, id="it was not"),
+        pytest.param(exercise(), ["bad", "good"], [3.0, 3.0], False, id="a pass is a pass"),
+        pytest.param(exercise(certain=True), ["bad"], [3.0, 3.0], False, id="as a mistake that is certain"),
+    ],
+)
+def test_a_failure_that_may_be_the_machines_is_marked(
+    monkeypatch: pytest.MonkeyPatch, judged: Exercise, seen: list[str], slowness: list[float], crowded: bool
+) -> None:
+    stored = reference.load(USUAL.id)
+    looks = iter(seen)
+
+    def look(*_: Any, **__: object) -> trial.Seen:
+        return trial.Seen(Evidence([Part(next(looks))], stored), doubtful=False)
+
+    monkeypatch.setattr(trial, "look", look)
+    monkeypatch.setattr(trial, "machine_slowness", iter(slowness).__next__)
+    subject: Any = Anybody()
+    assert trial.check(judged, subject, stored, seed="s", domain_id=0).crowded is crowded
+
+
 @pytest.mark.parametrize(("name", "missed"), [("good", False), ("bad", True)])
 def test_a_card_shows_what_was_expected_only_where_something_is_missing(name: str, missed: bool) -> None:
     stored = reference.load("lab_1_2.talker")
