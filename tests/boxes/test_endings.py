@@ -42,7 +42,7 @@ def sleepers() -> list[psutil.Process]:
     return [p for p in psutil.process_iter(["cmdline"]) if p.info["cmdline"] == ["sleep", "7654.5"]]
 
 
-def gone(within: float = 10.0) -> bool:
+def gone(within: float = 120.0) -> bool:
     """Whether all sleepers end, which the kernel brings about by itself a moment after the cause."""
     _, alive = psutil.wait_procs(sleepers(), timeout=within)
     return not alive and not sleepers()

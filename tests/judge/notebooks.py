@@ -16,6 +16,7 @@ from autograder.judge.serving import attached
 from autograder.judge.serving.process import JudgeDied, JudgeProcess
 from autograder.judge.settings import subject_environment
 from autograder.judge.subjects.command_subject import LEFTOVERS, CommandSubject
+from autograder.judge.verdicts.trial import TOO_BUSY
 from autograder.process_trees import end_descendants
 from autograder.verdict import Diagnosis, failed, not_checked, to_json
 
@@ -80,6 +81,8 @@ def verdict_in_notebook(exercise_id: str, file: Path, seed: str) -> bytes:
                 report = judge.close_report()
         except JudgeDied as error:
             return to_json(not_checked(exercise.id, exercise.title, exercise.points, str(error)))
+    if report.crowded:
+        return to_json(not_checked(exercise.id, exercise.title, exercise.points, TOO_BUSY))
     if report.trouble:
         return to_json(not_checked(exercise.id, exercise.title, exercise.points, report.trouble))
     never_asked = Diagnosis(NEVER_ASKED, "The program ended before its check.")

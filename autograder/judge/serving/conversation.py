@@ -81,7 +81,10 @@ def converse(
         subject = RemotePath(lines)
     else:
         subject = RemoteSubject(lines, is_class=first.kind == "class")
-    report, checked = _report(exercise, subject, own_seed(seed, exercise.id), recording)
+    # A grader has asked for this one exercise: it checks again, alone, what a crowded machine may have spoilt.
+    report, checked = _report(
+        exercise, subject, own_seed(seed, exercise.id), recording, marks_crowded=expected is not None
+    )
     _tell(lines, Judged(_shown(exercise, report)))
     # Its notebook has its verdict already: nobody waits while the evidence is packed.
     return replace(report, evidence=keeping.packed(checked)) if evidence and checked else report
@@ -102,13 +105,20 @@ def _tell(lines: Lines, message: Message) -> None:
 
 
 def _report(
-    exercise: Exercise, subject: RemoteSubject | PathSubject, seed: str, recording: bool
+    exercise: Exercise,
+    subject: RemoteSubject | PathSubject,
+    seed: str,
+    recording: bool,
+    *,
+    marks_crowded: bool,
 ) -> tuple[Report, Checked | None]:
     try:
         with domain.lease() as domain_id:
             if not recording:
                 stored = reference.load(exercise.id)
-                checked = trial.check(exercise, subject, stored, seed=seed, domain_id=domain_id)
+                checked = trial.check(
+                    exercise, subject, stored, seed=seed, domain_id=domain_id, marks_crowded=marks_crowded
+                )
                 return Report(checked.verdict, crowded=checked.crowded), checked
             recorded = record.record(exercise, subject, domain_id=domain_id)
             verdict = trial.judge(exercise, record.as_evidence(recorded), seed)

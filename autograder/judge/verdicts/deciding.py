@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import signal
 import threading
+import time
 from typing import TYPE_CHECKING
 
 from autograder.verdict import Diagnosis, State, Verdict
@@ -25,6 +26,8 @@ AGAIN = 0.05
 
 An exception that is raised within a destructor or a callback of the garbage collector is printed and forgotten.
 """
+SURE = 1.0
+"""Seconds of processor time from which it is the subject's words that keep the judge: it may be told to end then."""
 SIGNAL = signal.SIGVTALRM
 """Ends a decision; a judge that is not deciding anything does not hear it."""
 
@@ -41,14 +44,18 @@ def limited(seconds: float = LIMIT) -> Iterator[None]:
         seconds: Of processor time.
 
     Raises:
-        Undecided: That was not enough, or whoever waits for the verdict has sent ``SIGNAL``.
+        Undecided: That was not enough, or whoever waits for the verdict has sent ``SIGNAL``. A decision that has
+            hardly begun goes on then: it was late for another reason, and has no verdict rather than a wrong one.
     """
     if threading.current_thread() is not threading.main_thread():
         yield  # only a main thread hears signals; judges decide in theirs
         return
 
+    began = time.process_time()
+
     def give_up(*_: object) -> None:
-        raise Undecided
+        if time.process_time() - began >= min(seconds, SURE):
+            raise Undecided
 
     before = signal.signal(SIGNAL, give_up)
     signal.setitimer(signal.ITIMER_VIRTUAL, seconds, AGAIN)

@@ -8,7 +8,8 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from autograder.judge.bench.bench import TestBench
-from autograder.judge.bench.patience import machine_slowness
+from autograder.judge.bench.patience import SLOWEST, machine_slowness
+from autograder.judge.bench.wire import JudgeFailed
 from autograder.judge.verdicts import timeline
 from autograder.judge.verdicts.deciding import Undecided, limited, undecidable
 from autograder.kit.evidence import Evidence, Reference
@@ -22,8 +23,14 @@ MAX_DETAIL = 6_000
 """Characters of a traceback that a card shows."""
 MAX_WORDS = 500
 """Characters of one sentence of a verdict; what a subject said is quoted in them."""
-CROWDED = 2.0
-"""The slowness of the machine (seconds a second of patience lasts) from which a look in real time proves little."""
+TOO_BUSY = (
+    "The machine is too busy: so many programs want its processors that the judge cannot tell whether yours is slow "
+    "or wrong. Close some, or wait a little, and check again."
+)
+
+
+class TooBusy(JudgeFailed):
+    """The subject did not pass, and that may be because the machine was crowded."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +53,8 @@ class Checked:
     Attributes:
         verdict: What the judge found.
         evidence: What that follows from.
-        crowded: It did not pass in real time, nothing proves a mistake, and the machine was crowded.
+        crowded: It did not pass in real time, nothing proves a mistake, and the machine was more crowded than the
+            judge's limits allow for.
     """
 
     verdict: Verdict
@@ -55,12 +63,29 @@ class Checked:
 
 
 def check(
-    exercise: Exercise, subject: Subject, reference: Reference, *, seed: str, domain_id: int
+    exercise: Exercise,
+    subject: Subject,
+    reference: Reference,
+    *,
+    seed: str,
+    domain_id: int,
+    marks_crowded: bool = False,
 ) -> Checked:
     """Judge a subject.
 
     A fast pass counts; what fails fast is looked at again in real time, unless the evidence proves the failure whatever
     the machine's load is. What cannot be decided within :data:`autograder.judge.verdicts.deciding.LIMIT` has failed.
+
+    Args:
+        exercise: What is asked for.
+        subject: What is judged.
+        reference: What the reference solution did.
+        seed: What random inputs are drawn from.
+        domain_id: The ROS domain.
+        marks_crowded: Give the verdict all the same, marked, where the machine was too crowded to tell.
+
+    Raises:
+        TooBusy: It was, and nobody wants a marked verdict.
     """
     began = time.monotonic()
     crowded = False
@@ -79,9 +104,11 @@ def check(
             with limited():
                 verdict = judge(exercise, evidence, seed)
                 proven = verdict.passed or is_certain(exercise, evidence)
-            crowded = slowness >= CROWDED and not proven
+            crowded = slowness >= SLOWEST and not proven
     except Undecided:
         verdict = undecidable(exercise, seed)
+    if crowded and not marks_crowded:
+        raise TooBusy(TOO_BUSY)
     return Checked(replace(verdict, seconds=round(time.monotonic() - began, 3)), evidence, crowded)
 
 

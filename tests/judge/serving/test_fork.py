@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from autograder.judge.serving import fork
 from autograder.judge.serving.fork import Child
+from autograder.judge.verdicts import deciding
 from autograder.judge.verdicts.deciding import Undecided, limited
 
 if TYPE_CHECKING:
@@ -86,9 +87,33 @@ def test_a_judge_that_is_deciding_at_its_limit_says_so_and_one_that_is_looking_i
 
     with monkeypatch.context() as patched:
         patched.setattr(fork, "LAST_WORDS", 600.0)
+        patched.setattr(deciding, "SURE", 0.0)
         child = Child(ponders, limit=600.0)
         os.read(heard, 1)
         assert child.result(within=0.0).data == b"undecided"
     os.close(heard)
     os.close(tells)
     assert Child(_hangs, limit=0.3).result().data is None
+
+
+def test_a_judge_that_has_hardly_begun_to_decide_at_its_limit_has_no_verdict(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    heard, tells = os.pipe()
+
+    def decides() -> bytes:
+        try:
+            with limited(600.0):
+                os.write(tells, b"!")
+                time.sleep(60.0)  # the machine gives it no processor
+        except Undecided:
+            return b"undecided"
+        return b""
+
+    monkeypatch.setattr(fork, "LAST_WORDS", 0.3)
+    child = Child(decides, limit=600.0)
+    os.read(heard, 1)
+    outcome = child.result(within=0.0)
+    os.close(heard)
+    os.close(tells)
+    assert (outcome.data, outcome.trouble) == (None, "the judge did not finish in time")

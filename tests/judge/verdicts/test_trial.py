@@ -70,9 +70,9 @@ def test_the_last_look_that_is_needed_decides(
 @pytest.mark.parametrize(
     ("judged", "seen", "slowness", "crowded"),
     [
-        pytest.param(exercise(), ["bad", "bad"], [1.0, 2.5], True, id="the machine was crowded at its end"),
-        pytest.param(exercise(), ["bad", "bad"], [2.5, 1.0], True, id="or at its beginning"),
-        pytest.param(exercise(), ["bad", "bad"], [1.5, 1.5], False, id="it was not"),
+        pytest.param(exercise(), ["bad", "bad"], [1.0, 3.0], True, id="the machine was crowded at its end"),
+        pytest.param(exercise(), ["bad", "bad"], [3.0, 1.0], True, id="or at its beginning"),
+        pytest.param(exercise(), ["bad", "bad"], [2.9, 2.9], False, id="it was not"),
         pytest.param(exercise(), ["bad", "good"], [3.0, 3.0], False, id="a pass is a pass"),
         pytest.param(exercise(certain=True), ["bad"], [3.0, 3.0], False, id="as a mistake that is certain"),
     ],
@@ -89,7 +89,20 @@ def test_a_failure_that_may_be_the_machines_is_marked(
     monkeypatch.setattr(trial, "look", look)
     monkeypatch.setattr(trial, "machine_slowness", iter(slowness).__next__)
     subject: Any = Anybody()
-    assert trial.check(judged, subject, stored, seed="s", domain_id=0).crowded is crowded
+    checked = trial.check(judged, subject, stored, seed="s", domain_id=0, marks_crowded=True)
+    assert checked.crowded is crowded
+
+
+def test_who_checks_by_hand_is_told_that_the_machine_is_too_busy_to_tell(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    stored = reference.load(USUAL.id)
+    seen = trial.Seen(Evidence([Part("bad")], stored), doubtful=False)
+    monkeypatch.setattr(trial, "look", lambda *_, **__: seen)
+    monkeypatch.setattr(trial, "machine_slowness", lambda: 3.0)
+    subject: Any = Anybody()
+    with pytest.raises(trial.TooBusy, match="The machine is too busy"):
+        trial.check(exercise(), subject, stored, seed="s", domain_id=0)
 
 
 @pytest.mark.parametrize(("name", "missed"), [("good", False), ("bad", True)])
