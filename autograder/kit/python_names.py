@@ -14,9 +14,7 @@ MARKS = r"\n(?:[ ~^]*\n)?"
 """From a line of code to what Python says of it: perhaps a line of marks below the code."""
 _OWN = r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute '(?P<name>\w+)'"
 _TYPE = r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>[A-Z]\w*)'"
-_MODULES = (
-    "action_msgs|geometry_msgs|math|my_robot_interfaces|random|rclpy|std_msgs|std_srvs|sys|threading|time"
-)
+_MODULES = r"\w+_(?:msgs|srvs|interfaces)|math|random|rclpy|sys|threading|time"
 _IMPORTED_FROM = {
     "action_msgs.msg": "GoalStatus",
     "geometry_msgs.msg": "Twist",
