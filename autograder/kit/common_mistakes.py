@@ -46,6 +46,14 @@ _WORD = {
     "action_client": ("asks for the action", "action"),
     "action_server": ("serves the action", "action"),
 }
+_MADE_BY = {
+    "publisher": "create_publisher",
+    "subscription": "create_subscription",
+    "client": "create_client",
+    "service": "create_service",
+    "action_client": "ActionClient",
+    "action_server": "ActionServer",
+}
 _KEY = {"topic": "topic_name", "service": "service_name", "action": "action_name"}
 
 
@@ -294,6 +302,19 @@ def _not_written(evidence: Evidence) -> Advice | None:
     )
 
 
+def _other_end(evidence: Evidence) -> Advice | None:
+    """It has none of the ends that are asked for, and has another one: it publishes where it should subscribe."""
+    wanted = sorted((role, name) for role in _WORD for name in evidence.reference.interface.get(role, {}))
+    made = sorted((role, name) for role in _WORD for part in evidence for name in part.endpoints(role))
+    if not wanted or not made or {role for role, _ in wanted} & {role for role, _ in made}:
+        return None
+    (asked, name), (role, other) = wanted[0], made[0]
+    return Advice(
+        f"Your node {_WORD[role][0]} {other}, and nothing of it {_WORD[asked][0]} {name}, as the task asks.",
+        f"Use {_MADE_BY[asked]} in place of {_MADE_BY[role]}; the lab's text says what stands between its parentheses.",
+    )
+
+
 def _returned_silently(evidence: Evidence) -> Advice | None:
     """A function came back with nothing, said nothing and asked for nothing, in each run."""
     for part in evidence:
@@ -341,6 +362,7 @@ NOTHING_THERE = (
         certain=True,
     ),
     Mistake("not_written", _not_written),
+    Mistake("not_written", _other_end),
     Mistake("ended_too_early", ended_too_early),
 )
 """The mistakes that are asked about last, when nothing more exact fits."""

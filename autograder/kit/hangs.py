@@ -164,8 +164,9 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
         lambda found: any(map(_blocks, found)),
         "A blocking call waits for ever: the answer has come, but nothing spins the node, so the node "
         "does not take it.",
-        "Use call_async and rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), or spin the node in a "
-        "background executor while you use call().",
+        "Use the call whose name ends in _async (call_async, send_goal_async, get_result_async) and wait for its "
+        "future with rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), or spin the node in a background "
+        "executor while you use call().",
     ),
     (
         "never_spun",

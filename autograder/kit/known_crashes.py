@@ -123,10 +123,11 @@ KNOWN = (
     ),
     Crash(
         "callback_signature",
-        r"^ +.*(?:add_done_callback|create_(?:timer|subscription|service)|ActionServer|\w*callback=).*\.\w+\(\)[,)].*\n"
+        r"^ +.*(?:add_done_callback\(|create_(?:timer|subscription|service)\(|ActionServer\(|\w*callback=)(?:.*[ (=])?"
+        r"(?P<called>(?:\w+\.)+\w+)\(\)[,)].*\n"
         r"(?:[ ~^]*\n)?TypeError: (?:[\w.<>]+\.)?(?P<method>\w+)\(\) missing \d+ required positional arguments?: ",
         "The parentheses after {method} call it at once, without the arguments that ROS would give it.",
-        "Write only its name, self.{method}, without parentheses: ROS calls the method when it is time.",
+        "Write only its name, {called}, without parentheses: ROS calls the method when it is time.",
     ),
     Crash(
         "callback_signature",
@@ -202,20 +203,20 @@ KNOWN = (
     Crash(
         "raw_value_published",
         r"publish_feedback\((?:.*\n)+TypeError:?\s*\z",
-        "A bare value was sent where feedback is expected.",
-        "Make the feedback first (feedback = Fibonacci.Feedback()), fill its field and send that.",
+        "A bare value was sent where feedback is expected, or the type itself, without parentheses.",
+        "Make the feedback first, with parentheses: feedback = Fibonacci.Feedback(). Then fill its field and send it.",
     ),
     Crash(
         "raw_value_published",
         r"send_goal(?:_async)?\((?:.*\n)+TypeError:?\s*\z",
-        "A bare value was sent where a goal is expected.",
-        "Make the goal first (goal = Fibonacci.Goal()), fill its field and send that.",
+        "A bare value was sent where a goal is expected, or the type itself, without parentheses.",
+        "Make the goal first, with parentheses: goal = Fibonacci.Goal(). Then fill its field and send it.",
     ),
     Crash(
         "raw_value_published",
         r"call(?:_async)?\((?:.*\n)+TypeError:?\s*\z",
-        "A bare value was sent where a request is expected.",
-        "Make the request first (request = AddTwoInts.Request()), fill its fields and send that.",
+        "A bare value was sent where a request is expected, or the type itself, without parentheses.",
+        "Make the request first, with parentheses: request = AddTwoInts.Request(). Then fill its fields and send it.",
     ),
     Crash(
         "raw_value_published",
@@ -273,6 +274,28 @@ KNOWN = (
         "In an action's feedback callback the fields are one level down: msg.feedback.partial_sequence.",
     ),
     Crash(
+        "field_typo",
+        r"AttributeError: '\w+_Goal' object has no attribute 'request'",
+        "Your goal_callback is given the goal itself; only a goal handle has the goal in its attribute request.",
+        "Write goal.order there, and goal_handle.request.order in the execute_callback.",
+    ),
+    Crash(
+        "field_typo",
+        r"AttributeError: '\w+_GetResult_Response' object has no attribute '(?P<name>\w+)'",
+        "The answer to get_result_async() has two parts, result and status, and no {name}.",
+        "The fields of the result are one level down: answer.result.sequence. The number of the status is "
+        "answer.status.",
+    ),
+    Crash(
+        "field_type",
+        r"AttributeError: '(?P<type>\w+)_(?P<part>Request|Response|Goal|Result|Feedback)' object attribute "
+        r"'(?P<field>\w+)' is read-only",
+        "The field {field} was set on the type {type}.{part} itself, by this code or by an older version of it. Now no "
+        "object of this type can be filled any more.",
+        "Write parentheses after each {type}.{part} that makes an object: {type}.{part}(). Then choose Kernel, Restart "
+        "Kernel and Run All Cells: only this makes the type whole again.",
+    ),
+    Crash(
         "field_type",
         r"AttributeError: '(?P<type>\w+)' object attribute '(?P<field>\w+)' is read-only",
         "The field {field} was set on the type {type} itself, by this code or by an older version of it. Now no "
@@ -298,8 +321,8 @@ KNOWN = (
     Crash(
         "callback_returned_none",
         r"(?:send_response|service_send_response)(?:.*\n)+TypeError",
-        "A service callback returned nothing.",
-        "End the callback with `return response`.",
+        "A service callback returned no response: nothing at all, a field of it, or a type without parentheses.",
+        "End the callback with `return response`, the whole response that it was given.",
     ),
     Crash(
         "executor_not_kept",
@@ -330,7 +353,8 @@ KNOWN = (
         "The answer was read before it was there: future.result() is None until the future is done.",
         "Wait first: spin_until_future_complete(node, future, timeout_sec=5.0), or go on in "
         "future.add_done_callback(...). If your code does wait, no answer came in time: wait for the service before "
-        "you call it, with client.wait_for_service(timeout_sec=5.0), and look at future.done() before you read.",
+        "you call it, with `if not client.wait_for_service(timeout_sec=5.0):` and a raise below it, and look at "
+        "future.done() before you read.",
     ),
     Crash(
         "module_not_found",

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import re2
 
 from autograder.kit.python_names import MARKS, NAMES
+from autograder.kit.python_syntax import READING
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,89 +31,6 @@ class Meaning(NamedTuple):
     next_step: str
 
 
-_READS = r"^(?:SyntaxError|IndentationError|TabError): "
-
-READING: Sequence[Row] = (
-    (
-        rf"{_READS}expected ':'",
-        "A colon is missing.",
-        "Write a colon at the end of that line: class, def, if, else, for, while, try and with all end with one.",
-    ),
-    (
-        rf"{_READS}expected an indented block after (?P<what>.*) on line (?P<line>\d+)",
-        "The lines that belong to the {what} are not indented.",
-        "Indent by four spaces what belongs below line {line}.",
-    ),
-    (
-        rf"{_READS}unexpected indent",
-        "That line is indented further than the line above it, and nothing above it opens a block.",
-        "Indent it like the line above.",
-    ),
-    (
-        rf"{_READS}unindent does not match",
-        "That line begins between two levels of indentation.",
-        "Indent it like the other lines of its block: by four spaces for each level.",
-    ),
-    (
-        rf"{_READS}inconsistent use of tabs",
-        "Some lines begin with tabs and others with spaces.",
-        "Delete the spaces and tabs at the beginning of that line, and indent it by four spaces for each level.",
-    ),
-    (
-        rf"{_READS}'(?P<sign>.)' was never closed",
-        "The bracket {sign} is opened and never closed.",
-        "Count the brackets of that line, and close this one.",
-    ),
-    (
-        rf"{_READS}unmatched '(?P<sign>.)'",
-        "There is one {sign} too many.",
-        "Count the brackets of that line.",
-    ),
-    (
-        rf"{_READS}(?:unterminated|EOL while scanning|f-string: expecting)",
-        "A string does not end.",
-        "Close it with the quotation mark that it begins with, and each {{ in an f-string with a }}.",
-    ),
-    (
-        rf"{_READS}invalid (?:non-printable )?character '?(?P<sign>[^']*)",
-        "That line has a character of a word processor or a web page in it.",
-        "Type the line yourself: quotation marks are ' or \" and a minus is -.",
-    ),
-    (
-        rf"{_READS}.*Maybe you meant '=='",
-        "One = gives a variable a value; to compare takes two.",
-        "Write == in a condition. Left of a single = is the name that gets the value.",
-    ),
-    (
-        rf"{_READS}.*forgot a comma",
-        "Two values are side by side, and nothing joins them.",
-        "Put a string in quotation marks, write a comma between two values, or close the bracket or the quotation mark "
-        "before that place.",
-    ),
-    (
-        rf"{_READS}Missing parentheses in call to 'print'",
-        "This is Python 2.",
-        "Write print(...), with parentheses.",
-    ),
-    (
-        rf"{_READS}'return' outside function",
-        "That line is not inside a method any more.",
-        "Indent it as the other lines of its method.",
-    ),
-    (
-        rf"{_READS}incomplete input",
-        "The cell ends in the middle of something.",
-        "Close each bracket and each quotation mark that you have opened, or write the line that is missing.",
-    ),
-    (
-        _READS,
-        "",
-        "Go to the line that the message names; a bracket, a quote, a colon or the indentation is off there or just "
-        "before it.",
-    ),
-)
-"""Python's words about a text that it cannot read."""
-
 RUNNING: Sequence[Row] = (
     *NAMES,
     (
@@ -121,6 +39,11 @@ RUNNING: Sequence[Row] = (
         "A string and a number are added.",
         "To join them to a string, write f'... {{number}}'. To add numbers, turn the string into a number "
         "first: int(...).",
+    ),
+    (
+        r"^TypeError: unsupported operand type\(s\) for .*'property'",
+        "A field is taken from a type here, and only an object of this type has a value in it.",
+        "Take it from what the method was given, as in request.a, and not from AddTwoInts.Request.",
     ),
     (
         r"^TypeError: (?:unsupported operand type\(s\) for|'[<>]=?' not supported between).*'\w+_(?P<part>Request"
@@ -146,8 +69,18 @@ RUNNING: Sequence[Row] = (
     ),
     (
         r"^TypeError: '(?P<kind>[A-Z]\w*_?\w*)' object is not (?:subscriptable|iterable)",
-        "A {kind} is no list and no dictionary.",
+        "An object of the type {kind} is no list and no dictionary.",
         "Take its field, with a dot: message.data, request.a, answer.result.sequence.",
+    ),
+    (
+        r"^TypeError: '(?P<kind>int|float|bool)' object is not (?:subscriptable|iterable)",
+        "A list is needed here, and the value is a single one, of the type {kind}.",
+        "Give it the whole list, as in partial_sequence=numbers, or leave out the square brackets after the value.",
+    ),
+    (
+        r"^TypeError: '[<>]=?' not supported between instances of (?:'list' and|'\w+' and 'list')",
+        "A whole list is compared with a single value.",
+        "Compare its length, len(numbers), or one of its elements, numbers[-1].",
     ),
     (
         r"^TypeError: '[<>]=?' not supported between instances of '\w+' and '\w+'",
@@ -170,6 +103,28 @@ RUNNING: Sequence[Row] = (
         "A value of the type {kind} is called as if it were a method.",
         "To read the value, leave out the parentheses; to set it, write = after its name. A list or a dictionary takes "
         "square brackets: names[key]. If you mean a method of this name, give the value another name.",
+    ),
+    (
+        r"^TypeError: '(?P<kind>\w+_(?:Request|Response|Goal|Result|Feedback))' object is not callable",
+        "An object of the type {kind} is called as if it were a function.",
+        "Leave out the parentheses after it, and name its field with a dot: response.sum = ..., or "
+        "answer.result.sequence.",
+    ),
+    (
+        r"^TypeError: '(?P<kind>GoalResponse|CancelResponse)' object is not callable",
+        "What {kind} holds are constants, and they are not called.",
+        "Leave out the parentheses after it: return {kind}.ACCEPT.",
+    ),
+    (
+        r"^TypeError: (?:\w+\.)?(?P<level>debug|info|warning|warn|error|fatal)\(\) takes 2 positional arguments but",
+        "{level} takes a single string: it does not join several values, as print does.",
+        "Put the values into one f-string, in braces: {level}(f'I heard: {{message.data}}').",
+    ),
+    (
+        r"^TypeError: rclpy_logging_rcutils_log\(\): incompatible function arguments",
+        "A log line is a string, and the logger got something else, such as a number or a whole message.",
+        "Put the value into an f-string, in braces: info(f'{{response.sum}}'). Of a message take the field: "
+        "info(f'{{message.data}}').",
     ),
     (
         r"^TypeError: (?:\w+\.)?publish\(\) missing",
@@ -209,13 +164,29 @@ RUNNING: Sequence[Row] = (
         "create_timer(seconds, method), create_service(type, name, method), create_client(type, name).",
     ),
     (
-        r"^TypeError: (?:Client\.)?call(?:_async)?\(\) takes .*positional argument",
+        r"^TypeError: (?:\w+\.)*(?P<what>wait_for_(?:service|server)|spin_once|spin_until_future_complete|call)\(\) "
+        r"got an unexpected keyword argument '(?P<name>\w*(?:time|sec|patience|limit)\w*)'",
+        "{what} takes its limit under the name timeout_sec, and not under {name}.",
+        "Left of the = write timeout_sec, as in {what}(..., timeout_sec=patience_sec).",
+    ),
+    (
+        r"^TypeError: (?:Client\.)?call(?:_async)?\(\) (?:takes .*positional argument|got an unexpected keyword)",
         "A call takes one thing, the request.",
         "Put the numbers into the request first: client.call_async(AddTwoInts.Request(a=a, b=b)).",
     ),
     (
-        r"^TypeError: (?:\w+\.)*(?P<what>\w+)\(\) takes (?P<takes>.*\d) positional arguments? but (?P<got>\d+) "
-        r"w\w+ given",
+        r"^TypeError: (?:ActionClient\.)?send_goal(?:_async)?\(\) got an unexpected keyword argument '(?:order|x|y)'",
+        "send_goal_async takes a goal, and what your code gives it is a field of one.",
+        "Put the field into a goal first: send_goal_async(Fibonacci.Goal(order=order), feedback_callback=...).",
+    ),
+    (
+        r"^TypeError: ActionServer\.__init__\(\) takes .* positional arguments? but",
+        "After the node, the type and the name, an ActionServer takes its functions by their keywords.",
+        "Write goal_callback=, execute_callback= or cancel_callback= before each of them.",
+    ),
+    (
+        r"^TypeError: (?:\w+\.)*?(?P<what>\w+)(?:\.__init__)?\(\) takes (?P<takes>.*\d) positional arguments? but "
+        r"(?P<got>\d+) w\w+ given",
         "{what} takes {takes} arguments and got {got}; in a method, self is counted as well.",
         "Its first line, def ..., or the lab's text names its arguments: give it one value for each, in their order.",
     ),
@@ -291,13 +262,36 @@ RUNNING: Sequence[Row] = (
         "itself.",
     ),
     (
+        r"^KeyError: (?P<key>.+)",
+        "The dictionary has no entry {key}.",
+        "Compare it with the entries of the dictionary. A name in quotation marks is a string; to look up the value of "
+        "a variable, leave them out: STATUS_NAMES[answer.status].",
+    ),
+    (
+        r"^OverflowError: .*(?:greater than|less than|too (?:large|small|big))",
+        "A number does not fit into its field: the largest int32 is 2147483647.",
+        "Count how many numbers your loop makes: together with the two of the beginning there are order + 1. An order "
+        "that is too large is to be rejected.",
+    ),
+    (
+        r"attempted invalid transition from state (?P<state>SUCCEEDED|CANCELED|ABORTED) with",
+        "The goal had ended already, as {state}, and this line ends it once more.",
+        "End each goal once: below the loop, in the same column as its while, write `if` with canceled() and `else` "
+        "with succeed().",
+    ),
+    (
+        r"attempted invalid transition from state \w+ with event CANCELED",
+        "canceled() was called for a goal that no client has asked to cancel.",
+        "Call canceled() only where goal_handle.is_cancel_requested is True, and succeed() where it is not.",
+    ),
+    (
         r"^ZeroDivisionError",
         "What is right of the / or % is 0.",
         "A 0 may arrive, too: check with `if` before you divide, or leave the division out.",
     ),
     (
         r"^TypeError: '(?P<kind>\w+)' object cannot be interpreted as an integer",
-        "A {kind} was given where a whole number belongs.",
+        "A value of the type {kind} was given where a whole number belongs.",
         "Leave out the str(...) or the quotation marks around it; int(...) makes a whole number of a string.",
     ),
     (

@@ -65,6 +65,38 @@ NAMES: Sequence[Row] = (
         "Look where it gets its value, and whether that line has run before this one.",
     ),
     (
+        r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>log|logger|info|print)'",
+        "A node has no {name}: its logger writes the log.",
+        "Write self.get_logger().info(...), with a string between the second parentheses.",
+    ),
+    (
+        r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>spin|spin_once|spin_until_future_complete)'",
+        "A node has no {name}: it is a function of rclpy.",
+        "Write rclpy before it, and give it the node first: rclpy.{name}(node, ...).",
+    ),
+    (
+        r"AttributeError: 'ClientGoalHandle' object has no attribute 'result'",
+        "This value is the handle of the goal already, and no future.",
+        "If you want the handle, leave .result() out. The result of the goal comes later: wait for the future of "
+        "goal_handle.get_result_async().",
+    ),
+    (
+        r"AttributeError: '(?:function|method)' object has no attribute 'add_done_callback'",
+        "A method is waited for here, and not the future that it returns.",
+        "Write parentheses after the method where you hand it over: wait_for(client, goal_handle.get_result_async(), "
+        "...).",
+    ),
+    (
+        r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute 'add_done_callback'",
+        "A future is needed here, and the value is of the type {class}: perhaps node and future are swapped.",
+        "First the node, then the future: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0).",
+    ),
+    (
+        r"AttributeError: '(?:float|int)' object has no attribute 'add_node'",
+        "A spin takes an executor in this place, and a number of seconds only under its name.",
+        "Write timeout_sec= before the number: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0).",
+    ),
+    (
         rf"^{_OWN}\. Did you mean: '(?P<meant>\w+)'",
         "{class} has nothing called {name}, and has {meant}.",
         "If that is what you mean, write {meant}. If {name} is a value of your own, set self.{name} in __init__.",
@@ -72,8 +104,9 @@ NAMES: Sequence[Row] = (
     (
         r"^ +.*\bspin\w*\((?P<what>\w+)[,)].*\n(?:.*\n)*AttributeError: '(?P<class>Client|ActionClient|Publisher"
         r"|Service|Timer|Future)' object has no attribute",
-        "Only a node can be spun, and {what} is a {class}.",
-        "Give the spin your node: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0).",
+        "Only a node can be spun, and {what} is of the type {class} here.",
+        "Give the spin your node: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0). A function that "
+        "spins for you needs the node, too: wait_for(client, future, 5.0).",
     ),
     (
         r"AttributeError: 'ServerGoalHandle' object has no attribute 'order'",
@@ -83,7 +116,7 @@ NAMES: Sequence[Row] = (
     (
         r"AttributeError: '(?P<class>list|dict|tuple|set|str|bytes|bool|int|float|\w+GoalHandle|Publisher|Subscription"
         r"|Timer|Client|Service|ActionClient|ActionServer|RcutilsLogger)' object has no attribute '(?P<name>\w+)'",
-        "The value before .{name} is a {class} here, which has nothing called {name}.",
+        "The value before .{name} is of the type {class} here, which has nothing called {name}.",
         "Look at the line that sets it: it may be another value than you mean. If it is the right one, compare the "
         "name, letter by letter.",
     ),
@@ -113,7 +146,7 @@ NAMES: Sequence[Row] = (
     ),
     (
         r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>cancel_goal_async|get_result_async|accepted"
-        r"|publish_feedback|is_cancel_requested)'",
+        r"|publish_feedback|is_cancel_requested|succeed|canceled|abort)'",
         "A node has no {name}: the handle of a goal has.",
         "Write the goal handle before it: goal_handle.{name}, or self.goal_handle.{name} where the node keeps it.",
     ),
@@ -155,6 +188,35 @@ NAMES: Sequence[Row] = (
         r"NameError: name '(?P<name>request|response|message|msg|goal_handle|future)' is not defined",
         "Your code calls the method in this line, but only ROS can give it {name}, when it calls the method later.",
         "Write only the name of the method, without parentheses and arguments, as in self.on_message.",
+    ),
+    (
+        rf"^ +.*\bself\.(?P<name>publish_feedback|is_cancel_requested|succeed|canceled|abort|request)\b.*{MARKS}"
+        r"NameError: name 'self' is not defined",
+        "{name} belongs to the handle of the goal, and a function has no self.",
+        "Write the goal handle in place of self: goal_handle.{name}.",
+    ),
+    (
+        r"^NameError: name '(?P<name>publish_feedback|is_cancel_requested|succeed|canceled|abort|accepted"
+        r"|get_result_async|cancel_goal_async)' is not defined",
+        "{name} belongs to the handle of the goal.",
+        "Write the goal handle before it, with a dot: goal_handle.{name}.",
+    ),
+    (
+        r"^NameError: name '(?P<name>request|response|message|msg|goal_handle)' is not defined",
+        "There is no {name} here: ROS hands it to a callback, under the name in the callback's first line.",
+        "Look between the parentheses after def, and use the name that is there, or write {name} there. In an action "
+        "the request is a part of the goal handle: goal_handle.request.",
+    ),
+    (
+        r"^NameError: name '(?P<name>spin|spin_once|spin_until_future_complete|create_node|try_shutdown)' is not "
+        r"defined",
+        "{name} is a function of the module rclpy.",
+        "Write the module before it, with a dot: rclpy.{name}(...).",
+    ),
+    (
+        r"^NameError: name '(?P<name>sleep|monotonic)' is not defined",
+        "{name} is a function of the module time.",
+        "Write the module before it, with a dot: time.{name}(...).",
     ),
     (
         r"^NameError: name 'self' is not defined",

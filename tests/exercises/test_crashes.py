@@ -244,9 +244,9 @@ def test_a_method_without_self_is_named() -> None:
 
 def test_the_line_that_is_quoted_is_what_was_raised_and_where() -> None:
     library = "/usr/lib/python3.11/threading.py"
-    lines = ["    work()", f'  File "{library}", line 982, in run', "    self._target()", "KeyError: 'x'"]
+    lines = ["    work()", f'  File "{library}", line 982, in run', "    self._target()", "LookupError: 'x'"]
     advice = next(filter(None, (m.recognise(_shown(lines)) for m in OTHER_CRASHES)))
-    assert advice.text.endswith("KeyError: 'x' (line 3, in main)")
+    assert advice.text.endswith("LookupError: 'x' (line 3, in main)")
 
 
 def test_a_traceback_that_was_cut_off_is_not_quoted() -> None:

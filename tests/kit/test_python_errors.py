@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import functools
+
 import pytest
 
 from autograder.kit.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 
+TRANSITION = "RCLError: Failed to update goal state: goal_handle attempted invalid transition from state"
 SAID = {
     "AttributeError: 'Talker' object has no attribute 'count'": "set it in __init__",
     "AttributeError: 'Talker' object has no attribute 'cuont'. Did you mean: 'count'?": "write count.",
@@ -53,7 +56,7 @@ SAID = {
     ),
     "NameError: name 'String' is not defined": "Write `from std_msgs.msg import String` at the top",
     "NameError: name 'Talker' is not defined": "Run the notebook's cells from the top",
-    "AttributeError: 'ClientGoalHandle' object has no attribute 'is_done'": "is a ClientGoalHandle here",
+    "AttributeError: 'ClientGoalHandle' object has no attribute 'is_done'": "is of the type ClientGoalHandle here",
     "IndexError: pop from empty list": "what it takes one by one is used up",
     "IndexError: string index out of range": "The string is shorter than that",
     "NameError: name 'compute' is not defined": "copy it into this file",
@@ -86,6 +89,37 @@ SAID = {
     "TypeError: call_async() takes 2 positional arguments but 3 were given": "Put the numbers into the request first",
     "TypeError: Client.call_async() takes 2 positional arguments but 3 were given": "AddTwoInts.Request(a=a, b=b)",
     "TypeError: AddTwoInts.__init__() got an unexpected keyword argument 'a'": "Make the part that you need",
+    "TypeError: RcutilsLogger.info() takes 2 positional arguments but 3 were given": "into one f-string",
+    "TypeError: rclpy_logging_rcutils_log(): incompatible function arguments. The": "info(f'{message.data}')",
+    "TypeError: unsupported operand type(s) for +: 'property' and 'property'": "as in request.a",
+    "TypeError: 'AddTwoInts_Response' object is not callable": "response.sum = ...",
+    "TypeError: 'GoalResponse' object is not callable": "return GoalResponse.ACCEPT.",
+    "TypeError: 'int' object is not iterable": "of the type int",
+    "TypeError: '<=' not supported between instances of 'list' and 'int'": "len(numbers)",
+    "TypeError: call_async() got an unexpected keyword argument 'a'": "Put the numbers into the request first",
+    "TypeError: ActionClient.send_goal_async() got an unexpected keyword argument 'order'": "into a goal first",
+    "TypeError: wait_for_service() got an unexpected keyword argument 'patience_sec'": "write timeout_sec",
+    "TypeError: ActionServer.__init__() takes 5 positional arguments but 7 were given": "execute_callback=",
+    "TypeError: ActionClient.__init__() takes 4 positional arguments but 5 were given": "ActionClient takes 4",
+    "KeyError: 'status'": "STATUS_NAMES[answer.status]",
+    "OverflowError: signed integer is greater than maximum": "order + 1",
+    f"{TRANSITION} CANCELED with event SUCCEED, at goal_handle.c:100": "End each goal once",
+    f"{TRANSITION} EXECUTING with event CANCELED, at goal_handle.c:100": "only where goal_handle.is_cancel_requested",
+    "AttributeError: 'Listener' object has no attribute 'log'": "Write self.get_logger().info(...)",
+    "AttributeError: 'Listener' object has no attribute 'logger'. Did you mean: '_logger'?": "self.get_logger()",
+    "AttributeError: 'Node' object has no attribute 'spin_until_future_complete'": "rclpy.spin_until_future_complete(",
+    "AttributeError: 'Node' object has no attribute 'add_done_callback'": "First the node, then the future",
+    "AttributeError: 'function' object has no attribute 'add_done_callback'": "Write parentheses after the method",
+    "AttributeError: 'float' object has no attribute 'add_node'": "Write timeout_sec= before the number",
+    "AttributeError: 'ClientGoalHandle' object has no attribute 'result'. Did you mean: 'get_result'?": ".result() out",
+    "AttributeError: 'Fibonacci_Goal' object has no attribute 'request'": "Write goal.order",
+    "AttributeError: 'Fibonacci_GetResult_Response' object has no attribute 'sequence'": "answer.result.sequence",
+    "AttributeError: 'Fibonacci_Feedback' object attribute 'partial_sequence' is read-only": "Fibonacci.Feedback()",
+    "NameError: name 'publish_feedback' is not defined": "goal_handle.publish_feedback",
+    "NameError: name 'message' is not defined": "the name that is there",
+    "NameError: name 'spin_until_future_complete' is not defined": "rclpy.spin_until_future_complete(...)",
+    "NameError: name 'sleep' is not defined": "time.sleep(...)",
+    "TypeError: 'NoneType' object cannot be interpreted as an integer": "A value of the type NoneType",
     "OSError: [Errno 28] No space left on device": "Read the traceback from the bottom",
 }
 
@@ -94,7 +128,8 @@ SAID = {
 def test_the_card_names_what_to_mend(last: str) -> None:
     words = told(f'Traceback (most recent call last):\n  File "talker.py", line 3, in f\n    here()\n{last}')
     assert SAID[last] in words
-    assert "{" not in words.replace("{number}", "").replace("{five}", "")
+    examples = ("{number}", "{five}", "{message.data}", "{response.sum}")
+    assert "{" not in functools.reduce(lambda text, example: text.replace(example, ""), examples, words)
 
 
 @pytest.mark.parametrize(
@@ -145,7 +180,18 @@ def test_the_card_names_what_to_mend(last: str) -> None:
             "AttributeError: 'NoneType' object has no attribute 'cancel_goal_async'",
             "keep its result in self.goal_handle",
         ),
-        ("self.log(message)", "NameError: name 'message' is not defined", "write self.message"),
+        ("self.show(text)", "NameError: name 'text' is not defined", "write self.text"),
+        (
+            "future = client.actions.send_goal_async(goal, feedback_callback=client.on_feedback())",
+            "TypeError: FibonacciClient.on_feedback() missing 1 required positional argument: 'message'",
+            "Write only its name, client.on_feedback, without",
+        ),
+        (
+            "self.publish_feedback(Fibonacci.Feedback(partial_sequence=numbers))",
+            "NameError: name 'self' is not defined",
+            "goal_handle.publish_feedback",
+        ),
+        ("client.call_async(request)", "TypeError", "without parentheses"),
     ],
 )
 def test_the_line_that_raised_tells_what_to_write(code: str, last: str, advice: str) -> None:

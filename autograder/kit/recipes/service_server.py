@@ -216,8 +216,9 @@ def _returned_none(evidence: Evidence) -> Advice | None:
     if traceback.strip() != "TypeError":
         return None
     return Advice(
-        "The service callback did not return the response. rclpy cannot send anything else, so the client waits for an "
-        "answer that never comes. A program ends with this error.",
+        "The service callback did not return the response: it returned nothing, a number, or a type without "
+        "parentheses. rclpy cannot send that, so the client waits for an answer that never comes. A program "
+        "ends with this error.",
         "Fill in the field of the response that you get, as in `response.sum = ...`, and end the callback with "
         "`return response`: the whole response, and also after an `if` or an `except`.",
         traceback,

@@ -327,6 +327,9 @@ def _said_again(evidence: Evidence) -> Advice | None:
     )
 
 
+_WRITE_F = "Write an f before the opening quotation mark: f'I heard: {message.data}'. Python then replaces the braces."
+
+
 def _changed_text(evidence: Evidence) -> Advice | None:
     """It says some texts in other words than they came in."""
     part, sent = evidence.main, _sent(evidence)
@@ -338,7 +341,7 @@ def _changed_text(evidence: Evidence) -> Advice | None:
         if made_up:
             return Advice(
                 f"When “{_text(event)}” was sent, your node said “{made_up[0]}”: that is not the string as it came.",
-                "Log msg.data as it is, without strip, replace, slices or other changes.",
+                "Log message.data as it is, without strip, replace, slices or other changes.",
             )
     return None
 
@@ -355,7 +358,7 @@ def _not_logged(evidence: Evidence) -> Advice | None:
     if bytes_said is not None:
         return Advice(
             f"Your node said “{bytes_said}”: these are the bytes of the message as they travel, not its string.",
-            "Leave raw=True out of create_subscription: the callback then gets a message with its string in msg.data.",
+            "Leave raw=True out of create_subscription: the callback then gets a message with a string in it.",
         )
     if is_said(_text(silent), part):
         return Advice(
@@ -376,12 +379,12 @@ def _not_logged(evidence: Evidence) -> Advice | None:
     if len(part.said(after=sent[0])) == 0:
         return Advice(
             f"Your node is subscribed to {topic}, but when a string arrives it says nothing.",
-            "In the callback, log the string: self.get_logger().info(f'I heard: \"{msg.data}\"'). Is the node spun?",
+            "In the callback, log the string: self.get_logger().info(f'I heard: \"{message.data}\"').",
         )
     return Advice(
         f"When “{_text(sent[0])}” was sent, your node said “{part.said(after=sent[0])[0]}”: the string that arrived is "
         "not in it.",
-        "Put msg.data into the line that you log.",
+        _WRITE_F if "{" in part.said(after=sent[0])[0] else "Put message.data into the line that you log.",
     )
 
 
@@ -393,7 +396,7 @@ def _invented_text(evidence: Evidence) -> Advice | None:
     braces = re2.search(r"\{[\w.]+\}", made_up[0])
     return Advice(
         f"Your node said “{made_up[0]}”, but no node sent that.",
-        "Write an f before the opening quotation mark: f'I heard: {msg.data}'. Python then replaces the braces."
+        _WRITE_F
         if braces
         else "Log only in the subscription's callback, and only the string of the message that it was given.",
     )

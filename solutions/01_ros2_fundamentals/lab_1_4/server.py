@@ -247,8 +247,8 @@ def bad_order_accepted(seen: Evidence, _: Evidence) -> Advice | None:
     why = "there is no sequence of a negative length" if order < 0 else too_large
     return Advice(
         f"Your server accepted a goal of order {order}, which it cannot serve: {why}.",
-        "Give the ActionServer a goal_callback that looks at goal_request.order and returns GoalResponse.REJECT for "
-        "such orders.",
+        "The goal_callback decides on it: in the lab that is answer_goal. Let it return GoalResponse.REJECT where the "
+        f"order is below 0 or above {FIRST_TOO_LARGE - 1}, and write goal_callback=answer_goal in the ActionServer.",
     )
 
 

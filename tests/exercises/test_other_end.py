@@ -1,0 +1,52 @@
+"""What the card says of a node that makes the other end of what is asked for, or nothing of what it was given."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder import exercises
+from autograder.judge.verdicts import reference, trial
+from autograder.kit.evidence import Event, Evidence, Part
+
+
+@pytest.mark.parametrize(
+    ("exercise_id", "role", "name", "advice"),
+    [
+        ("lab_1_2.listener", "publisher", "/chatter", "Use create_subscription in place of create_publisher"),
+        (
+            "lab_1_2.talker",
+            "subscription",
+            "/chatter",
+            "Use create_publisher in place of create_subscription",
+        ),
+        ("lab_1_3.server", "client", "/add_two_ints", "Use create_service in place of create_client"),
+        ("lab_1_4.server", "action_client", "/fibonacci", "Use ActionServer in place of ActionClient"),
+    ],
+)
+def test_the_other_end_is_named(exercise_id: str, role: str, name: str, advice: str) -> None:
+    stored = reference.load(exercise_id)
+    types = next(iter(stored.interface.values()))
+    survey = Event(0.5, "interface", "graph", {"nodes": ["/node"], role: {name: types[name]}})
+    parts = [Part(part.name, part.inputs, [survey]) for part in stored.parts]
+    told, _ = trial.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
+    assert told.key == "not_written"
+    assert advice in told.next_step
+
+
+def test_a_type_that_is_returned_in_place_of_the_response_is_named() -> None:
+    stored = reference.load("lab_1_3.server")
+    raised = Event(0.5, "subject", "raised", {"traceback": "TypeError"})
+    parts = [Part(part.name, part.inputs, [raised]) for part in stored.parts]
+    told, _ = trial.diagnose(exercises.get("lab_1_3.server"), Evidence(parts, stored))
+    assert told.key == "callback_returned_none"
+    assert "a type without parentheses" in told.text
+
+
+def test_a_string_with_braces_left_in_it_lacks_its_f() -> None:
+    stored = reference.load("lab_1_2.listener")
+    survey = Event(0.1, "interface", "graph", {"nodes": ["/node"], **stored.interface})
+    sent = Event(0.5, "sent", "/chatter", {"fields": {"data": "amber birch 1"}})
+    said = Event(0.6, "log", "node", {"text": "I heard: {message.data}"})
+    parts = [Part(part.name, part.inputs, [survey, sent, said]) for part in stored.parts]
+    told, _ = trial.diagnose(exercises.get("lab_1_2.listener"), Evidence(parts, stored))
+    assert "Write an f before the opening quotation mark" in told.next_step
