@@ -104,7 +104,7 @@ def _named(error: BaseException) -> str:
     place = last_student_line(error)
     line = error.lineno if isinstance(error, SyntaxError) else place and place[1]
     named = type(error).__name__ + (f" in line {line}" if line else "")
-    return f"{named}, {message}" if message else named
+    return f"{named}, {message.rstrip('.?')}" if message else named
 
 
 _cells = FailedCells(notebook_shell()) if notebook_shell() is not None else None

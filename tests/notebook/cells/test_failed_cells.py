@@ -84,12 +84,14 @@ def test_a_check_of_files_says_that_the_cell_with_the_entry_points_failed(
 ) -> None:
     files = "check('lab', 'ros2_ws')"
     broken = "entry_points = [\n    'talker = my_robot_pkg.talker:main\n]\nprint(entry_points)"
-    told, unbroken = said((broken, files), (broken, "entry_points = []", files))
+    question = "entry_points = []\nif entry_points = []:\n    pass"
+    told, unbroken, asked = said((broken, files), (broken, "entry_points = []", files), (question, files))
     assert "Your cell that defines entry_points" in told
     assert "SyntaxError in line 2, unterminated string literal" in told
     assert "So setup.py does not have them" in told
     assert "the judge was asked" in told
     assert "So setup.py" not in unbroken
+    assert "instead of '='. So setup.py" in asked
 
 
 def test_any_other_class_is_judged(said: Callable[..., list[str]]) -> None:
