@@ -238,7 +238,8 @@ def patience_not_kept(absent: str) -> Mistake:
         lambda evidence: broken_patience(evidence.part(absent)),
         "When there is no server, your function {}.",
         f"Use {PATIENCE} as the limit, once: `if not client.wait_for_service(timeout_sec={PATIENCE}):` (or "
-        f"`wait_for_server`), and below it say so and end. A loop has to end {PATIENCE} seconds after it began.",
+        f"`wait_for_server`), and below it say so and end: `raise TimeoutError(...)`. Without `raise` or `return` it "
+        f"goes on to its next wait. A loop has to end {PATIENCE} seconds after it began.",
     )
 
 

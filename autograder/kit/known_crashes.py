@@ -287,6 +287,12 @@ KNOWN = (
         "answer.status.",
     ),
     Crash(
+        "field_typo",
+        r"AttributeError: '\w+_Result' object has no attribute 'status'",
+        "The status is not in the result: it comes beside it.",
+        "Take it from what the wait gave you: answer.status, and answer.result.sequence for the numbers.",
+    ),
+    Crash(
         "field_type",
         r"AttributeError: '(?P<type>\w+)_(?P<part>Request|Response|Goal|Result|Feedback)' object attribute "
         r"'(?P<field>\w+)' is read-only",
@@ -336,6 +342,12 @@ KNOWN = (
         "{name} is read from the future, which is the promise of an answer and not the answer.",
         "Wait until it is done, with spin_until_future_complete(node, future, timeout_sec=5.0), and read "
         "future.result().{name}.",
+    ),
+    Crash(
+        "callback_signature",
+        r"^ +.*add_done_callback\((?P<called>[\w.]+)\(.*\n(?:.*\n)+.*'NoneType' object has no attribute",
+        "{called} is called in this line, with parentheses, and so before the answer is there.",
+        "Write only its name between the parentheses: add_done_callback({called}).",
     ),
     Crash(
         "result_read_too_early",

@@ -58,6 +58,11 @@ RUNNING: Sequence[Row] = (
         "the value comes from a function of yours, look for a missing return.",
     ),
     (
+        r"^TypeError: unhashable type: '(?P<kind>\w+)'",
+        "A value of the type {kind} cannot be looked up in a dictionary.",
+        "Look up one of its fields, with a dot: STATUS_NAMES[answer.status].",
+    ),
+    (
         r"^TypeError: can only concatenate list",
         "A list and something that is no list are joined with +.",
         "To put one more value at the end of a list, write numbers.append(value).",
@@ -216,8 +221,8 @@ RUNNING: Sequence[Row] = (
         r"^TypeError: (?:\w+\.)*?(?P<what>\w+)(?:\.__init__)?\(\) missing \d+ required positional arguments?: "
         r"(?P<names>.+)",
         "{what} got less than it needs. Missing: {names}.",
-        "Give it one value for each of its arguments, in their order. Its first line, def ..., or the lab's text names "
-        "them.",
+        "Its first line, def ..., or the lab's text names its arguments: give it one value for each, in their order. "
+        "Where the first value is left out, Python names the last argument.",
     ),
     (
         r"Invalid(?:Topic|Service|Node|Namespace)\w*NameException|InvalidNamespaceException",

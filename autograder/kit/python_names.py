@@ -88,13 +88,27 @@ NAMES: Sequence[Row] = (
     ),
     (
         r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute 'add_done_callback'",
-        "A future is needed here, and the value is of the type {class}: perhaps node and future are swapped.",
-        "First the node, then the future: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0).",
+        "A future is needed here, and the value is of the type {class}.",
+        "A future is what a call with _async at its end returns. A spin takes first the node, then the future: "
+        "rclpy.spin_until_future_complete(node, future, timeout_sec=5.0).",
     ),
     (
         r"AttributeError: '(?:float|int)' object has no attribute 'add_node'",
         "A spin takes an executor in this place, and a number of seconds only under its name.",
         "Write timeout_sec= before the number: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0).",
+    ),
+    (
+        r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute '(?P<name>cancel_goal_async|get_result_async"
+        r"|accepted|publish_feedback|is_cancel_requested|succeed|canceled|abort)'",
+        "What is before .{name} is of the type {class}; the handle of a goal has {name}.",
+        "Write the goal handle before it: goal_handle.{name}. Where a node keeps it, name both: "
+        "self.goal_handle.{name}, or client.goal_handle.{name} in a function.",
+    ),
+    (
+        r"AttributeError: '(?P<class>int|float|str)' object has no attribute '(?P<name>sum|result|data|a|b|order"
+        r"|status)'",
+        "The value before .{name} is of the type {class}: it is a single value already, and has no field {name}.",
+        "If it is the value that you want, leave .{name} out. If not, look at the line that sets it.",
     ),
     (
         rf"^{_OWN}\. Did you mean: '(?P<meant>\w+)'",
@@ -143,12 +157,6 @@ NAMES: Sequence[Row] = (
         "A node has no method {name}: its client has.",
         "Call it on what create_client(...) or ActionClient(...) gave you, as in client.wait_for_service(...). Where a "
         "node keeps its client in an attribute, name both: client.actions.wait_for_server(...).",
-    ),
-    (
-        r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>cancel_goal_async|get_result_async|accepted"
-        r"|publish_feedback|is_cancel_requested|succeed|canceled|abort)'",
-        "A node has no {name}: the handle of a goal has.",
-        "Write the goal handle before it: goal_handle.{name}, or self.goal_handle.{name} where the node keeps it.",
     ),
     (
         rf"^{_OWN}",
@@ -202,12 +210,6 @@ NAMES: Sequence[Row] = (
         "Write the goal handle before it, with a dot: goal_handle.{name}.",
     ),
     (
-        r"^NameError: name '(?P<name>request|response|message|msg|goal_handle)' is not defined",
-        "There is no {name} here: ROS hands it to a callback, under the name in the callback's first line.",
-        "Look between the parentheses after def, and use the name that is there, or write {name} there. In an action "
-        "the request is a part of the goal handle: goal_handle.request.",
-    ),
-    (
         r"^NameError: name '(?P<name>spin|spin_once|spin_until_future_complete|create_node|try_shutdown)' is not "
         r"defined",
         "{name} is a function of the module rclpy.",
@@ -239,6 +241,18 @@ NAMES: Sequence[Row] = (
         r"^NameError: name '(?P<name>\w+)' is not defined\. Did you mean: '(?P<meant>self\.\w+)'",
         "Python does not know {name}; the node has it.",
         "To use it, write {meant}.",
+    ),
+    (
+        r"^NameError: name '(?P<name>request|response|message|msg)' is not defined",
+        "There is no {name} here: ROS hands it to a callback, under the name in the callback's first line.",
+        "Look between the parentheses after def, and use the name that is there, or write {name} there. In an action "
+        "the request is a part of the goal handle: goal_handle.request.",
+    ),
+    (
+        r"^NameError: name 'goal_handle' is not defined",
+        "There is no variable goal_handle here.",
+        "If ROS hands it to this function, use the name that stands between the parentheses after def. Where a node "
+        "keeps it, write the node before it: self.goal_handle, or client.goal_handle in a function.",
     ),
     (
         rf"^ +.*(?:\bcreate_(?:publisher|subscription|service|client)\([\w.]+, *|\bAction(?:Server|Client)\(self, *"

@@ -108,7 +108,7 @@ SAID = {
     "AttributeError: 'Listener' object has no attribute 'log'": "Write self.get_logger().info(...)",
     "AttributeError: 'Listener' object has no attribute 'logger'. Did you mean: '_logger'?": "self.get_logger()",
     "AttributeError: 'Node' object has no attribute 'spin_until_future_complete'": "rclpy.spin_until_future_complete(",
-    "AttributeError: 'Node' object has no attribute 'add_done_callback'": "First the node, then the future",
+    "AttributeError: 'Node' object has no attribute 'add_done_callback'": "first the node, then the future",
     "AttributeError: 'function' object has no attribute 'add_done_callback'": "Write parentheses after the method",
     "AttributeError: 'float' object has no attribute 'add_node'": "Write timeout_sec= before the number",
     "AttributeError: 'ClientGoalHandle' object has no attribute 'result'. Did you mean: 'get_result'?": ".result() out",
@@ -120,6 +120,17 @@ SAID = {
     "NameError: name 'spin_until_future_complete' is not defined": "rclpy.spin_until_future_complete(...)",
     "NameError: name 'sleep' is not defined": "time.sleep(...)",
     "TypeError: 'NoneType' object cannot be interpreted as an integer": "A value of the type NoneType",
+    "AttributeError: 'ActionClient' object has no attribute 'cancel_goal_async'. Did you mean: 'send_goal_async'?": (
+        "self.goal_handle.cancel_goal_async"
+    ),
+    "AttributeError: 'CancelingClient' object has no attribute 'accepted'": "client.goal_handle.accepted",
+    "AttributeError: 'int' object has no attribute 'sum'": "leave .sum out",
+    "AttributeError: 'ClientGoalHandle' object has no attribute 'add_done_callback'": "a call with _async at its end",
+    "AttributeError: 'Fibonacci_Result' object has no attribute 'status'": "answer.status",
+    "NameError: name 'goal_handle' is not defined. Did you mean: 'self.goal_handle'?": "write self.goal_handle",
+    "NameError: name 'goal_handle' is not defined": "client.goal_handle in a function",
+    "TypeError: unhashable type: 'Fibonacci_GetResult_Response'": "STATUS_NAMES[answer.status]",
+    "TypeError: ask() missing 1 required positional argument: 'patience_sec'": "Python names the last argument",
     "OSError: [Errno 28] No space left on device": "Read the traceback from the bottom",
 }
 
@@ -192,6 +203,12 @@ def test_the_card_names_what_to_mend(last: str) -> None:
             "goal_handle.publish_feedback",
         ),
         ("client.call_async(request)", "TypeError", "without parentheses"),
+        (
+            "cancel_future.add_done_callback(self.on_cancel_answer(cancel_future))",
+            '  File "talker.py", line 9, in on_cancel_answer\n    len(future.result().goals_canceling)\n'
+            "AttributeError: 'NoneType' object has no attribute 'goals_canceling'",
+            "Write only its name between the parentheses",
+        ),
     ],
 )
 def test_the_line_that_raised_tells_what_to_write(code: str, last: str, advice: str) -> None:

@@ -24,7 +24,7 @@ from exercise_1_3._cancel_words import HAS_SUCCEEDED, false_claim, says_canceled
 
 from autograder.kit import goal_mistakes
 from autograder.kit.common_mistakes import only_if_ended
-from autograder.kit.crashes import meant
+from autograder.kit.crashes import meant, what_and_where
 from autograder.kit.hangs import HANGS
 from autograder.kit.in_words import counted
 from autograder.kit.model import Advice, Mistake
@@ -93,6 +93,13 @@ def ended_on_the_way(evidence: Evidence) -> Advice | None:
         missing = "the answer to its cancel request was there"
     else:
         return None
+    if part.traceback:
+        raised = what_and_where(part.traceback)
+        return Advice(
+            f"Your client sent its goal, and ended before {missing}, because it raised {raised}.",
+            "Look at the condition above that line, and at the wait before it. Raise only where the goal is not "
+            "accepted (`if not client.goal_handle.accepted:`), or where an answer did not come in time.",
+        )
     return Advice(
         f"Your client sent its goal, and ended before {missing}.",
         "Keep it alive until the result is there: rclpy.spin(node), or rclpy.spin_until_future_complete(node, future, "
