@@ -193,8 +193,9 @@ EXERCISE = adder.exercise(
         "Ask for the sum of `a` and `b`.": "calls chain",
         "Ask for the sum of that answer and `c`.": "calls chain",
         "Use the sum that the *service* gave you": "chain",
-        "Log or print the sum; return it.": "sum",
-        "(In the notebook, one of the two is enough.)": "sum",
+        "Log or print the sum, and return it.": "sum",
+        "returning the sum is enough for the judge, and logging it alone is not.": "sum",
+        "A program has to log or print it.": "sum",
         "it must say so and end within 12 seconds, or say at least every three seconds that it still waits.": "limit",
     },
 )

@@ -144,7 +144,8 @@ EXERCISE = client.exercise(
         "Send the request, and spin the node until the answer has arrived": "call",
         "Log or print the sum that the server sent": "sum",
         "Return it, too": "sum",
-        "notebook one of the two is enough for the judge.": "sum",
+        "returning the sum is enough for the judge, and logging it alone is not.": "sum",
+        "A program has to log or print it.": "sum",
         "it must say so and end within 12 seconds, or say at least every three seconds that it still waits.": "limit",
     },
 )
