@@ -346,7 +346,7 @@ KNOWN = (
     Crash(
         "callback_signature",
         r"^ +.*add_done_callback\((?P<called>[\w.]+)\(.*\n(?:.*\n)+.*'NoneType' object has no attribute",
-        "{called} is called in this line, with parentheses, and so before the answer is there.",
+        "In add_done_callback(...), {called} has parentheses of its own: so it is called before the answer is there.",
         "Write only its name between the parentheses: add_done_callback({called}).",
     ),
     Crash(

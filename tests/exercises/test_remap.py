@@ -58,6 +58,11 @@ def _evidence(*started: int, talkers: dict[int, str], listener: int) -> Evidence
         ("NameError: name 'Nod' is not defined (l.launch.py, line 6)", "imports"),
         ("package 'my_robot' not found", "ros2 pkg executables my_robot_pkg"),
         ("executable 'listner' not found", "ros2 pkg executables my_robot_pkg"),
+        (
+            "TypeError: Node.__init__() takes 1 positional argument but 3 were given",
+            'Node(package="my_robot_pkg", ',
+        ),
+        ("TypeError: Node.__init__() missing 1 required keyword-only argument: 'executable'", "executable="),
         ("XML: mismatched tag, line 4", "with the example"),
     ],
 )

@@ -249,6 +249,10 @@ _TODO = (
         r"(?i)\b(?:package|executable)\b.* not found|libexec",
         "Compare the names of the package and of the programs with `ros2 pkg executables {package}`.",
     ),
+    (
+        r"Node\.__init__\(\) (?:takes|missing)",
+        'Write the name of each value before it: Node(package="{package}", executable="...", output="screen").',
+    ),
     (r"keyword argument", "Compare the names of the arguments with those in the example, letter by letter."),
     (r"^NameError", "Compare the name with the imports at the top of the file, letter by letter."),
 )
