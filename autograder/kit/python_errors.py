@@ -63,6 +63,11 @@ RUNNING: Sequence[Row] = (
         "Look up one of its fields, with a dot: STATUS_NAMES[answer.status].",
     ),
     (
+        r"^TypeError: list\.append\(\) takes exactly one argument",
+        "append puts a single value at the end of a list.",
+        "Give it one value: numbers.append(numbers[-2] + numbers[-1]).",
+    ),
+    (
         r"^TypeError: can only concatenate list",
         "A list and something that is no list are joined with +.",
         "To put one more value at the end of a list, write numbers.append(value).",

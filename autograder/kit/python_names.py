@@ -166,6 +166,12 @@ NAMES: Sequence[Row] = (
         "it is a function outside of the class, call it by its name alone: {name}(...).",
     ),
     (
+        rf"^ +.*\.result\.\w+.*{MARKS}AttributeError: '(?:function|method)' object has no attribute '(?P<name>\w+)'",
+        "What is before .result is a future, and its result is a method, which was not called.",
+        "Write parentheses: result().{name}, once the future is done. If nothing has waited for it, wait first, with "
+        "rclpy.spin_until_future_complete(node, future, timeout_sec=5.0) or a function that does it for you.",
+    ),
+    (
         r"AttributeError: '(?:builtin_function_or_method|function|method)' object has no attribute '(?P<name>\w+)'",
         "What is before .{name} is a method without its parentheses, so it was not called.",
         "Write the parentheses after the method's name, as in self.get_logger().info(...).",
@@ -272,6 +278,11 @@ NAMES: Sequence[Row] = (
         "Python does not know {name}, and knows {meant}.",
         "If that is what you mean, write {meant}. If {name} belongs to your node, write self.{name}. If a cell defines "
         "it, run that cell.",
+    ),
+    (
+        r"^NameError: name '(?P<type>[A-Z]\w*)_(?P<part>Request|Response|Goal|Result|Feedback)' is not defined",
+        "Messages name this type with an underscore, but in a program it is a part of {type}.",
+        "Write it with a dot: {type}.{part}.",
     ),
     (
         r"^NameError: name '(?P<name>[A-Z]\w*)' is not defined",

@@ -131,6 +131,8 @@ SAID = {
     "NameError: name 'goal_handle' is not defined": "client.goal_handle in a function",
     "TypeError: unhashable type: 'Fibonacci_GetResult_Response'": "STATUS_NAMES[answer.status]",
     "TypeError: ask() missing 1 required positional argument: 'patience_sec'": "Python names the last argument",
+    "TypeError: list.append() takes exactly one argument (2 given)": "numbers[-2] + numbers[-1]",
+    "NameError: name 'Fibonacci_Feedback' is not defined": "Write it with a dot: Fibonacci.Feedback",
     "OSError: [Errno 28] No space left on device": "Read the traceback from the bottom",
 }
 
@@ -203,6 +205,11 @@ def test_the_card_names_what_to_mend(last: str) -> None:
             "goal_handle.publish_feedback",
         ),
         ("client.call_async(request)", "TypeError", "without parentheses"),
+        (
+            "numbers = list(answer.result.sequence)",
+            "AttributeError: 'function' object has no attribute 'sequence'",
+            "If nothing has waited for it, wait first",
+        ),
         (
             "cancel_future.add_done_callback(self.on_cancel_answer(cancel_future))",
             '  File "talker.py", line 9, in on_cancel_answer\n    len(future.result().goals_canceling)\n'

@@ -147,9 +147,10 @@ def _result_missing(evidence: Evidence) -> Advice | None:
     traceback = traceback_of(evidence)
     if not re2.search(said, traceback):
         return None
+    name = kind.rpartition("/")[2]
     return Advice(
-        "The execute callback returned nothing, so there is no result to send.",
-        f"End it with `return result`, where result is a {kind.rpartition('/')[2]}.Result() whose "
+        f"The execute callback returned no {name}.Result: nothing at all, a bare list, or a type without parentheses.",
+        f"End it with `return result`, where result is a {name}.Result() whose "
         f"{' and '.join(fields) or 'fields'} you have filled. Do so on every way out, after a cancel too.",
         traceback,
     )
