@@ -56,9 +56,9 @@ PROGRAMS = {
     "sleeps": f"import time\nprint('{READY}')\ntime.sleep(60)",
     "catches_ctrl_c": f"import time\ntry:\n    print('{READY}')\n    time.sleep(60)\n"
     "except KeyboardInterrupt:\n    print('ok')",
-    "has_a_child_in_another_session": "import os, signal, time\ntry:\n    if not os.fork():\n        os.setsid()\n"
-    "        signal.signal(signal.SIGINT, lambda *_: print('me, too'))\n"
-    f"        print('{READY}')\n        time.sleep(1)\n        os._exit(0)\n    time.sleep(60)\n"
+    "has_a_child_in_another_session": "import os, signal, time\nheard, tells = os.pipe()\nif not os.fork():\n"
+    "    os.setsid()\n    signal.signal(signal.SIGINT, lambda *_: print('me, too'))\n    os.write(tells, b'.')\n"
+    f"    time.sleep(3)\n    os._exit(0)\nos.read(heard, 1)\ntry:\n    print('{READY}')\n    time.sleep(60)\n"
     "except KeyboardInterrupt:\n    os.wait()",
     "starts_python": "import subprocess, sys\n"
     "print(subprocess.run([sys.executable, '-c', 'import sys; print(sys.path)'], capture_output=True).stdout)",

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import time
 from dataclasses import dataclass, replace
 from random import Random
 from typing import TYPE_CHECKING
 
 from autograder.judge.bench.bench import TestBench
-from autograder.judge.bench.patience import SLOWEST, machine_slowness
+from autograder.judge.bench.patience import SLOWEST, machine_slowness, slowness
 from autograder.judge.bench.wire import JudgeFailed
 from autograder.judge.verdicts import timeline
 from autograder.judge.verdicts.deciding import Undecided, limited, undecidable
@@ -98,13 +99,14 @@ def check(
             again = exercise.second_look and (seen.doubtful or not verdict.passed)
             again = again and not is_certain(exercise, evidence)
         if again:
-            slowness = machine_slowness()
+            busiest = machine_slowness()
             evidence = _look_again(exercise, subject, reference, seen, seed=seed, domain_id=domain_id)
-            slowness = max(slowness, machine_slowness())
+            in_the_last_minute = slowness(round(os.getloadavg()[0]), os.cpu_count() or 1)
+            busiest = max(busiest, machine_slowness(), in_the_last_minute)
             with limited():
                 verdict = judge(exercise, evidence, seed)
                 proven = verdict.passed or is_certain(exercise, evidence)
-            crowded = slowness >= SLOWEST and not proven
+            crowded = busiest >= SLOWEST and not proven
     except Undecided:
         verdict = undecidable(exercise, seed)
     if crowded and not marks_crowded:

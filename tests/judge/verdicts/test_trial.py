@@ -88,6 +88,7 @@ def test_a_failure_that_may_be_the_machines_is_marked(
 
     monkeypatch.setattr(trial, "look", look)
     monkeypatch.setattr(trial, "machine_slowness", iter(slowness).__next__)
+    monkeypatch.setattr("os.getloadavg", lambda: (0.0, 0.0, 0.0))
     subject: Any = Anybody()
     checked = trial.check(judged, subject, stored, seed="s", domain_id=0, marks_crowded=True)
     assert checked.crowded is crowded
@@ -99,7 +100,8 @@ def test_who_checks_by_hand_is_told_that_the_machine_is_too_busy_to_tell(
     stored = reference.load(USUAL.id)
     seen = trial.Seen(Evidence([Part("bad")], stored), doubtful=False)
     monkeypatch.setattr(trial, "look", lambda *_, **__: seen)
-    monkeypatch.setattr(trial, "machine_slowness", lambda: 3.0)
+    monkeypatch.setattr(trial, "machine_slowness", lambda: 1.0)
+    monkeypatch.setattr("os.getloadavg", lambda: (1e6, 0.0, 0.0))
     subject: Any = Anybody()
     with pytest.raises(trial.TooBusy, match="The machine is too busy"):
         trial.check(exercise(), subject, stored, seed="s", domain_id=0)
