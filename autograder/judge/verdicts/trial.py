@@ -105,8 +105,8 @@ def check(
             busiest = max(busiest, machine_slowness(), in_the_last_minute)
             with limited():
                 verdict = judge(exercise, evidence, seed)
-                proven = verdict.passed or is_certain(exercise, evidence)
-            crowded = busiest >= SLOWEST and not proven
+                # What is asked last goes through all mistakes once more.
+                crowded = busiest >= SLOWEST and not verdict.passed and not is_certain(exercise, evidence)
     except Undecided:
         verdict = undecidable(exercise, seed)
     if crowded and not marks_crowded:

@@ -40,5 +40,5 @@ def meant_name(error: BaseException, trace: TracebackType | None) -> str:
 
 
 def _attributes(value: object) -> list[str]:
-    """The names of a value's attributes; none of its own code is asked for them."""
+    """The names of a value's attributes, without calling a ``__dir__`` of its class."""
     return [*dir(type(value)), *getattr(value, "__dict__", {})]
