@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import select
+from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
@@ -10,7 +11,7 @@ from autograder.standard_output import private_stdout
 from autograder.verdict import State, Verdict, from_json
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Iterator
 
 LIMIT = 240.0
 """Seconds of wall time in which an answer must have been judged."""
@@ -58,6 +59,8 @@ def judge_all(
 ) -> None:
     """Judge, in this order, in forks of this process, which must have no other threads.
 
+    What comes to no verdict is judged once more at the end, with none of the others beside it.
+
     Args:
         turns: What to judge, and with which inputs.
         jobs: How many at once.
@@ -67,29 +70,37 @@ def judge_all(
     Raises:
         NoVerdict: Something has none, and nobody wants to be called.
     """
+    again: list[Turn[T]] = []
+    for turn, verdict, _ in _judged(turns, jobs):
+        if verdict is not None and verdict.state != State.NOT_CHECKED:
+            done(turn, verdict)
+        else:
+            again.append(turn)
+    for turn, verdict, trouble in _judged(again, 1):
+        if verdict is not None:
+            done(turn, verdict)
+        elif failed is not None:
+            failed(turn, trouble)
+        else:
+            raise NoVerdict(f"{turn.subject.name}: {trouble}")
+
+
+def _judged(turns: Iterable[Turn[T]], jobs: int) -> Iterator[tuple[Turn[T], Verdict | None, str]]:
+    """Judge so many at once: each with its verdict as it comes, or with why there is none."""
     from autograder.judge.serving.fork import Child
 
-    waiting = [(turn, 1) for turn in turns]
-    running: dict[int, tuple[Turn[T], int, Child]] = {}
+    waiting = deque(turns)
+    running: dict[int, tuple[Turn[T], Child]] = {}
     while waiting or running:
         while waiting and len(running) < jobs:
-            turn, attempt = waiting.pop(0)
+            turn = waiting.popleft()
             child = Child(lambda turn=turn: _verdict_in_child(turn), LIMIT)  # type: ignore[misc]
-            running[child.reading] = (turn, attempt, child)
+            running[child.reading] = (turn, child)
         ready, _, _ = select.select(list(running), [], [])
         for descriptor in ready:
-            turn, attempt, child = running.pop(descriptor)
+            turn, child = running.pop(descriptor)
             outcome = child.result()
-            verdict = from_json(outcome.data) if outcome.data is not None else None
-            if verdict is not None and (verdict.state != State.NOT_CHECKED or attempt > 1):
-                done(turn, verdict)
-            elif attempt == 1:
-                # Without a verdict nothing is known. It is asked for once more, when less is going on.
-                waiting.append((turn, 2))
-            elif failed is not None:
-                failed(turn, outcome.trouble)
-            else:
-                raise NoVerdict(f"{turn.subject.name}: {outcome.trouble}")
+            yield turn, from_json(outcome.data) if outcome.data is not None else None, outcome.trouble
 
 
 def _verdict_in_child(turn: Turn[T]) -> bytes:

@@ -16,7 +16,7 @@ from autograder.judge.serving import attached
 from autograder.judge.serving.process import JudgeDied, JudgeProcess
 from autograder.judge.settings import subject_environment
 from autograder.judge.subjects.command_subject import LEFTOVERS, CommandSubject
-from autograder.judge.verdicts.trial import TOO_BUSY
+from autograder.judge.verdicts.crowding import TOO_BUSY
 from autograder.process_trees import end_descendants
 from autograder.verdict import Diagnosis, failed, not_checked, to_json
 

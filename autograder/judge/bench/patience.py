@@ -62,15 +62,19 @@ class Patience:
 
 
 def machine_slowness() -> float:
-    """The seconds that a second of patience lasts now; 1 where /proc/loadavg cannot be read (proc(5))."""
+    """The seconds that a second of patience lasts now."""
+    return slowness(runnable_threads(), os.cpu_count() or 1)
+
+
+def runnable_threads() -> int:
+    """The threads that run or wait for a processor now; 0 where /proc/loadavg cannot be read (proc(5))."""
     try:
-        runnable = int(_LOAD.read_text().split()[3].partition("/")[0])
+        return int(_LOAD.read_text().split()[3].partition("/")[0])
     except (OSError, ValueError, IndexError):
-        return 1.0
-    return slowness(runnable, os.cpu_count() or 1)
+        return 0
 
 
-def slowness(runnable: int, processors: int) -> float:
+def slowness(runnable: float, processors: int) -> float:
     """The seconds that a second of patience lasts.
 
     Args:

@@ -203,7 +203,8 @@ class SimulatedClock(NodeClock):
         Returns:
             Whether the subject's executor answered after each step.
         """
-        end = self._now + seconds
+        # Rounded as each step is: a sum of floats may lie a little above the last one.
+        end = round(self._now + seconds, 6)
         while self._now < end and not until():
             began = time.monotonic()
             self._now = round(self._now + STEP, 6)

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import time
 from dataclasses import dataclass, replace
 from random import Random
 from typing import TYPE_CHECKING
 
 from autograder.judge.bench.bench import TestBench
-from autograder.judge.bench.patience import SLOWEST, machine_slowness, slowness
-from autograder.judge.bench.wire import JudgeFailed
 from autograder.judge.verdicts import timeline
+from autograder.judge.verdicts.crowding import TOO_BUSY, Crowding, TooBusy
 from autograder.judge.verdicts.deciding import Undecided, limited, undecidable
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.model import Advice, Exercise, Mistake, Pace
@@ -24,14 +22,6 @@ MAX_DETAIL = 6_000
 """Characters of a traceback that a card shows."""
 MAX_WORDS = 500
 """Characters of one sentence of a verdict; what a subject said is quoted in them."""
-TOO_BUSY = (
-    "The machine is too busy: so many programs want its processors that the judge cannot tell whether yours is slow "
-    "or wrong. Close some, or wait a little, and check again."
-)
-
-
-class TooBusy(JudgeFailed):
-    """The subject did not pass, and that may be because the machine was crowded."""
 
 
 @dataclass(frozen=True)
@@ -99,14 +89,12 @@ def check(
             again = exercise.second_look and (seen.doubtful or not verdict.passed)
             again = again and not is_certain(exercise, evidence)
         if again:
-            busiest = machine_slowness()
-            evidence = _look_again(exercise, subject, reference, seen, seed=seed, domain_id=domain_id)
-            in_the_last_minute = slowness(round(os.getloadavg()[0]), os.cpu_count() or 1)
-            busiest = max(busiest, machine_slowness(), in_the_last_minute)
+            with Crowding() as crowding:
+                evidence = _look_again(exercise, subject, reference, seen, seed=seed, domain_id=domain_id)
             with limited():
                 verdict = judge(exercise, evidence, seed)
                 # What is asked last goes through all mistakes once more.
-                crowded = busiest >= SLOWEST and not verdict.passed and not is_certain(exercise, evidence)
+                crowded = crowding.too_busy and not verdict.passed and not is_certain(exercise, evidence)
     except Undecided:
         verdict = undecidable(exercise, seed)
     if crowded and not marks_crowded:

@@ -9,6 +9,7 @@ import pytest
 
 from autograder import exercises
 from autograder.judge.verdicts import reference, trial
+from autograder.judge.verdicts.crowding import Crowding, TooBusy
 from autograder.kit.evidence import Evidence, Part
 from autograder.kit.model import Advice, Criterion, Finding, Mistake, Pace
 
@@ -68,17 +69,16 @@ def test_the_last_look_that_is_needed_decides(
 
 
 @pytest.mark.parametrize(
-    ("judged", "seen", "slowness", "crowded"),
+    ("judged", "seen", "too_busy", "crowded"),
     [
-        pytest.param(exercise(), ["bad", "bad"], [1.0, 3.0], True, id="the machine was crowded at its end"),
-        pytest.param(exercise(), ["bad", "bad"], [3.0, 1.0], True, id="or at its beginning"),
-        pytest.param(exercise(), ["bad", "bad"], [2.9, 2.9], False, id="it was not"),
-        pytest.param(exercise(), ["bad", "good"], [3.0, 3.0], False, id="a pass is a pass"),
-        pytest.param(exercise(certain=True), ["bad"], [3.0, 3.0], False, id="as a mistake that is certain"),
+        pytest.param(exercise(), ["bad", "bad"], True, True, id="the machine was crowded"),
+        pytest.param(exercise(), ["bad", "bad"], False, False, id="it was not"),
+        pytest.param(exercise(), ["bad", "good"], True, False, id="a pass is a pass"),
+        pytest.param(exercise(certain=True), ["bad"], True, False, id="as a mistake that is certain"),
     ],
 )
 def test_a_failure_that_may_be_the_machines_is_marked(
-    monkeypatch: pytest.MonkeyPatch, judged: Exercise, seen: list[str], slowness: list[float], crowded: bool
+    monkeypatch: pytest.MonkeyPatch, judged: Exercise, seen: list[str], too_busy: bool, crowded: bool
 ) -> None:
     stored = reference.load(USUAL.id)
     looks = iter(seen)
@@ -87,8 +87,7 @@ def test_a_failure_that_may_be_the_machines_is_marked(
         return trial.Seen(Evidence([Part(next(looks))], stored), doubtful=False)
 
     monkeypatch.setattr(trial, "look", look)
-    monkeypatch.setattr(trial, "machine_slowness", iter(slowness).__next__)
-    monkeypatch.setattr("os.getloadavg", lambda: (0.0, 0.0, 0.0))
+    monkeypatch.setattr(Crowding, "too_busy", too_busy)
     subject: Any = Anybody()
     checked = trial.check(judged, subject, stored, seed="s", domain_id=0, marks_crowded=True)
     assert checked.crowded is crowded
@@ -100,10 +99,9 @@ def test_who_checks_by_hand_is_told_that_the_machine_is_too_busy_to_tell(
     stored = reference.load(USUAL.id)
     seen = trial.Seen(Evidence([Part("bad")], stored), doubtful=False)
     monkeypatch.setattr(trial, "look", lambda *_, **__: seen)
-    monkeypatch.setattr(trial, "machine_slowness", lambda: 1.0)
-    monkeypatch.setattr("os.getloadavg", lambda: (1e6, 0.0, 0.0))
+    monkeypatch.setattr(Crowding, "too_busy", True)
     subject: Any = Anybody()
-    with pytest.raises(trial.TooBusy, match="The machine is too busy"):
+    with pytest.raises(TooBusy, match="The machine is too busy"):
         trial.check(exercise(), subject, stored, seed="s", domain_id=0)
 
 

@@ -1,0 +1,64 @@
+"""The machine's share in a failure: how crowded it was during a look in real time.
+
+The load of the last minute (getloadavg(3)) would be the wrong measure: it still counts what has ended before the look,
+and hardly what has begun with it.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from typing import TYPE_CHECKING, Self
+
+from autograder.judge.bench.patience import SLOWEST, runnable_threads, slowness
+from autograder.judge.bench.wire import JudgeFailed
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+TOO_BUSY = (
+    "The machine is too busy: so many programs want its processors that the judge cannot tell whether yours is slow "
+    "or wrong. Close some, or wait a little, and check again."
+)
+_EVERY = 0.1
+"""Seconds between two counts."""
+
+
+class TooBusy(JudgeFailed):
+    """The subject did not pass, and that may be because the machine was crowded."""
+
+
+class Crowding:
+    """Counts, from its entry to its exit, the threads that want a processor.
+
+    Args:
+        runnable: Returns how many there are now.
+        processors: How many processors they share.
+    """
+
+    def __init__(
+        self, runnable: Callable[[], int] = runnable_threads, processors: int = os.cpu_count() or 1
+    ) -> None:
+        self._runnable, self._processors = runnable, processors
+        self._counts: list[int] = []
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._count, daemon=True)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._over.set()
+        self._thread.join()
+
+    def _count(self) -> None:
+        self._counts.append(self._runnable())
+        while not self._over.wait(_EVERY):
+            self._counts.append(self._runnable())
+
+    @property
+    def too_busy(self) -> bool:
+        """True if, on average, more threads wanted a processor than the judge's limits allow for."""
+        mean = sum(self._counts) / len(self._counts)
+        return slowness(mean, self._processors) >= SLOWEST

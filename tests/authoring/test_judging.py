@@ -1,0 +1,43 @@
+"""What comes to no verdict is judged once more, when nothing else is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from autograder.authoring.judging import Turn, judge_all
+from autograder.verdict import State, Verdict, not_checked, to_json
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+AT_ONCE = 3
+
+
+@dataclass(frozen=True)
+class NeverChecked:
+    """Writes down when it is judged."""
+
+    name: str
+    journal: Path
+
+    def verdict(self, seed: str) -> bytes:
+        del seed
+        for word in ("begins", "ends"):
+            with self.journal.open("a") as file:
+                file.write(f"{word}\n")
+        return to_json(not_checked("lab_1_2.talker", "", 10, "the machine is too busy"))
+
+
+def test_what_could_not_be_checked_is_judged_again_one_at_a_time(tmp_path: Path) -> None:
+    journal, verdicts = tmp_path / "journal", []
+
+    def done(turn: Turn[NeverChecked], verdict: Verdict) -> None:
+        verdicts.append((turn.subject.name, verdict.state))
+
+    names = ["a", "b", "c"]
+    judge_all([Turn(NeverChecked(name, journal), "seed") for name in names], jobs=AT_ONCE, done=done)
+    assert sorted(verdicts) == [(name, State.NOT_CHECKED) for name in names]
+    words = journal.read_text().split()
+    assert len(words) == 2 * AT_ONCE * 2
+    assert words[2 * AT_ONCE :] == ["begins", "ends"] * AT_ONCE
