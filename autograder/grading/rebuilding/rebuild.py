@@ -64,7 +64,7 @@ def rebuild_unreadable(master: NotebookNode, problem: str) -> Rebuilt:
 
 
 def is_of_another(master: NotebookNode, submitted: Sequence[SubmittedCell]) -> bool:
-    """Whether a notebook was made from another master: most of its named cells are not of this one, and no graded one.
+    """True if a notebook was made from another master: most of its named cells are not of this one, and no graded one.
 
     Labs have some cells of the same names. A notebook without any named cell may be anything.
     """

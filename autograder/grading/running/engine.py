@@ -18,6 +18,7 @@ from autograder.boxes.limits import Limits
 from autograder.boxes.scratch import remove_tree
 from autograder.grading.running.worker import JUDGE
 from autograder.grading.running.worker_process import GOODBYE_SECONDS, WorkerProcess
+from autograder.workspaces.boxed_jobs import BUILD_LIMITS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator
@@ -31,8 +32,6 @@ _PER_CORE = 4
 BOX_BYTES = Limits().beside_bytes + 150_000_000
 """Memory that one more notebook may take: its box, its judge and its worker."""
 _RESERVE_BYTES = 1_000_000_000
-_BUILD_BYTES = 500_000_000
-"""Memory that a build takes; enough is kept for one build on each processor."""
 _LEFT_AT_LEAST = 0.1
 """Part of the budget of processor time that a second execution always has: 20 s, where Lab 1.2 takes 2 s."""
 
@@ -45,9 +44,9 @@ def cores() -> int:
 def at_once(processors: int, free_bytes: int) -> int:
     """Notebooks that run at once by default, never more than have memory if each takes all of its share.
 
-    A submission that needs more than its share is executed again, alone.
+    Enough is kept for one build on each processor. What needs more than its share is executed again, alone.
     """
-    room = free_bytes - _RESERVE_BYTES - processors * _BUILD_BYTES
+    room = free_bytes - _RESERVE_BYTES - processors * BUILD_LIMITS.beside_bytes
     return max(1, min(processors * _PER_CORE, room // BOX_BYTES))
 
 

@@ -171,7 +171,7 @@ class WorkerProcess:
 
 
 def _addresses_of_fork_servers(sandbox: bool) -> Addresses:
-    """Where the fork servers listen, which are started where they do not run.
+    """The addresses of the fork servers, which are started where they do not run.
 
     Args:
         sandbox: With one for the supervisors of boxes.

@@ -78,7 +78,7 @@ class Pair:
 
     @property
     def place(self) -> str:
-        """In which notebook and cell it is."""
+        """The notebook and cell that it is in."""
         cells = dict.fromkeys((self.one.answer.cell, self.other.answer.cell))
         return f"{self.one.answer.notebook}, {' and '.join(cells)}"
 
