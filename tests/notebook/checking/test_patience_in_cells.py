@@ -56,11 +56,20 @@ def until_a_deadline(client: Any, patience: float) -> bool:
     return bool(client.service_is_ready())
 
 
+def in_rounds_until_a_deadline(client: Any, patience: float) -> bool:
+    """The loop of the official tutorial, with an end."""
+    deadline = time.monotonic() + patience
+    while not client.wait_for_service(timeout_sec=1.0):
+        if time.monotonic() > deadline:
+            return False
+    return True
+
+
 def never_where_it_is_short(client: Any, patience: float) -> bool:
     return patience >= 1.0 and bool(client.wait_for_service())
 
 
-@pytest.mark.parametrize("wait", [waits, in_whole_seconds, until_a_deadline])
+@pytest.mark.parametrize("wait", [waits, in_whole_seconds, until_a_deadline, in_rounds_until_a_deadline])
 def test_who_keeps_the_patience_is_right(wait: Any) -> None:
     with a_judge() as checked:
         verdict = checked("lab_1_3.client", adder(wait))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import datetime
+import sys
 import threading
 import time
 from types import SimpleNamespace
@@ -40,6 +42,7 @@ def test_a_wait_ends_when_the_server_is_there(wait: Any) -> None:
 def test_of_waits_for_a_server_that_will_not_come_some_seconds_are_left_out_and_told() -> None:
     told: list[float] = []
     nobody = client(ready=threading.Event())
+    clock = time.monotonic  # not as a subject's look at a clock
     with ShorterWaits(lambda: True, lambda _, seconds: told.append(seconds)) as waits:
         waits.begin_run(spare=3000.0)
         # Nobody waits so long: a test that ends has left them out.
@@ -47,9 +50,9 @@ def test_of_waits_for_a_server_that_will_not_come_some_seconds_are_left_out_and_
         assert not ActionClient.wait_for_server(nobody, 1500.0)
         assert not Client.wait_for_service(nobody, -5.0)
         # What is left of it is waited.
-        began = time.monotonic()
+        began = clock()
         assert not Client.wait_for_service(nobody, 500.3)
-        assert time.monotonic() - began >= 0.25
+        assert clock() - began >= 0.25
     assert told == [1000.0, 1500.0, 500.0]
 
 
@@ -67,16 +70,57 @@ def test_who_begins_to_wait_without_a_limit_notices_the_server_all_the_same() ->
     assert told == [1.5]
 
 
+def test_who_looks_at_a_clock_waits_in_full() -> None:
+    told: list[float] = []
+    nobody = client(ready=threading.Event())
+    with ShorterWaits(lambda: True, lambda _, seconds: told.append(seconds)) as waits:
+        waits.begin_run(spare=12.0)
+        end = time.monotonic() + 0.15
+        while not Client.wait_for_service(nobody, 0.1) and time.monotonic() < end:
+            pass
+        assert time.monotonic() >= end
+    assert told == []
+
+
+def test_so_does_who_has_taken_the_clock_out_of_its_module(monkeypatch: pytest.MonkeyPatch) -> None:
+    notebook: Any = sys.modules["__main__"]
+    monkeypatch.setattr(notebook, "now", time.monotonic, raising=False)
+    with ShorterWaits(lambda: True) as waits:
+        waits.begin_run(spare=12.0)
+        notebook.now()
+        assert waits.spare == 0.0
+    assert notebook.now is time.monotonic
+
+
+@pytest.mark.parametrize("value", [datetime, datetime.datetime])
+def test_who_has_imported_datetime_is_taken_to_look_at_it(
+    monkeypatch: pytest.MonkeyPatch, value: object
+) -> None:
+    monkeypatch.setattr(sys.modules["__main__"], "datetime", value, raising=False)
+    waits = ShorterWaits(lambda: True)
+    waits.begin_run(spare=12.0)
+    assert waits.spare == 0.0
+
+
+def test_a_look_of_rclpys_own_at_a_clock_changes_nothing() -> None:
+    with ShorterWaits(lambda: True) as waits:
+        waits.begin_run(spare=12.0)
+        exec(compile("time.monotonic()", rclpy.client.__file__, "exec"), {"time": time})
+        assert waits.spare == 12.0
+
+
 def test_everything_is_put_back() -> None:
     before = (
+        time.monotonic,
         time.sleep,
         Client.wait_for_service,
         ActionClient.wait_for_server,
         Node.get_service_names_and_types,
     )
     with ShorterWaits(lambda: True), GraphQuestions(lambda: None, lambda: True):
-        assert time.sleep is not before[0]
+        assert time.sleep is not before[1]
     after = (
+        time.monotonic,
         time.sleep,
         Client.wait_for_service,
         ActionClient.wait_for_server,
