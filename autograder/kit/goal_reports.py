@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit import outcome_words as words
-from autograder.kit.crashes import SLIPS
+from autograder.kit.crashes import SLIPS, meant
 from autograder.kit.evidence import INTERRUPTED
 from autograder.kit.giving_up import looks_elsewhere, objection, remark
 from autograder.kit.model import Finding
@@ -193,8 +193,8 @@ def last_line(part: Part) -> str:
 
 
 def raised_on_purpose(part: Part) -> bool:
-    """True if it ended with an exception that says something."""
-    return bool(last_line(part)) and not last_line(part).startswith(SLIPS)
+    """True if it ended with an exception that it raised itself, or with one that is no slip."""
+    return bool(last_line(part)) and (meant(part.traceback) or not last_line(part).startswith(SLIPS))
 
 
 def _waits(late: Part) -> bool:
@@ -308,7 +308,9 @@ def given_up(evidence: Evidence) -> str:
         or (late.traceback and not raised_on_purpose(late) and any(map(asked_for, evidence)))
         or looks_elsewhere(evidence, part, "action_client")
     )
-    return objection(part) if asked or not part.events else "never sent a goal to any server"
+    if part.events and not asked:
+        return "never sent a goal to any server"
+    return objection(part, [evidence.main] if asked_for(evidence.main) else [])
 
 
 # --- criteria -----------------------------------------------------------------------------------------------

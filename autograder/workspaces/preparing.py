@@ -23,6 +23,10 @@ COURSE = "course_ws"
 """The place of the course's own packages, behind the student's."""
 
 
+_ALL_OUTPUT = {"OVERRIDE_LAUNCH_PROCESS_OUTPUT": "both"}
+"""Shows what a node prints, wherever its launch file sends that (launch/actions/execute_local.py, ``output``)."""
+
+
 @dataclass(frozen=True)
 class Prepared:
     """A program that can be started.
@@ -87,7 +91,8 @@ class Preparation:
             RuntimeError: The course's own could not.
         """
         builds: dict[str, Build] = {}
-        environment, course_first = self.builds.jobs.environment, False
+        environment: Mapping[str, str] = {**self.builds.jobs.environment, **_ALL_OUTPUT}
+        course_first = False
         # What students are handed has no programs but theirs: those would be Lab 1.2's solutions.
         if (own := reference_workspace()).is_dir():
             builds[COURSE] = self.builds.build(look(own), None, name=COURSE)

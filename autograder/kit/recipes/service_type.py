@@ -56,12 +56,10 @@ class ServiceType(SeenAsItIs):
         bench.part(PART)
         bench.start()
         bench.wait_until(lambda e: report_of(e.main, "found") is not None, BEGINNING)
-        # What the file says cannot become right by being built.
-        if not bench.wait_until(self._has_other_fields, 0.0):
-            bench.wait_until(lambda e: report_of(e.main) is not None, BUILDING)
-            if bench.await_endpoint("service", SERVICE):
-                _, type_name = bench.reference.only("service")
-                bench.compare_type(SERVICE, type_name)
+        bench.wait_until(lambda e: report_of(e.main) is not None, BUILDING)
+        if bench.await_endpoint("service", SERVICE):
+            _, type_name = bench.reference.only("service")
+            bench.compare_type(SERVICE, type_name)
         bench.stop()
 
     def _holders(self, evidence: Evidence) -> list[tuple[PackageReport, Interface]]:
@@ -72,11 +70,6 @@ class ServiceType(SeenAsItIs):
     def _texts(self, evidence: Evidence) -> list[tuple[str, str]]:
         """The path and the text of each file of that name, as far as it is reported."""
         return [(file.file, file.text) for _, file in self._holders(evidence) if file.text is not None]
-
-    def _has_other_fields(self, evidence: Evidence) -> bool:
-        texts, expected = self._texts(evidence), _expected(evidence)
-        known = bool(texts and expected) and _is_complete(evidence)
-        return known and all(fields(text) != expected for _, text in texts)
 
     def has_the_fields(self, evidence: Evidence) -> Finding:
         """The file has the reference's fields: names, types and order."""

@@ -44,11 +44,13 @@ def listener(seen: Launched, _: Launched) -> Finding:
 
 @remap.criterion("nothing_left", 1, "No node uses the old name")
 def nothing_left(seen: Launched, _: Launched) -> Finding:
-    """No node of the subject's uses the old name."""
+    """No node of the subject's uses the old name, in whatever namespace; other topics are free."""
     there = f"only {seen.topic}" if seen.publishers or seen.subscriptions else "nothing"
-    right = not seen.elsewhere and bool(seen.publishers) and bool(seen.subscriptions)
-    found = f"{', '.join(seen.elsewhere)} as well" if seen.elsewhere else there
-    return Finding(right, f"both nodes, on {seen.topic} only", found)
+    old = [name for name in seen.elsewhere if name.rpartition("/")[2] == OLD_NAME]
+    right = not old and bool(seen.publishers) and bool(seen.subscriptions)
+    return Finding(
+        right, f"both nodes, and none on {OLD_NAME}", f"{', '.join(old)} as well" if old else there
+    )
 
 
 @remap.criterion("launch", 2, "The launch file does it")

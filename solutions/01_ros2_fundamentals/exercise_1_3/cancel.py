@@ -60,10 +60,9 @@ def cancels_in_the_window(evidence: Evidence) -> Finding:
         return Finding(False, expected, LEFT)
     if cancels_every_goal(evidence):
         return Finding(False, expected, "a request to cancel every goal of the server")
-    goal = sends_the_goal(evidence)
-    return Finding(
-        inside and goal.passed, expected, seen if goal.passed else f"{seen}, and another goal ({goal.seen})"
-    )
+    # Of two goals nobody can say which one's feedback it counts. A single one may be of any order here.
+    goals = len(evidence.main.of("goal"))
+    return Finding(inside and goals == 1, expected, seen if goals < 2 else f"{seen}, with {goals} goals sent")
 
 
 def cancels_once(evidence: Evidence) -> Finding:

@@ -66,6 +66,11 @@ def objection(request: Fields, answer: Fields | None) -> str:
     return "" if answer["sum"] == a + b else f"{a} + {b} was answered with {answer['sum']}"
 
 
+def silence(request: Fields, answer: Fields | None) -> str:
+    """The objection to a call without an answer; empty where one came, right or wrong."""
+    return "" if answer is not None else objection(request, answer)
+
+
 server = Draft(
     "lab_1_3.server",
     "Lab 1.3 · A server that adds",
@@ -89,8 +94,8 @@ def together(seen: Server, _: Server) -> Finding:
 
 @server.criterion("alive", 2, "Stays alive")
 def alive(seen: Server, _: Server) -> Finding:
-    """The call after all others is answered."""
-    return seen.all_right(seen.last, objection, "answers once more after all that")
+    """The call after all others is answered; with which sum, other criteria say."""
+    return seen.all_right(seen.last, silence, "answers once more after all that")
 
 
 server.knows(

@@ -49,6 +49,8 @@ LONG_ORDER = 46
 """The order of the goal that is canceled: the largest that there is."""
 PACED = (ALONE, BESIDE, AGAIN)
 """The goals that take time and are to succeed."""
+PACED_ALONE = (ALONE, AGAIN)
+"""Those of them that have the server to themselves."""
 
 
 @dataclass(frozen=True)
@@ -149,6 +151,16 @@ def paced_goals(evidence: Evidence) -> list[FibonacciGoal]:
 def good_goals(evidence: Evidence) -> list[FibonacciGoal]:
     """All goals that are to succeed, as far as they were sent."""
     return _sent(evidence, (*PACED, *TINY))
+
+
+def goals_alone(evidence: Evidence) -> list[FibonacciGoal]:
+    """All goals that are to succeed and have the server to themselves, as far as they were sent."""
+    return _sent(evidence, (*PACED_ALONE, *TINY))
+
+
+def paced_goals_alone(evidence: Evidence) -> list[FibonacciGoal]:
+    """Those of them that take time."""
+    return _sent(evidence, PACED_ALONE)
 
 
 def _sent(evidence: Evidence, numbers: Sequence[int]) -> list[FibonacciGoal]:

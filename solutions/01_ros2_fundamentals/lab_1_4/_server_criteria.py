@@ -6,7 +6,6 @@ import functools
 from typing import TYPE_CHECKING
 
 from lab_1_4._goals import (
-    AGAIN,
     ALONE,
     BAD_ORDERS,
     BESIDE,
@@ -21,12 +20,13 @@ from lab_1_4._goals import (
     ended_by_a_younger,
     expected_sequence,
     feedback_objection,
+    feedback_slip,
     first_two,
     goal,
-    good_goals,
+    goals_alone,
     is_beginning,
     objection,
-    paced_goals,
+    paced_goals_alone,
     takes_no_time,
     tells_at_the_end,
     to_be_canceled,
@@ -79,35 +79,36 @@ def serves(evidence: Evidence) -> Finding:
 
 @of_one_server
 def counts(evidence: Evidence) -> Finding:
-    """Every good goal succeeds with the reference's sequence."""
-    wrong = [text for seen in good_goals(evidence) if (text := objection(evidence, seen))]
+    """Every good goal that has the server to itself succeeds with the reference's sequence."""
+    goals = goals_alone(evidence)
+    wrong = [text for seen in goals if (text := objection(evidence, seen))]
     expected = f"succeeds with {expected_sequence(evidence, max(ORDERS))} for order {max(ORDERS)}, and so on"
-    asked = bool(good_goals(evidence))
-    return Finding(
-        asked and not wrong, expected, wrong[0] if wrong else "it does" if asked else "no goal was sent"
-    )
+    seen = wrong[0] if wrong else "it does" if goals else "no goal was sent"
+    return Finding(bool(goals) and not wrong, expected, seen)
 
 
 @of_one_server
 def gives_feedback(evidence: Evidence) -> Finding:
-    """The feedback of every good goal grows by one number, while the server works."""
-    wrong = [text for seen in paced_goals(evidence) if (text := feedback_objection(evidence, seen))]
+    """The feedback of a goal that has the server to itself grows by one number, while the server works."""
+    goals = paced_goals_alone(evidence)
+    wrong = [text for seen in goals if (text := feedback_objection(evidence, seen))]
     if tells_at_the_end(evidence.part(GOALS)):
         wrong.append("all of it came at once, when the work was done")
-    asked = bool(paced_goals(evidence))
-    seen = wrong[0] if wrong else "it does" if asked else "no goal was sent"
-    return Finding(asked and not wrong, "one more number in each feedback message", seen)
+    seen = wrong[0] if wrong else "it does" if goals else "no goal was sent"
+    return Finding(bool(goals) and not wrong, "one more number in each feedback message", seen)
 
 
 @of_one_server
 def serves_two_at_once(evidence: Evidence) -> Finding:
-    """Two equal goals at once are right, a goal beside the one that is canceled, and one beside that."""
+    """Two equal goals at once are right, and one beside the goal that is canceled, with its feedback."""
     part = evidence.part(GOALS)
-    two = [goal(part, number) for number in (*TWINS, BESIDE, AGAIN)]
-    wrong = [text for seen in two if seen.order is not None and (text := objection(evidence, seen))]
+    twins, beside = [goal(part, number) for number in TWINS], goal(part, BESIDE)
+    wrong = [text for one in (*twins, beside) if one.order is not None and (text := objection(evidence, one))]
+    if beside.accepted and (slip := feedback_slip(evidence, beside)):
+        wrong.append(slip)
     if (older := ended_by_a_younger(part)) is not None:
         wrong.insert(0, f"the older goal ended as {status_text(older.status)} when the younger one came")
-    asked = all(seen.order is not None for seen in two[-2:])
+    asked = beside.order is not None
     seen = wrong[0] if wrong else "both are right" if asked else "not reached"
     return Finding(asked and not wrong, "each of two goals at once ends with its own sequence", seen)
 
@@ -163,7 +164,7 @@ def worked_on(evidence: Evidence, long: FibonacciGoal) -> bool:
 
 @of_one_server
 def refuses_bad_orders(evidence: Evidence) -> Finding:
-    """Negative and too large orders are refused, and two good goals after them succeed."""
+    """Negative and too large orders are refused, and two good goals after them come to an end, whichever that is."""
     part, expected = (
         evidence.part(BAD_ORDERS),
         f"rejects negative orders and {FIRST_TOO_LARGE} or more, and lives on",
@@ -176,5 +177,5 @@ def refuses_bad_orders(evidence: Evidence) -> Finding:
         return Finding(False, expected, f"order {taken[0].order} was {how}")
     if not last:
         return Finding(False, expected, "not reached")
-    wrong = next((text for seen in last if (text := objection(evidence, seen))), "")
-    return Finding(not wrong, expected, f"after the rejected goals, {wrong}" if wrong else "it does")
+    lost = next((objection(evidence, seen) for seen in last if not (seen.accepted and seen.over)), "")
+    return Finding(not lost, expected, f"after the rejected goals, {lost}" if lost else "it does")

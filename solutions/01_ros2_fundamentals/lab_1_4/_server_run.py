@@ -16,7 +16,6 @@ from lab_1_4._goals import (
     LONG_ORDER,
     ORDERS,
     PACED,
-    ROUNDS_LEFT,
     SMALLEST,
     TWINS,
     FibonacciGoal,
@@ -101,10 +100,7 @@ def send_good_goals(bench: Bench, caller: ActionCaller) -> bool:
     honoured = _await_cancel(bench)
     if goal(bench.seen(), BESIDE).accepted is None:
         return True  # one thread, and it is busy: the younger goal has not been read either
-    # Its server shall have looked whether to stop before the next goal begins.
-    _await_feedback(bench, BESIDE, len(goal(bench.seen(), BESIDE).feedback) + ROUNDS_LEFT + 1)
-    caller.send_goal(order=order)
-    if not ended(bench, *PACED, quiet=SILENCE[bench.pace]):
+    if not ended(bench, BESIDE, quiet=SILENCE[bench.pace]) or not one_by_one(bench, caller, order):
         return False
     # Results may overtake feedback on their way to a busy judge.
     bench.wait_until(lambda e: all(_tells_all(goal(e.main, n)) for n in PACED), GOAL_LIMIT, quiet=AFTERMATH)
