@@ -89,8 +89,13 @@ def counts(evidence: Evidence) -> Finding:
 
 @of_one_server
 def gives_feedback(evidence: Evidence) -> Finding:
-    """The feedback of a goal that has the server to itself grows by one number, while the server works."""
-    goals = paced_goals_alone(evidence)
+    """The feedback of a goal that has the server to itself grows by one number, while the server works.
+
+    So does that of the large goal, if two at once do not disturb each other.
+    """
+    goals, beside = paced_goals_alone(evidence), goal(evidence.part(GOALS), BESIDE)
+    if beside.over and not _fault_beside_another(evidence, beside):
+        goals.append(beside)
     wrong = [text for seen in goals if (text := feedback_objection(evidence, seen))]
     if tells_at_the_end(evidence.part(GOALS)):
         wrong.append("all of it came at once, when the work was done")
@@ -103,14 +108,18 @@ def serves_two_at_once(evidence: Evidence) -> Finding:
     """Two equal goals at once are right, and one beside the goal that is canceled, with its feedback."""
     part = evidence.part(GOALS)
     twins, beside = [goal(part, number) for number in TWINS], goal(part, BESIDE)
-    wrong = [text for one in (*twins, beside) if one.order is not None and (text := objection(evidence, one))]
-    if beside.accepted and (slip := feedback_slip(evidence, beside)):
-        wrong.append(slip)
+    wrong = [text for one in twins if one.order is not None and (text := objection(evidence, one))]
+    if beside.order is not None and (text := _fault_beside_another(evidence, beside)):
+        wrong.append(text)
     if (older := ended_by_a_younger(part)) is not None:
         wrong.insert(0, f"the older goal ended as {status_text(older.status)} when the younger one came")
     asked = beside.order is not None
     seen = wrong[0] if wrong else "both are right" if asked else "not reached"
     return Finding(asked and not wrong, "each of two goals at once ends with its own sequence", seen)
+
+
+def _fault_beside_another(evidence: Evidence, seen: FibonacciGoal) -> str:
+    return objection(evidence, seen) or feedback_slip(evidence, seen)
 
 
 @of_one_server
