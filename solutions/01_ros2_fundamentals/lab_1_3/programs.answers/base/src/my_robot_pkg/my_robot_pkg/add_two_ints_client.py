@@ -33,7 +33,7 @@ def main() -> None:
     try:
         add_two_ints(a, b)
     except TimeoutError as problem:
-        print(problem)
+        print("gave up:", problem)
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     finally:

@@ -76,7 +76,7 @@ def main() -> None:
     try:
         print(fibonacci(order))
     except TimeoutError as problem:
-        print(problem)
+        print("gave up:", problem)
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     finally:
