@@ -153,10 +153,12 @@ EXERCISE = cancel.exercise(
         "Send the goal: call `send_goal`": "goal",
         "If the goal was not accepted (`client.goal_handle.accepted`), raise a `RuntimeError` that says so.": "refused",
         "There will be no result to wait for.": "refused",
-        "Otherwise get the result": "status",
+        "Otherwise ask once for the result": "status",
         "While you wait, the client is spun": "cancel status",
         "report the status that you *really* got": "status",
         "Log or print the name of the final status": "status",
-        "(Its number is accepted as well.)": "status",
+        "(Its number is accepted as well.": "status",
+        "For a goal that succeeded or was aborted, other words about its end are accepted, too, "
+        "if they are not false.": "status",
     },
 )
