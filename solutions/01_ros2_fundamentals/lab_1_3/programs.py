@@ -31,5 +31,7 @@ EXERCISE = Programs(
         "Copy your function from step 3:": "add_client",
         "Then it runs `add_server`, calls it, and presses <kbd>Ctrl</kbd>+<kbd>C</kbd>.": "ctrl_c",
         "once there is none: the client then does what step 3 says.": "add_client ctrl_c",
+        "if it still spins after its report, <kbd>Ctrl</kbd>+<kbd>C</kbd> has to end it.": "ctrl_c",
+        "A program has its points only if its node does all that the steps above ask of it.": "add_server add_client",
     },
 )

@@ -29,6 +29,10 @@ EXERCISE = Programs(
         "The executables are `fibonacci_server` and `fibonacci_client`.": "entry_points",
         "Copy what you wrote in steps 2 to 4:": "fibonacci_server",
         "Copy what you wrote in steps 5 and 6:": "fibonacci_client",
-        "The client has to end by itself, and the server on <kbd>Ctrl</kbd>+<kbd>C</kbd>.": "ctrl_c",
+        "A program has its points only if its node does all that the steps above ask of it.": (
+            "fibonacci_server fibonacci_client"
+        ),
+        "The server has to end on <kbd>Ctrl</kbd>+<kbd>C</kbd>.": "ctrl_c",
+        "if it still spins after its report, <kbd>Ctrl</kbd>+<kbd>C</kbd> has to end it.": "ctrl_c",
     },
 )
