@@ -39,5 +39,6 @@ EXERCISE = client.exercise(
         "Log the name of the status, and the sequence of the result.": "result aborted",
         "The given `on_feedback` logs each feedback message.": "feedback",
         "Return the sequence as a list.": "result",
+        "(Any kind of sequence is accepted, such as a tuple.)": "result",
     },
 )
