@@ -13,7 +13,7 @@ from autograder import exercises
 from tests.measure import evidence
 from tests.tiers import due
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 INPUTS = "random.sample((random.randint(1001, 99_999), 0), 2)"
 OTHER_INPUTS = "random.sample((random.randint(101, 999), 0), 2)"
 CHANGED = evidence.exercises_of_another_bench()
