@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from autograder.appeals.replaying import replay
 from autograder.authoring.answers import Answer, answers
 from tests.measure import evidence
 
@@ -32,5 +33,5 @@ BANK = {answer.name: answer for answer in answers()}
 def test_a_mistake_costs_its_own_criteria(name: str) -> None:
     answer: Answer = BANK[name]
     record = evidence.record_of(answer, evidence.kept(answer.exercise).get(name))
-    verdict = evidence.replay(record.seen).now
+    verdict = replay(record.seen).now
     assert [one.name for one in verdict.criteria if not one.passed] == COSTS[name].split()

@@ -17,7 +17,6 @@ import math
 import sys
 import time
 import weakref
-from types import ModuleType
 from typing import TYPE_CHECKING, Any, Self
 
 import rclpy
@@ -33,6 +32,7 @@ from autograder.notebook.cells.cell_output import is_students
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from types import ModuleType
 
 
 READY_POLL = 0.004
@@ -154,7 +154,7 @@ class ShorterWaits:
             watched = self._watched(clock)
             # ``from time import monotonic`` has given it a name in the notebook, too.
             notebook = sys.modules["__main__"]
-            names = [(notebook, name) for name, value in vars(notebook).items() if value is clock]
+            names = [(notebook, name) for name, value in list(vars(notebook).items()) if value is clock]
             for place in ((owner, name), *names):
                 self._usual.append((*place, clock))
                 setattr(*place, watched)
@@ -186,12 +186,8 @@ class ShorterWaits:
 
 
 def _has_imported_datetime() -> bool:
-    known = (datetime, datetime.datetime)
-    return any(
-        value in known
-        for value in vars(sys.modules["__main__"]).values()
-        if isinstance(value, (type, ModuleType))
-    )
+    values = list(vars(sys.modules["__main__"]).values())
+    return any(value is datetime or value is datetime.datetime for value in values)
 
 
 def _seem_to_be_in(module: ModuleType, *functions: Any) -> None:
