@@ -278,6 +278,36 @@ def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool])
     return bool(absent.ending and told and ended) and all(_same(_parting_words(part), told) for part in ended)
 
 
+def gives_up_where_served(
+    served: Sequence[Part], absent: Part, role: str, asked: Callable[[Part], bool]
+) -> str:
+    """The words with which a client ends where its server is there, and not where it is absent; empty for none.
+
+    Empty also where it gives up well without a server: what it says where there is one is then about something else.
+
+    Args:
+        served: The runs with a server.
+        absent: The run without one.
+        role: The client's endpoint, such as ``"client"``.
+        asked: Whether the subject asked the server for something in a run.
+    """
+    if not (served and absent.events and objection(absent, served)):
+        return ""
+    if any(asked(part) or not (part.ending and part.endpoints(role)) for part in served):
+        return ""
+    usual = {line.shape for line in _parting_words(absent)}
+    told = [
+        [line for line in _last_words(part) if _in_words(part, line).shape not in usual] for part in served
+    ]
+    return told[0][-1] if all(told) else ""
+
+
+def _last_words(part: Part) -> list[str]:
+    """Its lines, and the exception that it ended with where it raised that itself."""
+    raised = part.traceback.splitlines()[-1:] if meant(part.traceback) else []
+    return list(filter(str.strip, [*part.said(), *raised]))
+
+
 @dataclass(frozen=True)
 class _Words:
     """A line that a subject said, so that it can be compared with a line of another run, which had other inputs.

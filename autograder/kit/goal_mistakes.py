@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from autograder.kit.crashes import meant, what_and_where
-from autograder.kit.giving_up import SILENT, gave_up, patience_not_kept
+from autograder.kit.giving_up import SILENT, gave_up, gives_up_where_served, patience_not_kept
 from autograder.kit.goal_reports import (
     ABORTED,
     ABSENT,
@@ -59,7 +59,22 @@ WAITS_FOREVER = mistake(
         and not asked_for(_successful_run(evidence))
     ),
     "The server was there, but your client never sent a goal and never ended.",
-    "Wait with a limit, `client.wait_for_server(timeout_sec=5.0)`, and send the goal as soon as it is True.",
+    "Wait with a limit, `client.wait_for_server(timeout_sec=5.0)`, and send the goal as soon as it is True. A loop "
+    "that waits begins with `while not`.",
+)
+WAITS_THE_WRONG_WAY_ROUND = mistake(
+    "not_forgotten",
+    lambda evidence: gives_up_where_served(
+        [part for part in evidence if part.name != ABSENT],
+        evidence.part(ABSENT),
+        "action_client",
+        lambda part: bool(asked_for(part)),
+    ),
+    "Your client says “{}” where the server is there, and does not say it where there is none: the condition is the "
+    "wrong way round.",
+    "wait_for_server returns True when the server is there. Write `if not client.wait_for_server(timeout_sec=5.0):` "
+    "above what your client does without a server.",
+    certain=True,
 )
 GAVE_UP_TOO_EARLY = mistake(
     "gave_up_too_early",

@@ -249,6 +249,7 @@ class ActionClient(SeenAsItIs):
     def __init__(self, scenario: Callable[[Bench], None], *ladder: Mistake) -> None:
         self.scenario = scenario
         self.ladder = (
+            goals.WAITS_THE_WRONG_WAY_ROUND,
             *map(_not_by_refusal, common.CRASHES),
             common.endpoint_name("action_client"),
             common.message_type("action_client"),

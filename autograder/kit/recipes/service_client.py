@@ -279,6 +279,7 @@ class Calls:
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most telling first."""
         return (
+            service_mistakes.WAITS_THE_WRONG_WAY_ROUND,
             *common.CRASHES,
             common.endpoint_name("client"),
             common.message_type("client"),

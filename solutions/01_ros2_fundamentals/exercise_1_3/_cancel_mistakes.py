@@ -62,8 +62,9 @@ def not_waited_for(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         "The server came a moment after your client, and no goal of your client ever reached it.",
-        "Wait for the server with a few seconds of patience, wait_for_server(timeout_sec=5.0), and send the goal when "
-        "it is there: a goal that is sent before is lost.",
+        "Wait for the server with a few seconds of patience, and raise or end where it does not come: "
+        "`if not client.wait_for_server(timeout_sec=5.0):`. It returns True when the server is there; a goal that is "
+        "sent before is lost.",
     )
 
 
