@@ -239,9 +239,9 @@ def _main_guard(evidence: Evidence) -> Advice | None:
     if evidence.main.had_node:
         return None
     return Advice(
-        "The program ended at once and said nothing: its main() was not called, or nothing keeps it alive.",
-        "End the file with `if __name__ == '__main__':` and `main()` below it (two underscores on each side), and let "
-        "main() end with rclpy.spin(node).",
+        "The program ended at once and said nothing: its main() was not called, or does nothing that lasts.",
+        "End the file with `if __name__ == '__main__':` (two underscores on each side) and, indented below it, "
+        "`main()`. If these two lines are there, look into main(): it has to make the node and to spin it.",
     )
 
 
@@ -259,8 +259,8 @@ USAGE_MESSAGE = mistake(
     "usage_message",
     _usage_message,
     "Your program did not accept the arguments that it was called with: “{}”.",
-    "Count them: sys.argv[0] is the program itself, so two arguments make len(sys.argv) 3. Negative numbers are "
-    "numbers, too.",
+    "Count them: sys.argv[0] is the program itself, so one argument makes len(sys.argv) 2, two make 3, and three make "
+    "4. A negative number is a number, too.",
     certain=True,
 )
 

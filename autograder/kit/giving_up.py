@@ -338,6 +338,20 @@ def _same(words: set[_Words], others: set[_Words]) -> bool:
     return _all_within(words, others) and _all_within(others, words)
 
 
+def asks_nowhere(absent: Part, served: Part, role: str) -> bool:
+    """True if it is no client of anything, or ends with the same words whether there is a server or not.
+
+    Args:
+        absent: The run without a server.
+        served: One in which it did not ask its server either.
+        role: The client's endpoint, such as ``"client"``.
+    """
+    if not absent.endpoints(role):
+        return True
+    alike = (absent.ending is None) is (served.ending is None)
+    return alike and _same(_parting_words(absent), _parting_words(served))
+
+
 def _all_within(words: set[_Words], others: set[_Words]) -> bool:
     return all(any(line.says_the_same_as(other) for other in others) for line in words)
 

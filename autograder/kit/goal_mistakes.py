@@ -8,6 +8,7 @@ from autograder.kit.crashes import meant, what_and_where
 from autograder.kit.giving_up import SILENT, gave_up, gives_up_where_served, patience_not_kept
 from autograder.kit.goal_reports import (
     ABORTED,
+    ABOUT_A_REFUSED_GOAL,
     ABSENT,
     CANCELED,
     LATE,
@@ -102,7 +103,7 @@ ORDER_NEVER_FILLED = mistake(
 
 def _wrong_order(evidence: Evidence) -> str:
     wrong = goals_as_seen(evidence)
-    return "" if wrong in (NO_GOAL, NOT_AWAITED, CANCELED) else wrong
+    return "" if wrong in (NOT_AWAITED, CANCELED) or wrong.startswith(NO_GOAL) else wrong
 
 
 WRONG_ORDER = mistake(
@@ -192,13 +193,16 @@ STAYS_AFTER_REFUSAL = mistake(
     "never_ended",
     lambda evidence: refused_as_seen(evidence) == "said so, and did not end",
     "Your client says that the goal was rejected, and then waits for ever for a result that will not come.",
-    "End the program there, too: shut down where you found `not goal_handle.accepted`, or spin until a future of your "
-    "own is complete and set its result.",
+    "End the program there, too: where `goal_handle.accepted` is False, say so, call rclpy.shutdown() and return. In a "
+    "function that a notebook calls, raise an error or return.",
 )
 
 
 def _says_nothing_of_refusal(evidence: Evidence) -> str:
-    if refused_as_seen(evidence) != "nothing was said of it":
+    seen = refused_as_seen(evidence)
+    if seen.endswith(ABOUT_A_REFUSED_GOAL):
+        return f": it said {seen.removesuffix(ABOUT_A_REFUSED_GOAL)}."
+    if seen != "nothing was said of it":
         return ""
     return (
         ": it still waits for what a rejected goal never sends."
@@ -328,7 +332,7 @@ RESULT_NOT_REPORTED = Mistake("result_not_reported", _result_not_reported)
 ABORT_NOT_REPORTED = mistake(
     "abort_not_reported",
     lambda evidence: evidence.part(ABORTED).first("result_request") and aborted_as_seen(evidence),
-    "The goal was aborted (status 6), but what your client said of it is the same as for a success: {}.",
+    "The goal was aborted (status 6), and your client does not say so: {}.",
     "Look at the status that comes with the result: say its name, ABORTED, or compare it with "
     "GoalStatus.STATUS_SUCCEEDED (from action_msgs.msg).",
 )

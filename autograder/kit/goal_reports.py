@@ -14,7 +14,7 @@ import re2
 from autograder.kit import outcome_words as words
 from autograder.kit.crashes import SLIPS, meant
 from autograder.kit.evidence import INTERRUPTED
-from autograder.kit.giving_up import looks_elsewhere, objection, remark
+from autograder.kit.giving_up import asks_nowhere, looks_elsewhere, objection, remark
 from autograder.kit.model import Finding
 from autograder.kit.texts_said import mentions, said_first_after
 
@@ -34,6 +34,7 @@ SERVED = (LATE, REFUSED, ABORTED)
 FEEDBACKS = 14
 """Feedback messages of the goal that succeeds: enough for a client that goes deaf after a while to be found out."""
 NO_GOAL = "no goal"
+ABOUT_A_REFUSED_GOAL = " about a goal that was rejected"
 CANCELED = "a request to cancel the goal"
 NOT_AWAITED = "it ended without taking in the answer to its goal"
 MANY_REQUESTS = 3
@@ -96,7 +97,15 @@ def goals_as_seen(evidence: Evidence) -> str:
             return f"order {orders[0]} where {part.inputs['order']} was given"
         if part.name != REFUSED and cancels_unasked(part):
             return CANCELED
-    return "" if all(map(asked_for, parts)) else NO_GOAL
+    missing = [part for part in parts if not asked_for(part)]
+    if not missing or len(missing) == len(parts):
+        return NO_GOAL if missing else ""
+    tried = [part for part in missing if part.events]
+    return (
+        f"{NO_GOAL} where {tried[0].name}"
+        if tried
+        else f"{NO_GOAL} but the first: the other runs were left out"
+    )
 
 
 def cancels_unasked(part: Part) -> bool:
@@ -210,12 +219,14 @@ def refused_as_seen(evidence: Evidence) -> str:
     """
     part = evidence.part(REFUSED)
     goal = part.first("goal")
+    if not part.events:
+        return "not reached"
     if goal is None or not _waits(evidence.main):
-        return NO_GOAL if part.events else "not reached"
+        return NOT_AWAITED if goal else NO_GOAL
     # An empty list, as a function may return one, is no word.
     lines = [line for line in part.said(after=goal) if re2.search(r"\pL", line)]
     if claim := called_accepted(evidence):
-        return f"“{claim}” about a goal that was rejected"
+        return f"“{claim}”{ABOUT_A_REFUSED_GOAL}"
     said = [line for line in _new_words(lines, evidence.main) if not _tells_another(line, evidence)]
     raised = raised_on_purpose(part) and not _tells_another(last_line(part), evidence)
     if part.first("result_request") is not None:
@@ -225,7 +236,8 @@ def refused_as_seen(evidence: Evidence) -> str:
         if not (told or raised):
             return "asked for the result of a goal that was rejected"
     if not (said or raised):
-        return "nothing was said of it"
+        other = [line for line in lines if _tells_another(line, evidence)]
+        return f"“{other[-1]}”{ABOUT_A_REFUSED_GOAL}" if other else "nothing was said of it"
     # A client that goes on after a success, too, may go on here.
     if part.ending is None and evidence.main.ending is not None:
         return "said so, and did not end"
@@ -260,8 +272,10 @@ def aborted_as_seen(evidence: Evidence) -> str:
     """The fault in the report of an aborted goal, in words. The goal's status is on a topic, too."""
     part = evidence.part(ABORTED)
     result = part.first("result")
+    if not part.events:
+        return "not reached"
     if result is None or not _waits(evidence.part(LATE)):
-        return NO_GOAL if part.events else "not reached"
+        return NOT_AWAITED if part.first("goal") else NO_GOAL
     said = said_of_result(part)
     late = {words.without_lists(line).strip() for line in evidence.part(LATE).said()}
     named = [line for line in said if _names_aborted(line) and words.without_lists(line).strip() not in late]
@@ -308,8 +322,8 @@ def given_up(evidence: Evidence) -> str:
         or (late.traceback and not raised_on_purpose(late) and any(map(asked_for, evidence)))
         or looks_elsewhere(evidence, part, "action_client")
     )
-    if part.events and not asked:
-        return "never sent a goal to any server"
+    if part.events and not asked and asks_nowhere(part, late, "action_client"):
+        return "does the same, without a goal, where the server is only late"
     return objection(part, [evidence.main] if asked_for(evidence.main) else [])
 
 
@@ -355,6 +369,8 @@ def reports_the_result(evidence: Evidence) -> Finding:
         return Finding(False, f"{result.data['fields']['sequence']} returned", f"returned {returned}")
     if wrong := miscalled(part):
         return Finding(False, expected, f"“{wrong}” about a goal that succeeded")
+    if not said and part.ending is not None and part.ending.t <= result.t:
+        return Finding(False, expected, "it ended before the result came")
     return Finding(
         reports_result(part), expected, f"“{said[-1]}”" if said else "nothing was said after the result"
     )

@@ -118,21 +118,21 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
         "nested_spin",
         lambda found: any(map(_spins_in_callback, found)),
         "A callback of yours spins, and waits inside that spin for ever: the executor that called it cannot go on.",
-        "Never spin inside a callback. Go on in future.add_done_callback(...), or make the callback async and await.",
+        "Leave the spin out of the callback: send the request there, and go on in future.add_done_callback(...).",
     ),
     (
         "call_in_same_group",
         lambda found: any(_blocks(stack) and _in_callback(stack) for stack in found),
         "A callback of yours makes a blocking call and waits for ever: the answer would have to come through the same "
         "callback group, which is busy with this very callback.",
-        "Use the asynchronous call and go on in future.add_done_callback(...); or give the client a callback group of "
-        "its own and spin with several threads.",
+        "Use the asynchronous call, whose name ends in _async, and go on in future.add_done_callback(...).",
     ),
     (
         "rate_never_spun",
         lambda found: any(map(_sleeps_on_rate, found)),
-        "rate.sleep() waits for ever: a rate is a timer, and a timer only fires while something spins the node.",
-        "Spin the node in a second thread, or use create_timer and rclpy.spin in place of the loop.",
+        "rate.sleep() waits for ever: a rate is a timer, and no thread is free to let it fire.",
+        "Use create_timer and rclpy.spin in place of the loop. Where the loop has to stay, spin the node in a second "
+        "thread; where it is inside a callback, with a MultiThreadedExecutor.",
     ),
     (
         "callback_never_returns",
@@ -173,7 +173,8 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
         lambda found: bool(found) and not any(frame.rclpy for stack in found for frame in stack),
         "Your program is busy with code of its own and nothing spins the node, so none of its callbacks is "
         "ever called.",
-        "Call rclpy.spin(node) at the end of main(), or spin in a second thread beside your loop.",
+        "Write rclpy.spin(node) in place of the loop that waits (rclpy.spin_until_future_complete(node, future) where "
+        "you wait for an answer), or spin in a second thread beside your loop.",
     ),
 )
 

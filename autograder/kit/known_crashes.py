@@ -363,10 +363,9 @@ KNOWN = (
         r"'NoneType' object has no attribute '(?:sum|result|accepted|status|sequence|cancel_goal_async|"
         r"get_result_async|goals_canceling)'",
         "The answer was read before it was there: future.result() is None until the future is done.",
-        "Wait first: spin_until_future_complete(node, future, timeout_sec=5.0), or go on in "
-        "future.add_done_callback(...). If your code does wait, no answer came in time: wait for the service before "
-        "you call it, with `if not client.wait_for_service(timeout_sec=5.0):` and a raise below it, and look at "
-        "future.done() before you read.",
+        "Wait first: rclpy.spin_until_future_complete(node, future), or go on in future.add_done_callback(...). If "
+        "your code does wait, no answer came in time: the wait is too short, or the other end is not there yet, and "
+        "wait_for_service (or wait_for_server) has to come first. Look at future.done() before you read.",
     ),
     Crash(
         "module_not_found",
@@ -385,7 +384,7 @@ KNOWN = (
         "nested_spin",
         r"[Ee]xecutor is already spinning|generator already executing",
         "A callback spins although its own executor is spinning already.",
-        "Never call spin or spin_until_future_complete inside a callback; use add_done_callback or await.",
+        "Never call spin or spin_until_future_complete inside a callback; go on in future.add_done_callback(...).",
     ),
     Crash(
         "not_written",

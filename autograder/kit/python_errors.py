@@ -34,6 +34,12 @@ class Meaning(NamedTuple):
 RUNNING: Sequence[Row] = (
     *NAMES,
     (
+        r'^TypeError: can only concatenate str \(not "(?P<type>[A-Z]\w*)"\)',
+        "A string and a whole {type} are joined with +.",
+        "The string of a message is in its field: write message.data in place of message, with the name that your "
+        "method has for it.",
+    ),
+    (
         r"^TypeError: (?:can only concatenate str|unsupported operand type\(s\) for \+=?: '(?:int|float|str)' and "
         r"'(?:int|float|str)')",
         "A string and a number are added.",

@@ -276,8 +276,8 @@ NAMES: Sequence[Row] = (
     (
         r"^NameError: name '(?P<name>\w+)' is not defined\. Did you mean: '(?P<meant>\w+)'",
         "Python does not know {name}, and knows {meant}.",
-        "If that is what you mean, write {meant}. If {name} belongs to your node, write self.{name}. If a cell defines "
-        "it, run that cell.",
+        "If that is what you mean, write {meant}. If {name} belongs to your node, write self.{name}. If a cell above "
+        "defines it, run that cell; in a program, copy it into this file.",
     ),
     (
         r"^NameError: name '(?P<type>[A-Z]\w*)_(?P<part>Request|Response|Goal|Result|Feedback)' is not defined",

@@ -172,7 +172,7 @@ def gives_up_in_time(evidence: Evidence) -> Finding:
     # Who names the sum has not given up, but added up by itself; a sum that is one of the numbers shows nothing.
     if numbers and sum(numbers) not in numbers and mentions(part.said(), sum(numbers)):
         wrong = "named a sum that no service gave"
-    elif part.events and not asked:
+    elif part.events and not asked and giving_up.asks_nowhere(part, evidence.part(LATE), "client"):
         wrong = "does the same, without a call, where the service is only late"
     else:
         usual = [other for other in Client(evidence).served if other.name != LATE and reports(other)]

@@ -49,7 +49,7 @@ SAID = {
     "TypeError: ActionServer.__init__() missing 1 required positional argument: 'action_name'": "Write self first",
     "TypeError: ask() missing 3 required positional arguments: 'a', 'b', and 'patience_sec'": "'a', 'b', and",
     "TypeError: ask() takes 5 positional arguments but 6 were given": "takes 5 arguments and got 6",
-    "AttributeError: 'NoneType' object has no attribute 'sum'": "wait for the service before you call it",
+    "AttributeError: 'NoneType' object has no attribute 'sum'": "(or wait_for_server) has to come first",
     "TypeError: Publisher.publish() got an unexpected keyword argument 'data'": "publish(String(data=",
     "TypeError: Expected <class 'std_msgs.msg._string.String'>, got <class 'std_msgs.msg._string.Metaclass_String'>": (
         "Write parentheses after the type: msg = String()"

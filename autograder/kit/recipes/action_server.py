@@ -93,9 +93,10 @@ class SendsGoals(SeenAsItIs):
         if long.cancel_accepted is not False or unread or is_quick(long):
             return None
         return Advice(
-            "Your server refuses to cancel: without a cancel_callback, rclpy rejects every cancel request.",
-            "Give the ActionServer a cancel_callback that returns CancelResponse.ACCEPT, and look at "
-            "goal_handle.is_cancel_requested in the loop.",
+            "Your server refuses to cancel: rclpy does so where the ActionServer has no cancel_callback, or one that "
+            "returns anything but CancelResponse.ACCEPT.",
+            "Write cancel_callback=... in the ActionServer, with a method that returns CancelResponse.ACCEPT, and look "
+            "at goal_handle.is_cancel_requested in the loop.",
         )
 
     def _cancel_refused_on_its_way(self, evidence: Evidence) -> Advice | None:

@@ -96,13 +96,7 @@ class Server:
         """
         wrong = self.objections(self.asked if self.count > 1 else calls, objection)
         many = "1 more call answered" if len(calls) == 1 else f"{len(calls)} calls answered"
-        right = (
-            f"{many}, with what was expected"
-            if calls
-            else "not asked any more"
-            if self.asked
-            else "not asked"
-        )
+        right = f"{many}, as expected" if calls else "not asked any more" if self.asked else "not asked"
         return Finding(bool(calls) and not wrong, expected, wrong[0] if wrong else right)
 
 

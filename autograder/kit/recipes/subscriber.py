@@ -234,7 +234,8 @@ def subscribes(evidence: Evidence) -> Finding:
     """A subscription of the subject's is on the topic with the right type."""
     topic, type_name = evidence.reference.only("subscription")
     made = _subscriptions(evidence.main, topic)
-    seen = ", ".join(f"{name} ({kind})" for name, kind in sorted(made.items())) or "no subscription"
+    nothing = "it ended too soon to tell" if evidence.main.ending else "no subscription"
+    seen = ", ".join(f"{name} ({kind})" for name, kind in sorted(made.items())) or nothing
     return Finding(made.get(topic) == type_name, f"{topic} ({type_name})", seen)
 
 
@@ -282,6 +283,8 @@ def says_every_text(evidence: Evidence) -> Finding:
     if missing:
         seen += f"; not “{_text(missing[0])}”"
     complete = len(sent) >= _expected_texts(evidence) and not missing
+    if sent and not missing and not complete:
+        seen += ", and then it no longer answered the judge"
     return Finding(complete, "every string in its log", seen)
 
 
@@ -380,6 +383,12 @@ def _not_logged(evidence: Evidence) -> Advice | None:
         return Advice(
             f"Your node is subscribed to {topic}, but when a string arrives it says nothing.",
             "In the callback, log the string: self.get_logger().info(f'I heard: \"{message.data}\"').",
+        )
+    later = next((event for event in sent[1:] if is_said(_text(event), part)), None)
+    if later is not None:
+        return Advice(
+            f"Your node said “{_text(later)}”, but not “{_text(sent[0])}”, which was sent before it.",
+            "Log every message that the callback is given, without `once`, throttling or a condition.",
         )
     return Advice(
         f"When “{_text(sent[0])}” was sent, your node said “{part.said(after=sent[0])[0]}”: the string that arrived is "

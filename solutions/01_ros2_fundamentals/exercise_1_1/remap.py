@@ -45,7 +45,7 @@ def listener(seen: Launched, _: Launched) -> Finding:
 @remap.criterion("nothing_left", 1, "No node uses the old name")
 def nothing_left(seen: Launched, _: Launched) -> Finding:
     """No node of the subject's uses the old name, in whatever namespace; other topics are free."""
-    there = f"only {seen.topic}" if seen.publishers or seen.subscriptions else "nothing"
+    there = names(seen.publishers | seen.subscriptions) or "nothing"
     old = [name for name in seen.elsewhere if name.rpartition("/")[2] == OLD_NAME]
     right = not old and bool(seen.publishers) and bool(seen.subscriptions)
     return Finding(
@@ -61,7 +61,11 @@ def by_the_launch(seen: Launched, _: Launched) -> Finding:
     count = seen.given_a_rule
     some = f"{count} of the programs on {seen.topic} were given a rule"
     expected = f"each program is given a remapping of {OLD_NAME} by the launch file"
-    return Finding(seen.moved_by_rules, expected, some if count else "no program on it was given a rule")
+    return Finding(
+        seen.moved_by_rules,
+        expected,
+        some if count else f"no program was remapped from {OLD_NAME} to {seen.topic}",
+    )
 
 
 @remap.mistake("only_one_remapped", certain=lambda seen: seen.all_are_there)

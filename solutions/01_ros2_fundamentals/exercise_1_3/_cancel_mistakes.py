@@ -61,7 +61,7 @@ def not_waited_for(evidence: Evidence) -> Advice | None:
     ):
         return None
     return Advice(
-        "The server came a moment after your client, and no goal of your client ever reached it.",
+        "The server was there, or came a moment after your client, and no goal of your client ever reached it.",
         "Wait for the server with a few seconds of patience, and raise or end where it does not come: "
         "`if not client.wait_for_server(timeout_sec=5.0):`. It returns True when the server is there; a goal that is "
         "sent before is lost.",
@@ -146,8 +146,8 @@ def cancel_too_late(evidence: Evidence) -> Advice | None:
     return Advice(
         f"Your client asked to cancel only after {count} feedback messages; the task asks for {FIRST_FEEDBACK} to "
         f"{LAST_FEEDBACK}.",
-        f"Cancel in the feedback callback itself, when the count reaches {FIRST_FEEDBACK}: a timer of a fixed length "
-        "does not know how fast the server is.",
+        f"Cancel in the feedback callback, `if count == {FIRST_FEEDBACK}:`. (A timer "
+        "of a fixed length does not know how fast the server is.)",
     )
 
 
@@ -166,7 +166,8 @@ def cancel_repeated(evidence: Evidence) -> Advice | None:
     return Advice(
         f"Your client asked to cancel {total} times in all; the task asks for one request. Feedback goes on "
         "arriving until the server has ended the goal.",
-        "Remember that you have asked: test `count == 3` rather than `count >= 3`, or keep a flag.",
+        "Ask at one moment only: in the feedback callback test `count == 3` rather than `count >= 3`. Where a timer "
+        "asks, stop it with its cancel(); where a loop asks, put the request before the loop.",
     )
 
 
@@ -179,7 +180,8 @@ def status_not_reported(evidence: Evidence) -> Advice | None:
         if not says_nothing_of_its_success(refused):
             return None
         return Advice(
-            f"One goal of your client {HAS_SUCCEEDED}, and your client said nothing of how it ended.",
+            f"The judge ran your client several times. In one run its goal {HAS_SUCCEEDED}, and your client did not "
+            "say how it ended.",
             "A cancel is a request, which the server may refuse. Log the name of the status whatever it is, not only "
             "CANCELED.",
         )
@@ -202,7 +204,7 @@ def status_misreported(evidence: Evidence) -> Advice | None:
         return None
     words, ended = claim
     return Advice(
-        f"One goal of your client {ended}, but your client said of it “{words}”.",
+        f"The judge ran your client several times. In one run its goal {ended}, but your client said of it “{words}”.",
         "A cancel is a request. The server may refuse it, or agree to it and end the goal in another way. So look at "
         "the status of the result, and say how the goal really ended.",
     )

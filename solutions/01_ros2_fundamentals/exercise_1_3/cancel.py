@@ -88,7 +88,8 @@ def ignores_late_feedback(evidence: Evidence) -> Finding:
     if left_before_its_answer(part):
         return Finding(False, expected, LEFT)
     later = part.events[part.events.index(first) + 1 :]
-    acted = [event for event in later if event.kind in ("cancel", "goal")]
+    arrived = next((place for place, event in enumerate(later) if event.kind == "feedback"), len(later))
+    acted = [event for event in later[arrived:] if event.kind in ("cancel", "goal")]
     seen = f"{len(acted)} more {acted[0].kind} requests" if acted else expected
     return Finding(not acted, expected, seen)
 

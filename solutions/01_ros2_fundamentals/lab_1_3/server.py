@@ -95,7 +95,7 @@ def together(seen: Server, _: Server) -> Finding:
 @server.criterion("alive", 2, "Stays alive")
 def alive(seen: Server, _: Server) -> Finding:
     """The call after all others is answered; with which sum, other criteria say."""
-    return seen.all_right(seen.last, silence, "answers once more after all that")
+    return seen.all_right(seen.last, silence, "one more call is answered after all that")
 
 
 server.knows(

@@ -47,6 +47,8 @@ LONG, BESIDE, AGAIN, LONG_ALONE = range(TWINS.stop, TWINS.stop + 4)
 """The goals of the first part by their numbers. In the second part the last two are good, those before them are bad."""
 LONG_ORDER = 46
 """The order of the goal that is canceled: the largest that there is."""
+LONG_BEGINNING = 3
+"""Numbers that the first feedback of a goal has at most: the two that it begins with, and a new one."""
 PACED = (ALONE, BESIDE, AGAIN)
 """The goals that take time and are to succeed."""
 PACED_ALONE = (ALONE, AGAIN)
@@ -213,7 +215,7 @@ def feedback_objection(evidence: Evidence, seen: FibonacciGoal) -> str:
     if text := feedback_slip(evidence, seen):
         return text
     # It may begin before or with the first new number, and need not tell the last one, which the result does.
-    whole = len(seen.partials[0]) <= 3 and len(seen.partials[-1]) >= len(wanted) - 1
+    whole = len(seen.partials[0]) <= LONG_BEGINNING and len(seen.partials[-1]) >= len(wanted) - 1
     if whole and not seen.was_computed:
         return f"{where}the goal did not come to its end"
     return "" if whole else where + _first_messages(seen)

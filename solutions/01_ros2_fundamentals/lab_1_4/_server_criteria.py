@@ -6,6 +6,7 @@ import functools
 from typing import TYPE_CHECKING
 
 from lab_1_4._goals import (
+    AGAIN,
     ALONE,
     BAD_ORDERS,
     BESIDE,
@@ -81,10 +82,15 @@ def serves(evidence: Evidence) -> Finding:
 def counts(evidence: Evidence) -> Finding:
     """Every good goal that has the server to itself succeeds with the reference's sequence."""
     goals = goals_alone(evidence)
-    wrong = [text for seen in goals if (text := objection(evidence, seen))]
+    wrong = [_told(evidence, seen, text) for seen in goals if (text := objection(evidence, seen))]
     expected = f"succeeds with {expected_sequence(evidence, max(ORDERS))} for order {max(ORDERS)}, and so on"
     seen = wrong[0] if wrong else "it does" if goals else "no goal was sent"
     return Finding(bool(goals) and not wrong, expected, seen)
+
+
+def _told(evidence: Evidence, seen: FibonacciGoal, fault: str) -> str:
+    """A fault, with a word on the goal where the same order was right before."""
+    return f"at the end, once more {fault}" if seen == goal(evidence.part(GOALS), AGAIN) else fault
 
 
 @of_one_server
@@ -96,7 +102,7 @@ def gives_feedback(evidence: Evidence) -> Finding:
     goals, beside = paced_goals_alone(evidence), goal(evidence.part(GOALS), BESIDE)
     if beside.over and not _fault_beside_another(evidence, beside):
         goals.append(beside)
-    wrong = [text for seen in goals if (text := feedback_objection(evidence, seen))]
+    wrong = [_told(evidence, seen, text) for seen in goals if (text := feedback_objection(evidence, seen))]
     if tells_at_the_end(evidence.part(GOALS)):
         wrong.append("all of it came at once, when the work was done")
     seen = wrong[0] if wrong else "it does" if goals else "no goal was sent"

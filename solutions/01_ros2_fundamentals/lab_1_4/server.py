@@ -20,6 +20,7 @@ from lab_1_4._goals import (
     FIRST_TOO_LARGE,
     GOALS,
     LAST_ORDER,
+    LONG_BEGINNING,
     ROUNDS_LEFT,
     TWINS,
     all_goals,
@@ -129,6 +130,12 @@ def goals_mixed_up(seen: Evidence, _: Evidence) -> Advice | None:
     # Where the numbers of two goals get into one list, they grow too large, and that is an exception, too.
     if not wrong or (traceback_of(seen) and not slips):
         return None
+    if far := next((one for one in ended if one.partials and len(one.partials[0]) > LONG_BEGINNING), None):
+        return Advice(
+            f"A goal of order {far.order} begins with {far.partials[0]}: it goes on where an earlier goal ended.",
+            "Make the list anew in each call of the execute callback, with [0, 1] in it. What is stored in self lives "
+            "on after each goal.",
+        )
     again_right = again in ended and not (objection(seen, again) or feedback_slip(seen, again))
     if again_right and beside.status == SUCCEEDED:
         return None  # two at once are right, and large numbers are not
@@ -152,7 +159,14 @@ def wrong_sequence(seen: Evidence, _: Evidence) -> Advice | None:
     wrong = [one for one in good_goals(seen) if one.status == SUCCEEDED and objection(seen, one)]
     if not wrong:
         return None
-    wanted = expected_sequence(seen, int(wrong[0].order or 0))
+    wanted, given = expected_sequence(seen, int(wrong[0].order or 0)), wrong[0].sequence
+    if len(given) == len(wanted):
+        place = next(i for i, (one, other) in enumerate(zip(given, wanted, strict=True)) if one != other)
+        return Advice(
+            f"For order {wrong[0].order}, number {place} of the result (counted from 0) is {given[place]}; it should "
+            f"be {wanted[place]}.",
+            "Begin with [0, 1] in each goal, and append the sum of the last two numbers, whatever its size.",
+        )
     return Advice(
         f"For order {wrong[0].order} the result is {wrong[0].sequence}; it should be {wanted}: one number more than "
         "the order says.",
