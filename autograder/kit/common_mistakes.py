@@ -270,12 +270,12 @@ def ended_too_early(evidence: Evidence) -> Advice | None:
     ending = evidence.main.ending
     if ending is None or traceback_of(evidence) or _main_guard(evidence):
         return None
-    how = {"exited": f"ended with exit code {ending.data.get('code')}", "returned": "returned"}.get(
-        ending.name, "ended"
-    )
+    code = ending.data.get("code")
+    exited = f"ended by itself, with exit code {code}," if code else "ended by itself"
+    how = {"exited": exited, "returned": "returned"}.get(ending.name, "ended")
     return Advice(
         f"The program {how} before its work was done.",
-        "Keep it alive while it has work to do, for example with rclpy.spin(node).",
+        "Keep it alive while it has work to do, for example with rclpy.spin(node), above anything that ends it.",
     )
 
 

@@ -333,8 +333,9 @@ KNOWN = (
     Crash(
         "executor_not_kept",
         r"'NoneType' object has no attribute '(?:spin\w*|add_node|create_task)'",
-        "node.executor is None: a node does not keep its executor, and no variable of yours kept it either.",
-        "Keep the executor in a variable, executor = SingleThreadedExecutor(), and call executor.spin() on that.",
+        "node.executor is None: a node has an executor only while one spins it, and does not keep it.",
+        "Write rclpy.spin(node), or rclpy.spin_until_future_complete(node, future) where you wait for an answer. With "
+        "an executor of your own: executor = SingleThreadedExecutor(), executor.add_node(node), executor.spin().",
     ),
     Crash(
         "result_read_too_early",

@@ -252,13 +252,16 @@ RUNNING: Sequence[Row] = (
     ),
     (
         r"^IndexError: (?P<kind>list|string|tuple|array) (?:assignment )?index out of range",
-        "The {kind} is shorter than that: its first element has the number 0, and the last one len(...) - 1.",
-        "Look how many elements it has before you take one.",
+        "The {kind} has fewer elements than the index asks for: the first element has the index 0, the last one "
+        "len(...) - 1.",
+        "Ask for an index from 0 to len(...) - 1. In a callback, which is called again and again, a count that goes on "
+        "leaves every {kind} behind: do without it there.",
     ),
     (
         r"^IndexError: pop from (?:an )?empty (?P<kind>list|deque|set)",
         "The {kind} has no element left to take.",
-        "A callback is called again and again: what it takes one by one is used up. Check with `if` that one is left.",
+        "A callback is called again and again: what it takes one by one is used up. Do without the {kind}, or let the "
+        "callback do something else when none is left.",
     ),
     (
         r"^(?:RuntimeError: (?:coroutine|generator) raised )?StopIteration",

@@ -32,16 +32,16 @@ NAMES: Sequence[Row] = (
         (
             rf"^(?:NameError: name|ImportError: cannot import name) '(?P<name>{names})'",
             f"{{name}} comes from the module {module}.",
-            f"Write `from {module} import {{name}}` at the top of the program. In a notebook, run the cell with the "
-            "imports.",
+            f"Write `from {module} import {{name}}` at the top of the program, and take {{name}} out of any other "
+            "import. In a notebook, run the cell with the imports.",
         )
         for module, names in _IMPORTED_FROM.items()
     ),
     (
         r"^ImportError: cannot import name",
         "",
-        "Compare the import with the lab's text, letter by letter: is it .msg, .srv or .action, and are the capitals "
-        "the same?",
+        "Compare the import with the lab's text, letter by letter: is it .msg, .srv or .action, are the capitals the "
+        "same, and is no letter missing?",
     ),
     (
         rf"^ +self\.(?P<name>\w+) == .*{MARKS}AttributeError: '[A-Z]\w*' object has no attribute",
