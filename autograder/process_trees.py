@@ -151,7 +151,11 @@ def end_below(pid: int) -> None:
     left: set[Known] = set()
     while living := known(one for one in descendants(pid) if _lives(one)) - left:
         send(living, signal.SIGSTOP)  # so that none can start another while they are gone through
-        left |= {process for process in living if not _signal(process, signal.SIGKILL, wait=True)}
+        left |= {process for process in living if not _signal(process, signal.SIGKILL)}
+        # The first process of a box ends only when all that was in it has been reaped (pid_namespaces(7)): by us, where
+        # they were started from outside and their parent is gone.
+        if pid != os.getpid() or not _reap(_children(pid)):
+            time.sleep(0.005)
 
 
 def keep(parent: int, command: list[str]) -> int:
@@ -227,8 +231,8 @@ def end_processes_in(folder: Path) -> None:
     kill(known(pid for pid in _processes() if pid != os.getpid() and _mentions(pid, place)))
 
 
-def _signal(process: Known, number: int, *, wait: bool = False) -> bool:
-    """Send a signal to a process that is still there; wait for its end where that is wanted.
+def _signal(process: Known, number: int) -> bool:
+    """Send a signal to a process that is still there.
 
     One handle is open at a time: a family may have more members than we may have open files.
 
@@ -241,8 +245,6 @@ def _signal(process: Known, number: int, *, wait: bool = False) -> bool:
         try:
             if began and started_at(pid) == began:
                 signal.pidfd_send_signal(handle, number)
-                if wait:
-                    select.select([handle], [], [])  # readable once it has ended (pidfd_open(2))
         except PermissionError:
             return False
         finally:

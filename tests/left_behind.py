@@ -7,6 +7,7 @@ that nothing gets out of sight, whatever session and environment it has given it
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -38,6 +39,10 @@ def main(name: str, word: str, *command: str) -> int:
     deadline = time.monotonic() + PATIENCE
     while (left := below()) and time.monotonic() < deadline:
         process.poll()
+        # The first process of a box ends only when all that was in it has been reaped (pid_namespaces(7)).
+        with contextlib.suppress(ChildProcessError):
+            while process.returncode is not None and os.waitpid(-1, os.WNOHANG)[0]:
+                pass
         time.sleep(0.05)
     for pid, line in left.items():
         print(f"left: {pid} {line}")

@@ -16,13 +16,12 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 from typing import TYPE_CHECKING
 
 import psutil
 
 from autograder.boxes.scratch import HeldFolder
-from autograder.process_trees import adopt_orphans, die_with_parent
+from autograder.process_trees import adopt_orphans, die_with_parent, end_below
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -63,10 +62,7 @@ def below() -> dict[int, str]:
 
 def end_all() -> None:
     """Kill the processes below this one, and those that they start meanwhile, until there is none."""
-    while left := below():
-        for pid in left:
-            _kill(pid)
-        time.sleep(0.01)
+    end_below(os.getpid())
 
 
 def _kill(pid: int) -> None:

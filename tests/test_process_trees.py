@@ -102,3 +102,29 @@ def test_a_later_process_of_the_same_number_is_left_alone() -> None:
         assert sleeper.poll() is None
         kill(known([sleeper.pid]))
         assert sleeper.wait(60.0) == -signal.SIGKILL
+
+
+ENTERED = """
+import os, subprocess, time
+from autograder.process_trees import adopt_orphans, descendants, end_below
+adopt_orphans()
+def started(*command):
+    process = subprocess.Popen([*command, "sleep", "600"])
+    while not (below := descendants(process.pid)):
+        time.sleep(0.01)
+    return below[0]
+first = started(*UNSHARE)
+started("nsenter", "--user", "--preserve-credentials", "--pid", "--target", str(first))
+end_below(os.getpid())
+"""
+UNSHARE = ("unshare", "--user", "--map-root-user", "--pid", "--fork")
+
+
+@pytest.mark.skipif(
+    subprocess.run([*UNSHARE, "true"], capture_output=True, check=False).returncode != 0,
+    reason="no namespaces are possible here",
+)
+def test_the_first_process_of_a_box_ends_though_others_were_started_into_it_from_outside() -> None:
+    program = f"UNSHARE = {UNSHARE}\n{ENTERED}"
+    done = subprocess.run([sys.executable, "-c", program], timeout=60, check=False)
+    assert done.returncode == 0
