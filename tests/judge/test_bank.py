@@ -30,6 +30,7 @@ def test_what_was_seen_of_each_answer_is_judged_right(exercise_id: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("answer", JUDGED)
 def test_answer_is_judged_right(answer: Answer, verdicts: dict[str, Verdict]) -> None:
+    assert answer.name in verdicts, "the judge came to no verdict, twice; its error stands above"
     verdict = verdicts[answer.name]
     if verdict.diagnosis and verdict.diagnosis.text == TOO_BUSY:
         pytest.skip(TOO_BUSY)  # also when none of the others was judged beside it

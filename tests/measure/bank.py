@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from typing import TYPE_CHECKING
 
@@ -35,7 +36,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of this program."""
     of_answers(parser)
     parser.add_argument("--print", action="store_true", help="print the programs, judge none")
-    parser.add_argument("--lines", action="store_true", help="print each verdict as a line of JSON")
+    parser.add_argument(
+        "--lines",
+        action="store_true",
+        help="print each verdict as a line of JSON; whoever reads them judges them",
+    )
 
 
 def main(options: argparse.Namespace) -> int:
@@ -54,10 +59,14 @@ def main(options: argparse.Namespace) -> int:
             objections.append(objection)
             print(f"{turn.subject.name}: {objection} ({verdict.seconds:.1f} s)", flush=True)
 
+    def failed(turn: Turn[Answer], trouble: str) -> None:
+        objections.append(trouble)
+        print(f"{turn.subject.name}: no verdict, twice: {trouble}", file=sys.stderr, flush=True)
+
     began = time.monotonic()
     warm_up()
     turns = [Turn(answer, "turn 0") for answer in longest_first(wanted)]
-    judge_all(turns, jobs=options.jobs, done=done)
+    judge_all(turns, jobs=options.jobs, done=done, failed=failed)
     if not options.lines:
         print(f"{len(wanted)} answers in {time.monotonic() - began:.0f} s, {len(objections)} objections")
-    return 1 if objections else 0
+    return 1 if objections and not options.lines else 0
