@@ -185,7 +185,7 @@ def keep(parent: int, command: list[str]) -> int:
             ready, _, _ = select.select([parent_ends, signalled], [], [])
             if parent_ends in ready or signal.SIGTERM in os.read(signalled, 1 << 12):
                 return -signal.SIGKILL
-            code = _reaped(child)
+            code = reaped(child)
         return code
     finally:
         end_below(os.getpid())
@@ -209,8 +209,8 @@ def _start(command: list[str]) -> int:
     return child
 
 
-def _reaped(wanted: int) -> int | None:
-    """Reap all children that have ended; the exit code of one of them, None where it lives."""
+def reaped(wanted: int) -> int | None:
+    """Reap all children that have ended; the exit code of one of them, None where it lives or was reaped before."""
     code: int | None = None
     with contextlib.suppress(ChildProcessError):
         while (ended := os.waitpid(-1, os.WNOHANG))[0]:

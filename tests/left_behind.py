@@ -7,14 +7,13 @@ that nothing gets out of sight, whatever session and environment it has given it
 
 from __future__ import annotations
 
-import contextlib
 import os
 import signal
 import subprocess
 import sys
 import time
 
-from autograder.process_trees import adopt_orphans
+from autograder.process_trees import adopt_orphans, reaped
 from tests.nothing_left import below, end_all
 
 PATIENCE = 180.0
@@ -38,11 +37,8 @@ def main(name: str, word: str, *command: str) -> int:
     (os.killpg if number is signal.SIGINT else os.kill)(process.pid, number)
     deadline = time.monotonic() + PATIENCE
     while (left := below()) and time.monotonic() < deadline:
-        process.poll()
         # The first process of a box ends only when all that was in it has been reaped (pid_namespaces(7)).
-        with contextlib.suppress(ChildProcessError):
-            while process.returncode is not None and os.waitpid(-1, os.WNOHANG)[0]:
-                pass
+        reaped(process.pid)
         time.sleep(0.05)
     for pid, line in left.items():
         print(f"left: {pid} {line}")

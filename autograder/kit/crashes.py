@@ -149,6 +149,17 @@ _FRAME_WITH_CODE = re2.compile(r'(?m)^ {2}File "(?P<file>[^"]*)", line \d+.*\n {
 _INSTALLED = re2.compile(r"/(site|dist)-packages/|/lib/python3\.\d+/|/opt/ros/")
 
 
+def last_line_of(traceback: str) -> str:
+    """The exception in a traceback; empty where there is none."""
+    return next(filter(str.strip, reversed(traceback.splitlines())), "")
+
+
+def on_purpose(traceback: str) -> bool:
+    """True if a program ended with an exception that it raised itself, or with one that is no slip."""
+    last = last_line_of(traceback)
+    return bool(last) and (meant(traceback) or not last.startswith(SLIPS))
+
+
 def meant(traceback: str) -> bool:
     """True if the innermost line of a traceback is one of the program's own that says ``raise`` or ``assert``."""
     frames = list(_FRAME_WITH_CODE.finditer(traceback))

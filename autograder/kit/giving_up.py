@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.crashes import SLIPS, meant
+from autograder.kit.crashes import last_line_of, meant, on_purpose
 from autograder.kit.model import mistake
 
 if TYPE_CHECKING:
@@ -195,7 +195,7 @@ def _failed_aloud(part: Part) -> bool:
     lines = part.traceback.strip().splitlines()
     if not lines:
         return part.ending is not None and part.ending.name == "raised"
-    return meant(part.traceback) or not lines[-1].startswith((*SLIPS, _SHUT_DOWN))
+    return on_purpose(part.traceback) and (meant(part.traceback) or not lines[-1].startswith(_SHUT_DOWN))
 
 
 def broken_patience(part: Part) -> str:
@@ -278,18 +278,40 @@ def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool])
     return bool(absent.ending and told and ended) and all(_same(_parting_words(part), told) for part in ended)
 
 
-def gives_up_where_served(
+def not_forgotten(
+    absent: str,
+    noun: str,
+    role: str,
+    served: Callable[[Evidence], Sequence[Part]],
+    asked: Callable[[Part], bool],
+) -> Mistake:
+    """A client gives up where its server is there, and not where it is absent: its condition lacks a ``not``.
+
+    Args:
+        absent: The name of the run without a server.
+        noun: What is waited for, ``"service"`` or ``"server"``, as in the name of the wait.
+        role: The client's endpoint, such as ``"client"``.
+        served: Gives the runs with a server.
+        asked: Whether the subject asked the server for something in a run.
+    """
+    wait = f"wait_for_{noun}"
+    return mistake(
+        "not_forgotten",
+        lambda evidence: _gives_up_where_served(served(evidence), evidence.part(absent), role, asked),
+        f"Your client says “{{}}” where the {noun} is there, and does not say it where there is none: the condition is "
+        "the wrong way round.",
+        f"{wait} returns True when the {noun} is there. Write `if not client.{wait}(timeout_sec=5.0):` above what your "
+        f"client does without a {noun}.",
+        certain=True,
+    )
+
+
+def _gives_up_where_served(
     served: Sequence[Part], absent: Part, role: str, asked: Callable[[Part], bool]
 ) -> str:
     """The words with which a client ends where its server is there, and not where it is absent; empty for none.
 
     Empty also where it gives up well without a server: what it says where there is one is then about something else.
-
-    Args:
-        served: The runs with a server.
-        absent: The run without one.
-        role: The client's endpoint, such as ``"client"``.
-        asked: Whether the subject asked the server for something in a run.
     """
     if not (served and absent.events and objection(absent, served)):
         return ""
@@ -304,8 +326,8 @@ def gives_up_where_served(
 
 def _last_words(part: Part) -> list[str]:
     """Its lines, and the exception that it ended with where it raised that itself."""
-    raised = part.traceback.splitlines()[-1:] if meant(part.traceback) else []
-    return list(filter(str.strip, [*part.said(), *raised]))
+    raised = last_line_of(part.traceback) if meant(part.traceback) else ""
+    return list(filter(str.strip, [*part.said(), raised]))
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.kit.crashes import meant, what_and_where
-from autograder.kit.giving_up import SILENT, gave_up, gives_up_where_served, patience_not_kept
+from autograder.kit.crashes import meant, on_purpose, what_and_where
+from autograder.kit.giving_up import SILENT, gave_up, not_forgotten, patience_not_kept
 from autograder.kit.goal_reports import (
     ABORTED,
     ABOUT_A_REFUSED_GOAL,
@@ -24,7 +24,6 @@ from autograder.kit.goal_reports import (
     goals_as_seen,
     left_at_once,
     miscalled,
-    raised_on_purpose,
     refused_as_seen,
     reports_result,
     returned_instead,
@@ -63,19 +62,12 @@ WAITS_FOREVER = mistake(
     "Wait with a limit, `client.wait_for_server(timeout_sec=5.0)`, and send the goal as soon as it is True. A loop "
     "that waits begins with `while not`.",
 )
-WAITS_THE_WRONG_WAY_ROUND = mistake(
-    "not_forgotten",
-    lambda evidence: gives_up_where_served(
-        [part for part in evidence if part.name != ABSENT],
-        evidence.part(ABSENT),
-        "action_client",
-        lambda part: bool(asked_for(part)),
-    ),
-    "Your client says “{}” where the server is there, and does not say it where there is none: the condition is the "
-    "wrong way round.",
-    "wait_for_server returns True when the server is there. Write `if not client.wait_for_server(timeout_sec=5.0):` "
-    "above what your client does without a server.",
-    certain=True,
+WAITS_THE_WRONG_WAY_ROUND = not_forgotten(
+    ABSENT,
+    "server",
+    "action_client",
+    lambda evidence: [part for part in evidence if part.name != ABSENT],
+    lambda part: bool(asked_for(part)),
 )
 GAVE_UP_TOO_EARLY = mistake(
     "gave_up_too_early",
@@ -170,7 +162,7 @@ RESULT_OF_REJECTED_GOAL = mistake(
 
 def crashed_by_refusal(evidence: Evidence) -> Advice | None:
     """It goes on with a refused goal until an exception stops it, and comes through all other parts without one."""
-    crashed = [part for part in evidence if part.traceback and not raised_on_purpose(part)]
+    crashed = [part for part in evidence if part.traceback and not on_purpose(part.traceback)]
     if [part.name for part in crashed] != [REFUSED]:
         return None
     return Advice(

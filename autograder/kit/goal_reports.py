@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit import outcome_words as words
-from autograder.kit.crashes import SLIPS, meant
+from autograder.kit.crashes import last_line_of, on_purpose
 from autograder.kit.evidence import INTERRUPTED
 from autograder.kit.giving_up import asks_nowhere, looks_elsewhere, objection, remark
 from autograder.kit.model import Finding
@@ -196,16 +196,6 @@ def _new_words(lines: Sequence[str], *others: Part, reduced: Callable[[str], str
     return [line for line in lines if reduced(line) not in usual]
 
 
-def last_line(part: Part) -> str:
-    """The exception in its traceback; empty where there is none."""
-    return next(filter(str.strip, reversed(part.traceback.splitlines())), "")
-
-
-def raised_on_purpose(part: Part) -> bool:
-    """True if it ended with an exception that it raised itself, or with one that is no slip."""
-    return bool(last_line(part)) and (meant(part.traceback) or not last_line(part).startswith(SLIPS))
-
-
 def _waits(late: Part) -> bool:
     """True if it waits for a late server and a late answer; otherwise timing decides which runs it meets."""
     return bool(asked_for(late)) and not left_at_once(late)
@@ -228,7 +218,7 @@ def refused_as_seen(evidence: Evidence) -> str:
     if claim := called_accepted(evidence):
         return f"“{claim}”{ABOUT_A_REFUSED_GOAL}"
     said = [line for line in _new_words(lines, evidence.main) if not _tells_another(line, evidence)]
-    raised = raised_on_purpose(part) and not _tells_another(last_line(part), evidence)
+    raised = on_purpose(part.traceback) and not _tells_another(last_line_of(part.traceback), evidence)
     if part.first("result_request") is not None:
         accepted = [other for other in evidence if other.name not in (REFUSED, ABSENT)]
         new = _new_words(said, *accepted, reduced=_without_end)
@@ -264,7 +254,7 @@ def _tells_another(line: str, evidence: Evidence) -> bool:
     if any(words.ends_as(word, line) for word in (words.SUCCEEDED, *_FAILURES)):
         return True
     absent = evidence.part(ABSENT)
-    same = shape(line) in {shape(other) for other in (*absent.said(), last_line(absent))}
+    same = shape(line) in {shape(other) for other in (*absent.said(), last_line_of(absent.traceback))}
     return same and re2.search(r"(?i)\bserver\b|nobody|no one|time", line) is not None
 
 
@@ -285,7 +275,7 @@ def aborted_as_seen(evidence: Evidence) -> str:
         if words.ends_as(words.SUCCEEDED, line) or words.ends_as(_CANCELED, line):
             return f"“{line}”"
     new = [line for line in _new_words(said, evidence.part(LATE)) if not _names_another(line)]
-    if named or new or raised_on_purpose(part):
+    if named or new or on_purpose(part.traceback):
         return ""
     if part.first("result_request") is None:
         return "never asked for the result"
@@ -319,7 +309,7 @@ def given_up(evidence: Evidence) -> str:
     late = evidence.part(LATE)
     asked = (
         asked_for(late)
-        or (late.traceback and not raised_on_purpose(late) and any(map(asked_for, evidence)))
+        or (late.traceback and not on_purpose(late.traceback) and any(map(asked_for, evidence)))
         or looks_elsewhere(evidence, part, "action_client")
     )
     if part.events and not asked and asks_nowhere(part, late, "action_client"):

@@ -167,16 +167,8 @@ WAITS_FOREVER = mistake(
     "`if not client.wait_for_service(timeout_sec=5.0):` say so and stop. It returns True as soon as the service is "
     "there, so a loop that waits begins with `while not`.",
 )
-WAITS_THE_WRONG_WAY_ROUND = mistake(
-    "not_forgotten",
-    lambda evidence: giving_up.gives_up_where_served(
-        Client(evidence).served, evidence.part(ABSENT), "client", lambda part: bool(requests(part))
-    ),
-    "Your client says “{}” where the service is there, and does not say it where there is none: the condition is the "
-    "wrong way round.",
-    "wait_for_service returns True when the service is there. Write `if not client.wait_for_service(timeout_sec=5.0):` "
-    "above what your client does without a service.",
-    certain=True,
+WAITS_THE_WRONG_WAY_ROUND = giving_up.not_forgotten(
+    ABSENT, "service", "client", lambda evidence: Client(evidence).served, lambda part: bool(requests(part))
 )
 GAVE_UP_TOO_EARLY = mistake(
     "gave_up_too_early",

@@ -53,9 +53,10 @@ class Crowding:
         self._thread.join()
 
     def _count(self) -> None:
-        self._counts.append(self._runnable())
-        while not self._over.wait(_EVERY):
+        while True:
             self._counts.append(self._runnable())
+            if self._over.wait(_EVERY):
+                return
 
     @property
     def too_busy(self) -> bool:

@@ -330,6 +330,7 @@ def _said_again(evidence: Evidence) -> Advice | None:
     )
 
 
+_LOG_EACH = "Log every message that the callback is given, without `once`, throttling or a condition."
 _WRITE_F = "Write an f before the opening quotation mark: f'I heard: {message.data}'. Python then replaces the braces."
 
 
@@ -377,7 +378,7 @@ def _not_logged(evidence: Evidence) -> Advice | None:
     if silent is not sent[0]:
         return Advice(
             f"Your node said the first strings, but not “{_text(silent)}”.",
-            "Log every message that the callback is given, without `once`, throttling or a condition.",
+            _LOG_EACH,
         )
     if len(part.said(after=sent[0])) == 0:
         return Advice(
@@ -388,7 +389,7 @@ def _not_logged(evidence: Evidence) -> Advice | None:
     if later is not None:
         return Advice(
             f"Your node said “{_text(later)}”, but not “{_text(sent[0])}”, which was sent before it.",
-            "Log every message that the callback is given, without `once`, throttling or a condition.",
+            _LOG_EACH,
         )
     return Advice(
         f"When “{_text(sent[0])}” was sent, your node said “{part.said(after=sent[0])[0]}”: the string that arrived is "

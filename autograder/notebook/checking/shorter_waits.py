@@ -17,6 +17,7 @@ import math
 import sys
 import time
 import weakref
+from time import monotonic  # as it is while that of the module is watched
 from typing import TYPE_CHECKING, Any, Self
 
 import rclpy
@@ -94,8 +95,7 @@ class ShorterWaits:
             (owner, name, getattr(owner, name)) for owner, name in _PLACES
         ]
         usual = {name: value for _, name, value in self._usual}
-        usual_sleep, monotonic = usual["sleep"], time.monotonic
-        self._monotonic = monotonic
+        usual_sleep = usual["sleep"]
 
         def sleep(seconds: float, /) -> None:
             if self.factor < 1.0 and seconds > SHORT and self._is_subject():
@@ -178,7 +178,7 @@ class ShorterWaits:
             left -= spared
             self._tell(Spared, seconds=float(spared))
             usual_sleep(min(SHORT, spared))
-        return self._monotonic() + left
+        return monotonic() + left
 
     def _tell_patience(self, timeout_sec: float | None, call: int) -> None:
         seconds = FOREVER if timeout_sec is None else timeout_sec

@@ -249,12 +249,12 @@ def not_written(seen: Evidence, _: Evidence) -> bool:
 def gave_up(seen: Evidence, _: Evidence) -> Advice | None:
     """A TimeoutError, as the waiting that the notebook hands out raises it, although both nodes were there."""
     found = [_GAVE_UP.search(part.traceback) for part, given in _wrong(seen) if given is None]
-    gave_up = [match[0] for match in found if match]
-    if not gave_up:
+    words = [match[0] for match in found if match]
+    if not words:
         return None
     return Advice(
-        f"Your function gave up waiting in {len(gave_up)} of the {len(list(seen))} runs, although both nodes were "
-        f"there: {gave_up[0]}",
+        f"Your function gave up waiting in {len(words)} of the {len(list(seen))} runs, although both nodes were "
+        f"there: {words[0]}",
         "Look at what you leave out: of a node's topics only /rosout and /parameter_events are to be passed over. And "
         "do you ask for the publishers of the talker, and for the subscriptions of the listener?",
     )

@@ -38,7 +38,7 @@ from autograder.kit.goals_seen import CANCELED, status_text
 from autograder.kit.model import Finding
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from autograder.kit.evidence import Evidence
 
@@ -84,6 +84,10 @@ def counts(evidence: Evidence) -> Finding:
     goals = goals_alone(evidence)
     wrong = [_told(evidence, seen, text) for seen in goals if (text := objection(evidence, seen))]
     expected = f"succeeds with {expected_sequence(evidence, max(ORDERS))} for order {max(ORDERS)}, and so on"
+    return _all_right(goals, wrong, expected)
+
+
+def _all_right(goals: Sequence[FibonacciGoal], wrong: Sequence[str], expected: str) -> Finding:
     seen = wrong[0] if wrong else "it does" if goals else "no goal was sent"
     return Finding(bool(goals) and not wrong, expected, seen)
 
@@ -105,8 +109,7 @@ def gives_feedback(evidence: Evidence) -> Finding:
     wrong = [_told(evidence, seen, text) for seen in goals if (text := feedback_objection(evidence, seen))]
     if tells_at_the_end(evidence.part(GOALS)):
         wrong.append("all of it came at once, when the work was done")
-    seen = wrong[0] if wrong else "it does" if goals else "no goal was sent"
-    return Finding(bool(goals) and not wrong, "one more number in each feedback message", seen)
+    return _all_right(goals, wrong, "one more number in each feedback message")
 
 
 @of_one_server
