@@ -1,4 +1,4 @@
-"""Who imports whom: the rules, held to the code; docs/architecture.md has them in short."""
+"""Who imports whom: the rules, held to the code."""
 
 from __future__ import annotations
 

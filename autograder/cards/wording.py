@@ -129,8 +129,10 @@ def tally(verdict: Verdict) -> str:
 
 
 def fine_print(verdict: Verdict) -> list[str]:
-    """The facts to quote in a question or an appeal: the exercise's id, the seed, the time that the check took."""
+    """The facts to quote in a question or an appeal: the exercise's id, the diagnosis, the seed, the check's time."""
     parts = [verdict.exercise]
+    if verdict.diagnosis:
+        parts.append(verdict.diagnosis.key)  # docs/mistakes.md explains each
     if verdict.seed:
         parts.append(f"seed {verdict.seed}")
     if verdict.seconds > 0:
