@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
-from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
 
 import re2
@@ -59,8 +58,8 @@ def has_much_of(line: str, text: str) -> bool:
     """True if a line has a part of a text in it that no line has by chance, in capitals or not."""
     if tells(line, text) or any(byte in line for byte in _BYTE):
         return False
-    found = SequenceMatcher(None, line.lower(), text.lower(), autojunk=False).find_longest_match()
-    return found.size >= MUCH
+    where, what = line.lower(), text.lower()
+    return any(what[i : i + MUCH] in where for i in range(len(what) - MUCH + 1))
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,8 @@ SAYING = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 """Seconds of wall time, after its node appeared, in which it must have said its line."""
 LATE = 0.3
 """Seconds without any event after which the log of a program that said its line has arrived."""
+COMPARED, LONG = 200, 400
+"""Lines, and characters of a line, that are compared with the expected one: comparing a flood would take minutes."""
 
 
 class Ran:
@@ -68,7 +70,8 @@ class Ran:
         if self.says_it:
             return self.line
         words = self.words
-        near = difflib.get_close_matches(self.line, words, n=1, cutoff=0.0) or words[:1]
+        alike = [word for word in words[:COMPARED] if len(word) < LONG]
+        near = difflib.get_close_matches(self.line, alike, n=1, cutoff=0.0) or words[:1]
         return near[0] if near else ""
 
     @property
@@ -141,11 +144,12 @@ class Program:
             return Finding(False, expected, workspace.seen_of_build(report))
         if report is not None and report.missing:
             return Finding(False, expected, f"built; there is no {report.missing} in it")
+        if programs.entry_point(evidence, self._entry):
+            return Finding(False, expected, "built; its entry point leads nowhere")
         seen = Ran(evidence)
-        ran = seen.has_node or bool(seen.words)
-        raised = any(part.traceback for part in evidence)
-        stopped = "the program stopped with an exception" if raised else "the program did nothing"
-        return Finding(ran, expected, "built and started" if ran else stopped)
+        # A program that raises an exception was started, too; what it does not do, the other criteria say.
+        ran = seen.has_node or bool(seen.words) or any(part.traceback for part in evidence)
+        return Finding(ran, expected, "built and started" if ran else "the program did nothing")
 
     def is_a_node(self, evidence: Evidence) -> Finding:
         """A node of the program's is on the graph."""
