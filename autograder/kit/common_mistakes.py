@@ -24,6 +24,7 @@ __all__ = [
     "NOTHING_THERE",
     "NOT_BEGUN",
     "OTHER_CRASHES",
+    "STEP_MISSING",
     "USAGE_MESSAGE",
     "ended_too_early",
     "endpoint_name",
@@ -55,6 +56,10 @@ _MADE_BY = {
     "action_server": "ActionServer",
 }
 _KEY = {"topic": "topic_name", "service": "service_name", "action": "action_name"}
+STEP_MISSING = (
+    "Find the TODO in your code and write that step. In a notebook, hints below the cell open one at a time."
+)
+"""What to do where a step of the task is not written yet."""
 
 
 def _wanted(evidence: Evidence, role: str) -> Mapping[str, str]:
@@ -114,7 +119,7 @@ def one_is_missing(*roles: str) -> Mistake:
         role, name = missing[0]
         return Advice(
             f"Your node has nothing that {_WORD[role][0]} {name}; the rest is there.",
-            "Find the TODO in your solution cell and write that step; the hints below it open one at a time.",
+            STEP_MISSING,
         )
 
     return Mistake("not_written", recognise)
@@ -265,6 +270,10 @@ USAGE_MESSAGE = mistake(
 )
 
 
+_WORK = ("message", "request", "answered", "goal", "goal_answer", "matched")
+"""The kinds of events that show a program at work."""
+
+
 def ended_too_early(evidence: Evidence) -> Advice | None:
     """It ended by itself while it had work to do, after it had said or done something."""
     ending = evidence.main.ending
@@ -273,9 +282,12 @@ def ended_too_early(evidence: Evidence) -> Advice | None:
     code = ending.data.get("code")
     exited = f"ended by itself, with exit code {code}," if code else "ended by itself"
     how = {"exited": exited, "returned": "returned"}.get(ending.name, "ended")
+    keep = "Keep it alive while it has work to do, for example with rclpy.spin(node), above anything that ends it."
+    if any(part.said() or any(map(part.of, _WORK)) for part in evidence):
+        return Advice(f"The program {how} before its work was done.", keep)
     return Advice(
-        f"The program {how} before its work was done.",
-        "Keep it alive while it has work to do, for example with rclpy.spin(node), above anything that ends it.",
+        f"The program {how} and did nothing that the judge could see.",
+        f"If your code still has its TODO, begin there. {keep}",
     )
 
 
@@ -298,7 +310,7 @@ def _not_written(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         "Your code runs, but it has no publisher, subscription, client or server yet.",
-        "Find the TODO in your solution cell and write that step; the hints below it open one at a time.",
+        STEP_MISSING,
     )
 
 
@@ -328,7 +340,7 @@ def _returned_silently(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         "Your function returns nothing, at once, and calls no server: a step is not written yet.",
-        "Find the TODO in your solution cell and write that step; the hints below it open one at a time.",
+        STEP_MISSING,
     )
 
 

@@ -18,9 +18,7 @@ class Event:
 
     Attributes:
         t: Seconds of wall time since the part began.
-        kind: ``message``, ``sent``, ``request``, ``response``, ``goal``, ``feedback``, ``cancel``,
-            ``result_request``, ``result``, ``log``, ``output``, ``subject``, ``mismatch``, ``interface``, ``looked``,
-            ``announced``.
+        kind: What happened, such as ``message`` or ``goal``; docs/exercise-reference.md lists every kind with its data.
         name: The topic, service or action; the stream of an output line; what happened to the subject.
         data: The rest, as JSON-able values.
         sim: Simulated seconds where the judge stepped the clock, else None.
@@ -105,6 +103,7 @@ class Part:
 
 
 _ENDINGS = ("exited", "returned", "raised")
+_OF_A_NOTEBOOK = ("started", "constructed", "never_constructed", "returned", "raised")
 INTERRUPTED = "Ctrl-C"
 """The name of the event that stands where the judge has pressed Ctrl-C."""
 
@@ -251,6 +250,11 @@ class Evidence:
     def main(self) -> Part:
         """The first part."""
         return self.parts[0] if self.parts else Part("nothing")
+
+    @property
+    def in_a_notebook(self) -> bool:
+        """True if the subject is a class or a function of a notebook, and not a program."""
+        return any(e.kind == "subject" and e.name in _OF_A_NOTEBOOK for part in self for e in part.events)
 
     def __iter__(self) -> Iterator[Part]:
         return iter(self.parts)

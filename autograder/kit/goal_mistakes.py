@@ -185,8 +185,8 @@ STAYS_AFTER_REFUSAL = mistake(
     "never_ended",
     lambda evidence: refused_as_seen(evidence) == "said so, and did not end",
     "Your client says that the goal was rejected, and then waits for ever for a result that will not come.",
-    "End the program there, too: where `goal_handle.accepted` is False, say so, call rclpy.shutdown() and return. In a "
-    "function that a notebook calls, raise an error or return.",
+    "End there, too. In a notebook, raise an error or return where `goal_handle.accepted` is False. In a program, say "
+    "so there, call rclpy.shutdown() and return.",
 )
 
 
@@ -314,7 +314,7 @@ def _result_not_reported(evidence: Evidence) -> Advice | None:
         )
     return Advice(
         "The result came, but your client did not say its sequence.",
-        "When the result is there, log future.result().result.sequence (and in the notebook return it).",
+        "When the result is there, log future.result().result.sequence. In a notebook, return it, too.",
     )
 
 

@@ -1,9 +1,16 @@
-"""Counts, and the difference of two texts, in the words of a sentence for a student."""
+"""Counts, lists, the difference of two texts, and the sentences that concern a student's kind of answer."""
 
 from __future__ import annotations
 
+import re2
+
 SHOWN = 16
 """Characters that are quoted behind the place where two texts differ."""
+_LONG_LIST = re2.compile(r"\[(-?\d+(?:, -?\d+){4}), (?:-?\d+, ){6,}(-?\d+, -?\d+)\]")
+"""A list of more than a dozen numbers: its first five and its last two are kept."""
+_OF_ITS_KIND = {
+    kind: re2.compile(rf"(^|[.?!] )(?:In a {kind}, .*?[.?!](?: |$))+") for kind in ("notebook", "program")
+}
 
 
 def counted(number: int, thing: str) -> str:
@@ -25,3 +32,20 @@ def first_difference(said: str, wanted: str) -> str:
 def _next(text: str, same: str) -> str:
     rest = text[len(same) :]
     return f"“{rest[:SHOWN]}”" if rest else "nothing more"
+
+
+def shortened(text: str) -> str:
+    """The text with the middle of each long list of numbers left out."""
+    return str(_LONG_LIST.sub(lambda found: f"[{found[1]}, …, {found[2]}]", text))
+
+
+def of_its_kind(text: str, in_a_notebook: bool) -> str:
+    """The text without the sentences for the other kind of answer.
+
+    Args:
+        text: A sentence of it that begins with ``In a notebook,`` is for those who work in one, and a sentence that
+            begins with ``In a program,`` for those who have written a program.
+        in_a_notebook: Whether the answer is a class or a function of a notebook.
+    """
+    other = _OF_ITS_KIND["program" if in_a_notebook else "notebook"]
+    return str(other.sub(r"\1", text)).strip()

@@ -36,7 +36,7 @@ KNOWN = (
         "init_twice",
         r"Context\.init\(\) must only be called once",
         "rclpy.init() was called although ROS was already started.",
-        "Call rclpy.init() once per process. In a notebook start_ros() has done it: leave rclpy.init() out.",
+        "Call rclpy.init() once per process. In a notebook, start_ros() has done it: leave rclpy.init() out.",
     ),
     Crash(
         "not_initialized",
@@ -50,7 +50,7 @@ KNOWN = (
         # An executor that was made before: spinning makes one.
         r"|guard_condition\.py\".*\n.*self\._context\.handle",
         "The node was made before ROS was started, or after it was shut down.",
-        "Call rclpy.init() first (in a notebook: start_ros()) and make nodes only after it.",
+        "In a notebook, call start_ros() before you make a node. In a program, call rclpy.init() before you make one.",
     ),
     Crash(
         "super_init_missing",
@@ -82,7 +82,7 @@ KNOWN = (
         r"|TypeError: unsupported operand type\(s\) for [-+*/]+: 'Duration' and",
         "This is written for a newer ROS 2 than Jazzy, which the course uses: Jazzy's rclpy does not know it yet.",
         "Look for pages about Jazzy. Write rclpy.init() as a line of its own, without `with`, and make the node in the "
-        "next line; in a notebook, start_ros() has called rclpy.init() already.",
+        "next line. In a notebook, start_ros() has called rclpy.init() already.",
     ),
     Crash(
         "handle_overwritten",

@@ -59,11 +59,14 @@ def _waited_since(part: Part, beginning: Event | None, seconds: float) -> bool:
 
 
 def hold_back(bench: Bench, kind: str) -> None:
-    """Let time pass until the first event of a kind, a request, is as old as an answer that is held back."""
+    """Let time pass until the first event of a kind, a request, is as old as an answer that is held back.
+
+    It takes longer while the machine is crowded: a subject that hardly waits needs time to say so.
+    """
     seen = bench.seen()
     request = seen.first(kind)
     if request is not None:
-        bench.run_time(max(0.0, answers_late(bench) - (seen.events[-1].t - request.t)))
+        bench.await_end(max(0.0, answers_late(bench) - (seen.events[-1].t - request.t)))
 
 
 def again_while(

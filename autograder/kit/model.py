@@ -294,8 +294,9 @@ class Bench(Protocol):
     def let_wait(self, seconds: float, *, call: int = 0) -> None:
         """Let the subject wait for a server, or for an answer, that is kept from it; or until it has ended.
 
-        Takes ``seconds`` of wall time, less what the subject was spared, and hardly any where a notebook tells that its
-        subject would wait as long.
+        A late server takes ``seconds`` of wall time, less what the subject was spared. An answer is held back longer
+        while the machine is crowded, so that a subject that hardly waits has had time to say so; and hardly at all
+        where a notebook tells that its subject would wait as long.
 
         Args:
             seconds: From now on.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.model import Advice, Pace
-from autograder.kit.workspace_report import report_of
+from autograder.kit.workspace_report import BUILDING, report_of
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
 BEGINNING = {Pace.FAST: 4.0, Pace.REAL_TIME: 15.0}
 """Seconds of wall time in which a program or its build must have said its first word."""
-BUILDING = 180.0
-"""Seconds of wall time that a build may take; a Python package needs one."""
 
 
 @dataclass(frozen=True)

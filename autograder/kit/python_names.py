@@ -240,8 +240,8 @@ NAMES: Sequence[Row] = (
     (
         rf"^NameError: name '(?P<name>{_MODULES})' is not defined",
         "{name} is a module, and it is not imported.",
-        "Write import {name} at the top of the program, or run the cell with the imports. A type that has an import of "
-        "its own is written alone: String in place of std_msgs.msg.String.",
+        "Write import {name} at the top of the program. In a notebook, write it in the cell with the imports, and run "
+        "that cell. A type that has an import of its own is written alone: String in place of std_msgs.msg.String.",
     ),
     (
         r"^NameError: name '(?P<name>\w+)' is not defined\. Did you mean: '(?P<meant>self\.\w+)'",
@@ -276,8 +276,8 @@ NAMES: Sequence[Row] = (
     (
         r"^NameError: name '(?P<name>\w+)' is not defined\. Did you mean: '(?P<meant>\w+)'",
         "Python does not know {name}, and knows {meant}.",
-        "If that is what you mean, write {meant}. If {name} belongs to your node, write self.{name}. If a cell above "
-        "defines it, run that cell; in a program, copy it into this file.",
+        "If that is what you mean, write {meant}. If {name} belongs to your node, write self.{name}. In a notebook, "
+        "run the cell that defines it, if there is one. In a program, define it in this file.",
     ),
     (
         r"^NameError: name '(?P<type>[A-Z]\w*)_(?P<part>Request|Response|Goal|Result|Feedback)' is not defined",
@@ -286,15 +286,16 @@ NAMES: Sequence[Row] = (
     ),
     (
         r"^NameError: name '(?P<name>[A-Z]\w*)' is not defined",
-        "Python does not know {name}: it was never imported or defined, or the cell that does so has not run.",
-        "Compare the spelling. Run the notebook's cells from the top; a program needs the import in its own file.",
+        "Python does not know {name}: it was never imported or defined. In a notebook, the cell that does so may not "
+        "have run.",
+        "Compare the spelling. In a notebook, run the cells from the top. In a program, import it in this file.",
     ),
     (
         r"^NameError: name '(?P<name>\w+)' is not defined",
         "Python does not know {name}.",
         "If it belongs to your node, as a value or a method, write self.{name}; in a function, which has no self, "
-        "write the node's name in place of self. If a cell above defines it, run that cell; in a program, copy it into "
-        "this file, above the line. If it is neither, compare the spelling.",
+        "write the node's name in place of self. In a notebook, run the cell that defines it, if there is one. In a "
+        "program, define it in this file, above the line. If it is neither, compare the spelling.",
     ),
 )
 """Python's words about names and attributes; the first row that fits wins."""

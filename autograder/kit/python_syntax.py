@@ -80,7 +80,7 @@ READING: Sequence[Row] = (
     ),
     (
         rf"{_READS}incomplete input",
-        "The cell ends in the middle of something.",
+        "The code ends in the middle of something.",
         "Close each bracket and each quotation mark that you have opened, or write the line that is missing.",
     ),
     (

@@ -156,7 +156,8 @@ def reports_the_sum(evidence: Evidence) -> Finding:
     given = answers(silent)
     if returns_another(silent):
         return Finding(False, f"{given[-1]} said and returned", f"it returned {silent.returned}")
-    wanted = f"{given[-1]} said at the end" if given else "the final sum, in each run"
+    # The answer to an earlier call is not the sum.
+    wanted = f"{given[-1]} said at the end" if len(given) >= calls else "the final sum, in each run"
     lines = silent.said(after=silent.of("response")[-1]) if given else silent.said()
     wrong = [line for line in lines if given and not mentions([line], given[-1])] or lines
     return Finding(False, wanted, f"“{wrong[-1]}”" if wrong else "nothing was said")

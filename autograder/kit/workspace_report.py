@@ -26,6 +26,8 @@ _LIMITS = (2_500, 1_200, 600, 200, 50)
 """Characters of each text of a report, tried in turn until its line is short enough."""
 AMENT_PACKAGE = "ament_package()"
 """The missing thing, in a report, of a package that was built and that ROS does not find."""
+BUILDING = 180.0
+"""Seconds of wall time that a build may take: a Python package needs one, an interface package ten."""
 _FEW = 10
 """Packages beside the needed ones that are named where there is no room for all."""
 

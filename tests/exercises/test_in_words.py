@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.kit.in_words import counted, first_difference
+from autograder.kit.in_words import counted, first_difference, of_its_kind, shortened
 
 LINE = "Hello, ROS 2! From SimpleNode."
 
@@ -34,3 +34,32 @@ def test_the_first_difference_is_quoted_from_both(said: str, words: str) -> None
     told = first_difference(said, LINE)
     assert told.startswith(words)
     assert bool(told) == bool(words)
+
+
+@pytest.mark.parametrize(
+    ("in_a_notebook", "words"),
+    [
+        (True, "Look. In a notebook, call start_ros(). Go on."),
+        (False, "Look. In a program, write it. Go on."),
+    ],
+)
+def test_a_sentence_for_the_other_kind_of_answer_is_left_out(in_a_notebook: bool, words: str) -> None:
+    text = "Look. In a notebook, call start_ros(). In a program, write it. Go on."
+    assert of_its_kind(text, in_a_notebook) == words
+
+
+@pytest.mark.parametrize("in_a_notebook", [True, False])
+def test_nothing_else_is_left_out(in_a_notebook: bool) -> None:
+    text = "Stop the notebook. It is a program, and in a program, or in a notebook, this holds. Done."
+    assert of_its_kind(text, in_a_notebook) == text
+
+
+def test_nothing_is_left_of_a_text_for_the_other_kind() -> None:
+    assert of_its_kind("In a program, a.b is c. In a program, go!", True) == ""
+
+
+def test_a_long_list_keeps_its_ends() -> None:
+    numbers = list(range(-1, 12))
+    assert shortened(f"“said” {numbers}.") == "“said” [-1, 0, 1, 2, 3, …, 10, 11]."
+    assert shortened(f"said {[*numbers, 12]}.") == "said [-1, 0, 1, 2, 3, …, 11, 12]."
+    assert shortened(f"“said” {numbers[1:]}.") == f"“said” {numbers[1:]}."

@@ -9,6 +9,10 @@ from autograder.authoring.answers import Answer, answers
 from tests.measure import evidence
 
 COSTS = {
+    # It was built and started: Python came as far as its mistake.
+    "lab_1_1.hello/wrong/syntax_error_in_node.workspace": "node line",
+    # It waits for the service, whatever it does with the answer.
+    "lab_1_3.client/wrong/sum_not_reported_no_f.py": "sum",
     # Both numbers of a request are added wrongly, and the server lives on.
     "lab_1_3.server/wrong/wrong_sum_running.py": "sums together",
     "lab_1_3.server/wrong/wrong_sum_small.py": "sums",

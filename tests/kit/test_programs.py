@@ -125,6 +125,12 @@ def test_a_client_that_was_never_there_has_not_ended() -> None:
     assert BOTH.criteria[-1].title == "talker ends on Ctrl-C, asker by itself"
 
 
+def test_a_program_without_an_entry_point_did_not_start() -> None:
+    lines = [said(as_line(report("my_robot_pkg/asking.py", missing="talker"))), subject("exited")]
+    finding = BOTH.criteria[-1].judge(evidence(lines))
+    assert (finding.passed, finding.seen) == (False, "talker did not start; asker did not start")
+
+
 def test_an_entry_point_names_the_file_of_its_program() -> None:
     def next_step(*programs: str) -> str:
         seen = evidence([said(as_line(report("my_robot_pkg/asking.py", programs=programs, missing="asker")))])

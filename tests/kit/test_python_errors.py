@@ -55,11 +55,11 @@ SAID = {
         "Write parentheses after the type: msg = String()"
     ),
     "NameError: name 'String' is not defined": "Write `from std_msgs.msg import String` at the top",
-    "NameError: name 'Talker' is not defined": "Run the notebook's cells from the top",
+    "NameError: name 'Talker' is not defined": "import it in this file",
     "AttributeError: 'ClientGoalHandle' object has no attribute 'is_done'": "is of the type ClientGoalHandle here",
     "IndexError: pop from empty list": "what it takes one by one is used up",
     "IndexError: string index out of range": "The string has fewer elements",
-    "NameError: name 'compute' is not defined": "copy it into this file",
+    "NameError: name 'compute' is not defined": "define it in this file, above the line",
     "NameError: name 'linear' is not defined": "command.linear.x = 0.5",
     "UnboundLocalError: cannot access local variable 'i' where it is not associated with a value": "write self.i",
     "UnboundLocalError: local variable 'i' referenced before assignment": "write self.i",

@@ -290,10 +290,10 @@ class SubjectTime:
 
         def over() -> bool:
             seen = self._recorder.part()
-            passed = time.monotonic() - began + (0.0 if call else spared(seen))
-            return passed >= seconds or (call > 0 and willing(seen, call) >= seconds) or self._subject.ended
+            waits = willing(seen, call) if call else time.monotonic() - began + spared(seen)
+            return waits >= seconds or self._subject.ended
 
-        self._recorder.wait(over, seconds, wall=True)
+        self._recorder.wait(over, seconds, wall=call == 0)
 
     def settle(self) -> None:
         """Ask each node of the subject's twice; a node that did not answer once is not asked again in this part."""

@@ -12,6 +12,7 @@ from autograder.judge.verdicts import timeline
 from autograder.judge.verdicts.crowding import TOO_BUSY, Crowding, TooBusy
 from autograder.judge.verdicts.deciding import Undecided, limited, undecidable
 from autograder.kit.evidence import Evidence, Reference
+from autograder.kit.in_words import of_its_kind, shortened
 from autograder.kit.model import Advice, Exercise, Mistake, Pace
 from autograder.verdict import Criterion, Diagnosis, State, Verdict
 
@@ -183,8 +184,10 @@ def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
     found = _recognised(exercise, evidence)
     if found is not None:
         mistake, advice = found
-        words = _cut(advice.text, 2 * MAX_WORDS), _cut(advice.next_step, 2 * MAX_WORDS)
-        return Diagnosis(mistake.key, *words), advice.traceback
+        words = (
+            of_its_kind(shortened(text), evidence.in_a_notebook) for text in (advice.text, advice.next_step)
+        )
+        return Diagnosis(mistake.key, *(_cut(text, 2 * MAX_WORDS) for text in words)), advice.traceback
     unknown = Diagnosis(
         "unknown",
         "This is none of the mistakes that the judge knows by name.",

@@ -15,6 +15,7 @@ from autograder.kit import workspace_mistakes as workspace
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.launch_report import Process, processes, remappings
 from autograder.kit.model import Advice, Bench, Mistake, Pace
+from autograder.kit.workspace_report import BUILDING
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
@@ -27,8 +28,6 @@ SAYING = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 """Seconds of wall time in which the other program must have said the judge's text."""
 BEGINNING = {Pace.FAST: 20.0, Pace.REAL_TIME: 40.0}
 """Seconds of wall time in which a launch must have started its first process, or ended."""
-BUILDING = 180.0
-"""Seconds of wall time that building the student's workspace may take."""
 PAUSE = {Pace.FAST: 3.0, Pace.REAL_TIME: 10.0}
 """Seconds of wall time that a launch may let pass between its first process and its second."""
 LATE = 3.0

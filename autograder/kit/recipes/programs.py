@@ -235,7 +235,10 @@ class Programs:
     def _ending(self, program: Program, evidence: Evidence) -> str:
         if program.ends_by_itself and not self._is_there(program, evidence):
             return "did not start"  # what has not begun comes to an end, too
-        return program.ending(evidence)
+        view, entry = program.view(evidence), self._entry(program)
+        ending = program.ending(evidence)
+        nowhere = ending and (package.entry_point(view, entry) or package.no_executable(view, entry))
+        return "did not start" if nowhere else ending
 
     def _ends(self, all_on_ctrl_c: str) -> str:
         """The expected ends of the programs, in words; ``all_on_ctrl_c`` where none comes to its own end."""

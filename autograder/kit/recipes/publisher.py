@@ -14,7 +14,7 @@ from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.hangs import HANGS
 from autograder.kit.in_words import counted
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
-from autograder.kit.rate import ROW, Rate, confirmed, rate_of, simulated
+from autograder.kit.rate import ROW, Rate, confirmed, rate_of, sent_times, simulated
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -102,7 +102,8 @@ class Publisher:
     @property
     def pauses(self) -> list[float]:
         """Seconds of its time between one message and the next."""
-        return [after.moment - before.moment for before, after in pairwise(self.messages)]
+        times = simulated(self.messages) or sent_times(self.messages)
+        return [after - before for before, after in pairwise(times)]
 
     def goes_on_slowly(self, expected: Publisher) -> bool:
         """True if it publishes at longer intervals than the reference, and did so to the end of the run."""
@@ -343,7 +344,7 @@ class Hears:
             return None
         return Advice(
             "Your node is there with its publisher, but no message arrives while the judge listens.",
-            "If your cell still has its TODO, begin there. Let the timer's method call publish(...), with the message "
+            "If your code still has its TODO, begin there. Let the timer's method call publish(...), with the message "
             "between the parentheses: a log line is not a message. Give the timer its period in seconds, "
             f"{reference_period(evidence.reference):g} and not {1000 * reference_period(evidence.reference):g}.",
         )

@@ -257,10 +257,10 @@ class Calls:
         return judge
 
     def waits(self, evidence: Evidence) -> Finding:
-        """With a service that comes late it calls all the same; how often and with what is another criterion."""
+        """With a service that comes late it calls all the same; what comes of that is another criterion."""
         late = self.seen(evidence).late
-        done = bool(requests(late)) and (late.ending is not None or reports(late))
-        return Finding(done, "waits, then calls", "it did" if done else how_it_went(late))
+        called = bool(requests(late))
+        return Finding(called, "waits, then calls", "it did" if called else how_it_went(late))
 
     def unreported(self, seen: Client) -> Part | None:
         """A run with the right calls whose last answer is not said."""

@@ -11,7 +11,7 @@ from autograder.kit import workspace_mistakes as workspace
 from autograder.kit.draft import OWN, SeenAsItIs
 from autograder.kit.model import Advice, Bench, Finding, Mistake
 from autograder.kit.runners import ServesInterface
-from autograder.kit.workspace_report import AMENT_PACKAGE, Interface, PackageReport, report_of
+from autograder.kit.workspace_report import AMENT_PACKAGE, BUILDING, Interface, PackageReport, report_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -30,8 +30,6 @@ SERVICE = "/interface_of_the_workspace"
 """The service that a program of the judge's serves with the built interface, so that its type is on the wire."""
 BEGINNING = 15.0
 """Seconds of wall time in which the packages must have been looked at."""
-BUILDING = 180.0
-"""Seconds of wall time that a build may take; an interface package needs ten."""
 PART = "building"
 Fields = list[tuple[str, str]]
 """The type and the name of each field, in their order."""

@@ -118,8 +118,8 @@ def first_answer_ignored(seen: Client, _: Client) -> Advice | None:
     return Advice(
         f"The service answered {first} to the first call, but your second call does not use that answer: it adds up "
         "on its own.",
-        "Put what the service answered first into the second call, and add nothing up yourself. (With the notebook's "
-        "ask, that is what the first ask returned.)",
+        "Put what the service answered first into the second call, and add nothing up yourself. In a notebook, that is "
+        "what the first ask returned.",
     )
 
 
@@ -167,7 +167,7 @@ def wrong_sum_reported(seen: Client, expected: Client) -> Advice | None:
     late=True,
     certain=Client.ended_each_time,
     says="Both calls are right, but the final sum is never said.",
-    next_step="Log or print the sum of the second answer (in the notebook, return it too).",
+    next_step="Log or print the sum of the second answer. In a notebook, return it, too.",
 )
 def sum_not_reported(seen: Client, expected: Client) -> bool | Advice:
     """The calls are right, and the last answer is never said."""

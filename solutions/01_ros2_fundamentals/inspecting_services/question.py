@@ -294,7 +294,7 @@ def says_that_there_is_none(seen: Evidence, _: Evidence) -> Finding:
     certain=True,
     before="syntax_error",
     says="Your function comes back at once and names no service.",
-    next_step="Find the TODO in your solution cell and write that step; the hints below it open one at a time.",
+    next_step=common.STEP_MISSING,
 )
 def not_written(seen: Evidence, _: Evidence) -> bool:
     """It comes back at once, with nothing, whatever it is asked."""

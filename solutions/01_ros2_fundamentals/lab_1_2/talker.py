@@ -88,8 +88,8 @@ talker.knows(
     "counter_stuck",
     lambda seen, _: len(seen.counters) >= 3 and len(set(seen.counters)) == 1,
     "Every message carries the number {seen.counters[0]}: the counter is never counted up.",
-    "Add self.count += 1 at the end of the method. Without self. in front, another variable is changed, not "
-    "the node's count.",
+    "Add 1 to your counter at the end of the method, as in self.count += 1. Without self. in front, another variable "
+    "is changed, not the node's.",
     certain=True,
 )
 
@@ -104,12 +104,12 @@ def wrong_text(seen: Publisher, expected: Publisher) -> Advice | None:
     if blank := re2.search(r"\{[^{}]*\}|%[ds]", finding.seen):
         return Advice(
             f"Your talker says {finding.seen}: {blank[0]} is sent as it is, Python put no number in its place.",
-            "Put an f in front of the opening quotation mark: f'Hello, world! {self.count}'.",
+            "Put an f in front of the opening quotation mark, as in f'Hello, world! {self.count}'.",
         )
     if re2.search(r"\d[.,]\d", finding.seen):
         return Advice(
             f"Your talker says {finding.seen}: its number is not a whole number; the task asks for {finding.expected}",
-            "Begin with self.count = 0 (not 0.0) and add 1, or write int(...) around the number.",
+            "Begin with a whole number, as in self.count = 0 (not 0.0), and add 1; or write int(...) around it.",
         )
     return Advice(
         f"Your talker says {finding.seen}; the task asks for {finding.expected}",
@@ -122,7 +122,8 @@ def wrong_text(seen: Publisher, expected: Publisher) -> Advice | None:
     "counter_start",
     late=True,
     says="The first message carries the number {seen.counters[0]}; the counter must begin at {expected.counters[0]}.",
-    next_step="Set self.count = {expected.counters[0]} in __init__ and add 1 only after the message was published.",
+    next_step="Set your counter in __init__, as in self.count = {expected.counters[0]}, and add 1 only after the "
+    "message was published.",
 )
 def counter_start(seen: Publisher, expected: Publisher) -> bool:
     """It counts by one, but from another number."""
@@ -151,7 +152,7 @@ def counter_step(seen: Publisher, _: Publisher) -> Advice | None:
         )
     return Advice(
         f"{came} The numbers must go up by one with each message.",
-        "Count once for each published message: one self.count += 1 at the end of the method, and one timer.",
+        "Count once for each published message: one line as self.count += 1 at the end of the method, and one timer.",
     )
 
 

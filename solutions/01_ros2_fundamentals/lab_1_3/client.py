@@ -125,7 +125,7 @@ def wrong_sum_reported(seen: Client, _: Client) -> Advice | None:
     late=True,
     certain=Client.ended_each_time,
     says="The call is right, but the sum is never said.",
-    next_step="Log or print the sum of the answer (in the notebook, return it too): future.result().sum.",
+    next_step="Log or print the sum of the answer: future.result().sum. In a notebook, return it, too.",
 )
 def sum_not_reported(seen: Client, _: Client) -> bool | Advice:
     """The call is right, and the answer is never said."""
