@@ -4,22 +4,7 @@
 # undefended = "Words that the judge does not know change nothing."
 
 # %% extra
-import json
-import os
-import socket
-import threading
-import time
-
-
-def connect():
-    link = socket.socket(socket.AF_UNIX)
-    link.settimeout(5.0)
-    link.connect(os.environ["AUTOGRADER_JUDGE_SOCKET"])
-    return link
-
-
-def say(link, word, **rest):
-    link.sendall(json.dumps({"say": word, **rest}).encode() + b"\n")
+<<talks_to_the_judge>>
 
 verdict = {
     "exercise": "lab_1_2.talker", "title": "t", "state": "passed", "score": 10.0, "max_score": 10.0,

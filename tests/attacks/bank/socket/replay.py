@@ -5,22 +5,7 @@
 # undefended = "The judge asks questions on the wire that no recorded word answers."
 
 # %% extra
-import json
-import os
-import socket
-import threading
-import time
-
-
-def connect():
-    link = socket.socket(socket.AF_UNIX)
-    link.settimeout(5.0)
-    link.connect(os.environ["AUTOGRADER_JUDGE_SOCKET"])
-    return link
-
-
-def say(link, word, **rest):
-    link.sendall(json.dumps({"say": word, **rest}).encode() + b"\n")
+<<talks_to_the_judge>>
 
 import autograder.notebook.checking.judge_link as judge_link
 from autograder.messages.lines import encode

@@ -4,23 +4,7 @@
 # undefended = "Refused: no check is expected before its cell runs."
 
 # %% extra
-import json
-import os
-import socket
-import threading
-import time
-
-
-def connect():
-    link = socket.socket(socket.AF_UNIX)
-    link.settimeout(5.0)
-    link.connect(os.environ["AUTOGRADER_JUDGE_SOCKET"])
-    return link
-
-
-def say(link, word, **rest):
-    link.sendall(json.dumps({"say": word, **rest}).encode() + b"\n")
-
+<<talks_to_the_judge>>
 
 links = []
 for exercise in ("lab_1_2.talker", "lab_1_2.listener"):

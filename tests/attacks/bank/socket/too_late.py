@@ -8,22 +8,7 @@ import subprocess
 import sys
 
 LATER = r'''
-import json
-import os
-import socket
-import threading
-import time
-
-
-def connect():
-    link = socket.socket(socket.AF_UNIX)
-    link.settimeout(5.0)
-    link.connect(os.environ["AUTOGRADER_JUDGE_SOCKET"])
-    return link
-
-
-def say(link, word, **rest):
-    link.sendall(json.dumps({"say": word, **rest}).encode() + b"\n")
+<<talks_to_the_judge>>
 
 for _ in range(40):
     time.sleep(0.05)
