@@ -4,21 +4,8 @@
 # undefended = "Without a box, the file was there for the next process to import."
 
 # %% extra
-import os
-import sys
-from pathlib import Path
-
+<<writes>>
 import autograder
-
-
-def write(path, text):
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-        print("written", path)
-    except OSError as error:
-        print(type(error).__name__)
-
 
 folder = Path(autograder.__file__).parent
 write(folder / 'judge' / '<<mark>>.py', 'POINTS = 10')

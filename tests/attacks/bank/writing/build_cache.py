@@ -4,21 +4,8 @@
 # undefended = "Without a box, the cache of the user could be written."
 
 # %% extra
-import os
-import sys
-from pathlib import Path
-
+<<writes>>
 import platformdirs
-
-
-def write(path, text):
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-        print("written", path)
-    except OSError as error:
-        print(type(error).__name__)
-
 
 for folder in (platformdirs.user_cache_dir('ros2-course'), platformdirs.user_cache_dir('autograder'), '<<home>>/.cache'):
     write(Path(folder) / '<<mark>>', 'x')

@@ -4,21 +4,8 @@
 # undefended = "In stock nbgrader 0.9.5 and without a box, the gradebook could be written."
 
 # %% extra
-import os
-import sys
-from pathlib import Path
-
+<<writes>>
 import sqlite3
-
-
-def write(path, text):
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-        print("written", path)
-    except OSError as error:
-        print(type(error).__name__)
-
 
 write(Path('<<class>>/submitted/<<mark>>_note'), 'I was here')
 for name, statement in {

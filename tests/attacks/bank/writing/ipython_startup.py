@@ -4,21 +4,7 @@
 # undefended = "Without a box, the file lay in the home folder."
 
 # %% extra
-import os
-import sys
-from pathlib import Path
-
-
-
-def write(path, text):
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-        print("written", path)
-    except OSError as error:
-        print(type(error).__name__)
-
-
+<<writes>>
 for home in (Path.home(), Path('<<home>>')):
     write(home / '.ipython/profile_default/startup/<<mark>>.py', 'print(10.0)')
     write(home / '.jupyter/<<mark>>.py', 'print(10.0)')

@@ -4,21 +4,7 @@
 # undefended = "Nothing is collected from the working folder."
 
 # %% extra
-import os
-import sys
-from pathlib import Path
-
-
-
-def write(path, text):
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-        print("written", path)
-    except OSError as error:
-        print(type(error).__name__)
-
-
+<<writes>>
 for folder in (Path.cwd(), Path.cwd().parent, Path('<<class>>/autograded/own_notebook/lab_1_2'), Path('<<class>>/feedback/own_notebook/lab_1_2')):
     write(folder / 'lab_1_2.ipynb', '{"cells": [], "metadata": {"score": 10.0}, "nbformat": 4, "nbformat_minor": 5}')
     write(folder / 'lab_1_2.html', '<h1>Full marks</h1>')

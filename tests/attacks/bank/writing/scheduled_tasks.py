@@ -5,20 +5,6 @@
 # boxed_only = true
 
 # %% extra
-import os
-import sys
-from pathlib import Path
-
-
-
-def write(path, text):
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-        print("written", path)
-    except OSError as error:
-        print(type(error).__name__)
-
-
+<<writes>>
 for path in ('/etc/cron.d/<<mark>>', '/var/spool/cron/crontabs/<<mark>>', '/etc/profile.d/<<mark>>.sh'):
     write(Path(path), '# harmless\n')

@@ -4,20 +4,6 @@
 # undefended = "Without a box, the files were there afterwards."
 
 # %% extra
-import os
-import sys
-from pathlib import Path
-
-
-
-def write(path, text):
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-        print("written", path)
-    except OSError as error:
-        print(type(error).__name__)
-
-
+<<writes>>
 for folder in ('/tmp', '/var/tmp', '/dev/shm', '/run', '/run/lock', os.getcwd() + '/../..', os.getcwd() + '/../../..'):
     write(Path(folder) / '<<mark>>', 'x')

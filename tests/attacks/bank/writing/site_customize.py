@@ -4,21 +4,8 @@
 # undefended = "Without a box, every later Python of the environment would have run it."
 
 # %% extra
-import os
-import sys
-from pathlib import Path
-
+<<writes>>
 import site
-
-
-def write(path, text):
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-        print("written", path)
-    except OSError as error:
-        print(type(error).__name__)
-
 
 for folder in {*site.getsitepackages(), site.getusersitepackages(), '<<environment>>/lib/python3.11/site-packages'}:
     write(Path(folder) / '<<mark>>.pth', '# harmless')
