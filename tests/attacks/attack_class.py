@@ -285,6 +285,8 @@ class AttackClass:
         for kind, name, source in cells:
             for word, meaning in words.items():
                 source = source.replace(word, meaning)
+            # An attack with a word that nobody fills in would be a syntax error, and count as defeated.
+            assert not (unknown := re.findall(r"<<\w+>>", source)), unknown
             yield kind, name, source
 
     def _rows(self) -> dict[str, dict[str, dict[str, str]]]:

@@ -1,6 +1,5 @@
 # Write a file if that is allowed, and say what came of it.
 import os
-import sys
 from pathlib import Path
 
 
