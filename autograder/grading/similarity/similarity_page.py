@@ -57,26 +57,6 @@ class _Line:
     left_out: int = 0
 
 
-@dataclass(frozen=True)
-class _ShownAnswer:
-    """An answer of a pair, as the page shows it."""
-
-    student: str
-    cell: str
-    length: int
-    lines: list[_Line]
-
-
-@dataclass(frozen=True)
-class _ShownPair:
-    """A pair, as the page shows it."""
-
-    place: str
-    percent: str
-    shared: int
-    answers: tuple[_ShownAnswer, _ShownAnswer]
-
-
 def write_page(found: Similar, to: Path | None = None) -> Path:
     """Write the page about the close pairs of a class.
 
@@ -112,18 +92,27 @@ def page(found: Similar) -> str:
     )
 
 
-def _shown_pair(pair: Pair, names: Mapping[str, str]) -> _ShownPair:
+def _shown_pair(pair: Pair, names: Mapping[str, str]) -> dict[str, object]:
     left = [(passage.first, passage.own) for passage in pair.passages]
     right = [(passage.second, passage.own) for passage in pair.passages]
-    answers = _shown_answer(pair.one, left, names), _shown_answer(pair.other, right, names)
-    return _ShownPair(pair.place, pair.percent, pair.shared, answers)
+    return {
+        "place": pair.place,
+        "percent": pair.percent,
+        "shared": pair.shared,
+        "answers": [_shown_answer(pair.one, left, names), _shown_answer(pair.other, right, names)],
+    }
 
 
 def _shown_answer(
     answer: Compared, passages: Iterable[tuple[int, Sequence[bool]]], names: Mapping[str, str]
-) -> _ShownAnswer:
+) -> dict[str, object]:
     own = answer.answer
-    return _ShownAnswer(_called(own.student, names), own.cell, answer.length, _lines(answer, passages))
+    return {
+        "student": _called(own.student, names),
+        "cell": own.cell,
+        "length": answer.length,
+        "lines": _lines(answer, passages),
+    }
 
 
 def _called(student: str, names: Mapping[str, str]) -> str:
