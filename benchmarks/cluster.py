@@ -25,7 +25,6 @@ from autograder import course
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.rebuilding.task_making import tasks_of
-from autograder.grading.task import encode
 from benchmarks.classes import make_class
 from benchmarks.machine import Machine, Watch, machine
 
@@ -222,10 +221,14 @@ def _running(command: list[str], folder: Path, ready: str) -> Iterator[Watch]:
 def _bytes(path: Path) -> tuple[float, float]:
     """Mean bytes of the tasks of a class, and of their results as the store has them."""
     directory = ClassDirectory(path)
-    tasks = [len(encode(task)) for found in directory.submissions()[0] for task in tasks_of(directory, found)]
+    tasks = [
+        len(msgspec.json.encode(task))
+        for found in directory.submissions()[0]
+        for task in tasks_of(directory, found)
+    ]
     with ClassStore(directory) as store:
         results = [
-            len(encode(result))
+            len(msgspec.json.encode(result))
             for found in directory.submissions()[0]
             for result in store.results(found.student, found.assignment).values()
         ]

@@ -14,7 +14,6 @@ import msgspec
 from autograder import exercises
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.rebuilding.task_making import tasks_of
-from autograder.grading.task import encode
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -81,7 +80,7 @@ def _run(tasks: Sequence[Task]) -> list[Floor]:
     """In one warm process, one after the other."""
     done = subprocess.run(
         [sys.executable, "-m", "benchmarks.warm_notebook"],
-        input=b"".join(encode(task) + b"\n" for task in tasks),
+        input=b"".join(msgspec.json.encode(task) + b"\n" for task in tasks),
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         env=dict(os.environ),

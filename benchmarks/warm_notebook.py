@@ -14,17 +14,14 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 import psutil
 
 from autograder.boxes.execution import CellType
-from autograder.grading.task import decode_task
+from autograder.grading.task import Task
 from benchmarks.machine import CpuGroup
-
-if TYPE_CHECKING:
-    from autograder.grading.task import Task
 
 _MODULES = (
     "IPython.core.interactiveshell",
@@ -51,7 +48,7 @@ def main() -> None:
 
     attached.imports()
     for line in sys.stdin.buffer:
-        answers.write(msgspec.json.encode(_floor(decode_task(line))) + b"\n")
+        answers.write(msgspec.json.encode(_floor(msgspec.json.decode(line, type=Task))) + b"\n")
         answers.flush()
 
 

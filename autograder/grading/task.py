@@ -10,7 +10,7 @@ import msgspec
 
 from autograder.boxes.execution import Cell, Check, Execution
 from autograder.boxes.limits import Limits
-from autograder.boxes.verdicts_without_judge import zero_points
+from autograder.boxes.verdicts_without_judge import grader_trouble, zero_points
 from autograder.verdict import Verdict  # noqa: TC001
 
 UNREADABLE = "unreadable"
@@ -66,6 +66,17 @@ class Task:
         }
         return Execution(cells=(), verdicts=verdicts)
 
+    def in_trouble(self, reason: str) -> Execution:
+        """The result of a task that the grader could not execute: no cell runs, no check is anyone's fault.
+
+        Args:
+            reason: Why it could not.
+        """
+        verdicts = {
+            index: grader_trouble(cell.check, reason) for index, cell in enumerate(self.cells) if cell.check
+        }
+        return Execution(cells=(), verdicts=verdicts, trouble=reason)
+
 
 def points(check: Check, verdict: Verdict) -> float:
     """The points that a verdict is worth: the judge's share of what the cell carries."""
@@ -80,26 +91,3 @@ def scores_of(task: Task, execution: Execution) -> dict[str, float]:
         for index, cell in enumerate(task.cells)
         if cell.check is not None
     }
-
-
-def encode(value: Task | Execution) -> bytes:
-    """A task or an execution as one line of JSON."""
-    return msgspec.json.encode(value)
-
-
-def decode_task(data: bytes) -> Task:
-    """Read a task back.
-
-    Raises:
-        msgspec.DecodeError: ``data`` is no task.
-    """
-    return msgspec.json.decode(data, type=Task)
-
-
-def decode_execution(data: bytes) -> Execution:
-    """Read an execution back.
-
-    Raises:
-        msgspec.DecodeError: ``data`` is no execution.
-    """
-    return msgspec.json.decode(data, type=Execution)

@@ -10,6 +10,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution
@@ -19,7 +20,7 @@ from autograder.grading.classes.new_class import NewClass
 from autograder.grading.classes.seeds import create_secret, read_secret, seed_for
 from autograder.grading.errors import DiskFull, NotAClass, is_disk_full
 from autograder.grading.reporting.rows import Row, write_csv
-from autograder.grading.task import Task, decode_execution, decode_task, encode, points
+from autograder.grading.task import Task, points
 from autograder.regular_files import write_whole
 from autograder.verdict import State, Verdict
 
@@ -38,9 +39,9 @@ DONE = Execution(
 
 def test_a_task_and_an_execution_travel_as_json() -> None:
     task = replace(TASK, files={"map.png": b"\x00\xff"})
-    assert decode_task(encode(task)) == task
-    assert decode_execution(encode(DONE)) == DONE
-    assert b"\n" not in encode(replace(TASK, cells=(Cell("a\nb"),)))
+    assert msgspec.json.decode(msgspec.json.encode(task), type=Task) == task
+    assert msgspec.json.decode(msgspec.json.encode(DONE), type=Execution) == DONE
+    assert b"\n" not in msgspec.json.encode(replace(TASK, cells=(Cell("a\nb"),)))
 
 
 def test_a_file_is_replaced_whole_or_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

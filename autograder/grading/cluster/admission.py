@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from autograder.boxes.execution import Execution
 from autograder.boxes.outputs import Budget, OutputCollector
 from autograder.grading.cluster.messages import LARGEST_ANSWER, Offer
-from autograder.grading.task import decode_execution
 from autograder.verdict import State
 
 if TYPE_CHECKING:
-    from autograder.boxes.execution import CellRun, Check, Execution
+    from autograder.boxes.execution import CellRun, Check
     from autograder.boxes.limits import Limits
     from autograder.grading.task import Task
     from autograder.verdict import Verdict
@@ -60,7 +60,7 @@ def admitted(data: bytes, task: Task) -> Execution:
     if len(data) > LARGEST_ANSWER:
         raise Forged(f"its answer has {len(data)} bytes")
     try:
-        execution = decode_execution(data)
+        execution = msgspec.json.decode(data, type=Execution)
     except (msgspec.MsgspecError, RecursionError) as error:
         raise Forged(f"its answer is none: {error}") from error
     if len(execution.cells) not in ({len(task.cells), 0} if execution.trouble else {len(task.cells)}):

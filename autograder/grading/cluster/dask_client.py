@@ -38,7 +38,6 @@ from autograder.grading.cluster.messages import (  # noqa: E402
     Left,
     News,
     Unfit,
-    encode,
 )
 from autograder.messages.lines import Hangup, Lines  # noqa: E402
 
@@ -217,7 +216,7 @@ def _first_line(error: BaseException) -> str:
 
 def _tell(grader: Lines, news: News) -> None:
     with contextlib.suppress(Hangup):  # then it is told nothing more, and this process ends
-        grader.say_json(encode(news))
+        grader.say_json(msgspec.json.encode(news))
 
 
 if __name__ == "__main__":

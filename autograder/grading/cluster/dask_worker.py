@@ -15,11 +15,9 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 from distributed import Worker, WorkerPlugin, get_worker
 
-from autograder.boxes.execution import Execution
-from autograder.boxes.verdicts_without_judge import grader_trouble
 from autograder.grading.cluster.messages import LARGEST_ANSWER, Order
 from autograder.grading.running.worker_process import WorkerProcess
-from autograder.grading.task import Task, decode_task, encode
+from autograder.grading.task import Task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,17 +30,12 @@ def execute(data: bytes) -> bytes:
         data: An :class:`Order` as JSON.
     """
     order = msgspec.json.decode(data, type=Order)
-    task = decode_task(bytes(order.task))
+    task = msgspec.json.decode(bytes(order.task), type=Task)
     with _processes.one(order.judge, task.boxed) as process:
-        answer = encode(process.execute(task))
+        answer = msgspec.json.encode(process.execute(task))
     if len(answer) > LARGEST_ANSWER:
-        return encode(_trouble(task, f"its result has {len(answer)} bytes"))
+        return msgspec.json.encode(task.in_trouble(f"its result has {len(answer)} bytes"))
     return answer
-
-
-def _trouble(task: Task, reason: str) -> Execution:
-    verdicts = {i: grader_trouble(cell.check, reason) for i, cell in enumerate(task.cells) if cell.check}
-    return Execution(cells=(), verdicts=verdicts, trouble=reason)
 
 
 class _Lanes:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Self
 
 import msgspec
 
-from autograder.grading.cluster.messages import Broken, Command, News, encode
+from autograder.grading.cluster.messages import Broken, Command, News
 from autograder.messages.lines import Hangup, Lines
 from autograder.process_trees import end_soon
 
@@ -63,7 +63,7 @@ class Link:
     def say(self, command: Command) -> None:
         """Tell the client process to do something. Where it is gone, :meth:`hear` says so."""
         with contextlib.suppress(Hangup):
-            self._lines.say_json(encode(command))
+            self._lines.say_json(msgspec.json.encode(command))
 
     def hear(self, within: float | None) -> News | None:
         """The next thing that happened; None where nothing did.

@@ -114,5 +114,3 @@ News = Joined | Unfit | Asked | Left | Answered | Failed | Broken
 
 LARGEST_ANSWER = 16_000_000
 """Bytes. A notebook's outputs are cut at 2 MB, and what its judge saw at 4 MB, a third more as JSON."""
-
-encode = msgspec.json.encode

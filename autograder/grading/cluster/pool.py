@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.boxes.execution import Execution
-from autograder.boxes.verdicts_without_judge import grader_trouble
 from autograder.grading.cluster.admission import Forged, admitted, admitted_offer, printable
 from autograder.grading.cluster.messages import (
     Answered,
@@ -25,12 +23,10 @@ from autograder.grading.cluster.messages import (
     News,
     Order,
     Unfit,
-    encode,
 )
 from autograder.grading.errors import GradingError
 from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.running.engine import Done
-from autograder.grading.task import encode as encode_task
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator
@@ -206,8 +202,8 @@ class Pool:
 
     def _order(self, task: Task) -> bytes:
         # A worker needs to know nobody's name.
-        nameless = encode_task(replace(task, student=""))
-        return encode(Order(msgspec.Raw(nameless), self._judge))
+        nameless = msgspec.json.encode(replace(task, student=""))
+        return msgspec.json.encode(Order(msgspec.Raw(nameless), self._judge))
 
     def _take_in(self, news: News | None) -> None:
         match news:
@@ -309,7 +305,7 @@ class Pool:
         if job.attempts < ATTEMPTS:
             self._again.append(job)
         else:
-            self._done.append(Done(job.task, _given_up(job.task, reason)))
+            self._done.append(Done(job.task, job.task.in_trouble(reason)))
 
     def _land(self, number: int) -> _Flight:
         flight = self._flights.pop(number)
@@ -328,14 +324,8 @@ class Pool:
 
 
 def _most_seconds(task: Task) -> float:
-    limits = task.limits
     # A local engine tries a task whose process died once more.
-    return 2 * (limits.start_seconds + limits.notebook_seconds + limits.interrupt_grace) + _EXTRA_SECONDS
-
-
-def _given_up(task: Task, reason: str) -> Execution:
-    verdicts = {i: grader_trouble(cell.check, reason) for i, cell in enumerate(task.cells) if cell.check}
-    return Execution(cells=(), verdicts=verdicts, trouble=reason)
+    return 2 * task.limits.longest + _EXTRA_SECONDS
 
 
 def _could_not_be_asked(reason: str) -> str:

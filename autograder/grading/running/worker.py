@@ -29,10 +29,9 @@ from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.boxes.runner import run_notebook
 from autograder.boxes.sandbox import NoSandbox
 from autograder.boxes.scratch import scratch_folder
-from autograder.boxes.verdicts_without_judge import grader_trouble
 from autograder.grading.returning.page_budget import too_costly
 from autograder.grading.running.workspace_service import arrange, served
-from autograder.grading.task import Task, decode_task, encode
+from autograder.grading.task import Task
 from autograder.judge.bench.patience import Patience
 from autograder.judge.serving import attached
 from autograder.judge.serving.domain import lease
@@ -69,9 +68,9 @@ def main(arguments: list[str]) -> None:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     grader = Lines.with_parent()
     for line in _tasks(grader):
-        execution = execute(decode_task(line), scratch, judge, addresses)
+        execution = execute(msgspec.json.decode(line, type=Task), scratch, judge, addresses)
         end_descendants()
-        grader.say_json(encode(execution))
+        grader.say_json(msgspec.json.encode(execution))
 
 
 def execute(task: Task, scratch: Path, judge: Any, addresses: Addresses) -> Execution:
@@ -89,9 +88,7 @@ def execute(task: Task, scratch: Path, judge: Any, addresses: Addresses) -> Exec
             execution = _execute(task, folder, judge, addresses, stack)
         return replace(execution, as_typed=too_costly(task.cells))
     except Exception as error:
-        reason = f"{type(error).__name__}: {error}"
-        verdicts = {i: grader_trouble(cell.check, reason) for i, cell in enumerate(task.cells) if cell.check}
-        return Execution(cells=(), verdicts=verdicts, trouble=reason)
+        return task.in_trouble(f"{type(error).__name__}: {error}")
     finally:
         # Also when we are being ended: nothing of the submission may outlive us.
         end_descendants()

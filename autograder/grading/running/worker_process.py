@@ -21,9 +21,7 @@ import msgspec
 from autograder import course
 from autograder.boxes.execution import Execution
 from autograder.boxes.fork_server import ForkServers
-from autograder.boxes.verdicts_without_judge import grader_trouble
 from autograder.grading.running.worker import JUDGE
-from autograder.grading.task import Task, decode_execution, encode
 from autograder.judge.settings import boxed_ros_environment, ros_environment
 from autograder.messages.lines import Hangup, Lines, Silent, TooLong
 from autograder.process_trees import end_processes_in, end_soon
@@ -32,6 +30,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.boxes.fork_server import Addresses
+    from autograder.grading.task import Task
 
 ATTEMPTS = 2
 """The number of times that a task is tried: a second time where its worker died."""
@@ -101,8 +100,7 @@ class WorkerProcess:
             except (WorkerLost, OSError, ValueError) as error:
                 self.end()
                 reason = f"{error}{self._last_words()}"
-        verdicts = {i: grader_trouble(cell.check, reason) for i, cell in enumerate(task.cells) if cell.check}
-        return Execution(cells=(), verdicts=verdicts, trouble=reason)
+        return task.in_trouble(reason)
 
     def _is_stale(self) -> bool:
         """True if the worker knows other fork servers than there are: another worker may have started them anew."""
@@ -120,8 +118,9 @@ class WorkerProcess:
             self._boxed = task.boxed
         lines = self._conversation()
         try:
-            lines.say_json(encode(task))
-            return decode_execution(lines.hear_json(task.limits.longest + _EXTRA_SECONDS))
+            lines.say_json(msgspec.json.encode(task))
+            said = lines.hear_json(task.limits.longest + _EXTRA_SECONDS)
+            return msgspec.json.decode(said, type=Execution)
         except Silent as error:
             raise WorkerLost("the grader's worker process did not answer in time") from error
         except TooLong as error:

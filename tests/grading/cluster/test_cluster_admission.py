@@ -14,11 +14,12 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.cluster.admission import LARGEST_OFFER, Forged, admitted, admitted_offer
 from autograder.grading.cluster.messages import LARGEST_ANSWER, Offer
 from autograder.grading.rebuilding.task_making import tasks_of
-from autograder.grading.task import Task, encode
 from autograder.verdict import State
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from autograder.grading.task import Task
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
@@ -57,15 +58,15 @@ def test_an_honest_answer_comes_through_as_it_is(task: Task, execution: Executio
     said = replace(
         execution, cells=(CellRun(Ended.RAISED, outputs, "ValueError: no", 0.2), *execution.cells[1:])
     )
-    assert admitted(encode(said), task) == said
+    assert admitted(msgspec.json.encode(said), task) == said
 
 
 def test_trouble_without_cells_comes_through(task: Task, execution: Execution) -> None:
     said = replace(execution, cells=(), trouble="the worker process ended")
-    assert admitted(encode(said), task) == said
+    assert admitted(msgspec.json.encode(said), task) == said
     said = replace(said, trouble="it\x1b[2J\nended" + "!" * 100_000)
-    assert admitted(encode(said), task).trouble.startswith("it [2J ended!!!")
-    assert len(admitted(encode(said), task).trouble) == 1_000
+    assert admitted(msgspec.json.encode(said), task).trouble.startswith("it [2J ended!!!")
+    assert len(admitted(msgspec.json.encode(said), task).trouble) == 1_000
 
 
 FORGERIES: dict[str, tuple[str, Callable[[Execution], Execution]]] = {
@@ -88,9 +89,9 @@ FORGERIES: dict[str, tuple[str, Callable[[Execution], Execution]]] = {
 @pytest.mark.parametrize("forgery", FORGERIES)
 def test_what_cannot_be_is_refused(task: Task, execution: Execution, forgery: str) -> None:
     words, forge = FORGERIES[forgery]
-    assert admitted(encode(execution), task)
+    assert admitted(msgspec.json.encode(execution), task)
     with pytest.raises(Forged, match=words):
-        admitted(encode(forge(execution)), task)
+        admitted(msgspec.json.encode(forge(execution)), task)
 
 
 @pytest.mark.parametrize(
@@ -112,7 +113,7 @@ def test_what_is_no_execution_is_refused(task: Task, data: bytes) -> None:
 
 def test_what_is_too_large_is_not_even_read(task: Task, execution: Execution) -> None:
     with pytest.raises(Forged, match="bytes"):
-        admitted(encode(execution) + b" " * LARGEST_ANSWER, task)
+        admitted(msgspec.json.encode(execution) + b" " * LARGEST_ANSWER, task)
 
 
 def test_outputs_are_cut_and_stripped_here_too(task: Task, execution: Execution) -> None:
@@ -126,7 +127,7 @@ def test_outputs_are_cut_and_stripped_here_too(task: Task, execution: Execution)
         {"output_type": "<script>", "text": "z"},
     )
     said = replace(execution, cells=(CellRun(Ended.DONE, outputs), *execution.cells[1:]))
-    cell = admitted(encode(said), task).cells[0]
+    cell = admitted(msgspec.json.encode(said), task).cells[0]
     assert cell.outputs[0] == {"output_type": "display_data", "data": {"text/plain": "x"}, "metadata": {}}
     assert len(cell.outputs) == 3
     assert len(str(cell.outputs)) < 1.1 * task.limits.cell_output_bytes

@@ -28,7 +28,7 @@ from autograder.grading.cluster.messages import (
 )
 from autograder.grading.cluster.pool import ATTEMPTS, NoWorkers, Pool, SchedulerGone
 from autograder.grading.rebuilding.task_making import tasks_of
-from autograder.grading.task import Task, decode_task, encode
+from autograder.grading.task import Task
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -72,11 +72,11 @@ class FakeLink:
 
 
 def task_in(give: Give) -> Task:
-    return decode_task(bytes(msgspec.json.decode(give.order, type=Order).task))
+    return msgspec.json.decode(msgspec.json.decode(give.order, type=Order).task, type=Task)
 
 
 def honest(give: Give, task: Task) -> News:
-    return Answered(give.number, encode(FakeEngine().execute(task)))
+    return Answered(give.number, msgspec.json.encode(FakeEngine().execute(task)))
 
 
 def joined(address: str, offer: Offer = HERE) -> Joined:
@@ -202,7 +202,9 @@ def test_what_a_worker_cannot_run_does_not_come_back_to_it(tasks: list[Task]) ->
 
 
 def troubled(give: Give, task: Task) -> News:
-    return Answered(give.number, encode(replace(FakeEngine().execute(task), trouble="no space left")))
+    return Answered(
+        give.number, msgspec.json.encode(replace(FakeEngine().execute(task), trouble="no space left"))
+    )
 
 
 def test_a_worker_that_is_sick_does_not_swallow_the_class(tasks: list[Task]) -> None:
