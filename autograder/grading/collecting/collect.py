@@ -18,7 +18,7 @@ from autograder.grading.collecting.outcomes import CollectReport, Outcome, State
 from autograder.grading.collecting.records import Collected, CollectedRecords
 from autograder.grading.collecting.student_of import Owners, StudentOf
 from autograder.grading.collecting.submitted_files import Candidate, Placing
-from autograder.grading.errors import GradingError, course_command
+from autograder.grading.errors import GradingError, check_known, course_command
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.grading.table.roster import Roster, enter_roster, read_roster
 
@@ -61,11 +61,7 @@ def collect(
         GradingError: There is no such class, assignment or file, or a list cannot be used.
     """
     directory = ClassDirectory(path)
-    known = directory.assignments()
-    if assignment and assignment not in known:
-        raise GradingError(
-            f"There is no assignment named {assignment} here. There is: {', '.join(known) or 'none'}."
-        )
+    check_known([assignment] if assignment else [], directory.assignments(), "assignment")
     for source in (*sources, *times):
         if not source.exists():
             raise GradingError(f"There is no {source}.")

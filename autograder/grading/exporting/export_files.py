@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
-from autograder.grading.errors import GradingError, course_command
+from autograder.grading.errors import GradingError, check_known, course_command
 from autograder.grading.exporting import feedback_zips, lms_gradebooks, sheets
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.grading.table.class_table import ClassTable, read_table
@@ -156,11 +156,7 @@ def _filled(
     columns: Mapping[str, str],
     notices: list[str],
 ) -> Iterator[tuple[str, bytes, str]]:
-    for name in columns:
-        if name not in assignments:
-            raise GradingError(
-                f"There is no assignment named {name} here. There is: {', '.join(assignments)}."
-            )
+    check_known(list(columns), assignments, "assignment")
     assignments = list(columns) or assignments
     if to == "moodle" and len(assignments) != 1:
         raise GradingError(
