@@ -233,13 +233,4 @@ def _foreseen(
 def without_grade(row: Row) -> Row:
     """The row of a result that could not be entered."""
     reason = "The result could not be entered into the gradebook; it has zero points there."
-    return Row(
-        row.student,
-        row.assignment,
-        row.exercise,
-        0.0,
-        row.max_score,
-        "not_checked",
-        "not_written_down",
-        reason,
-    )
+    return replace(row, score=0.0, state="not_checked", diagnosis="not_written_down", reason=reason)
