@@ -34,10 +34,15 @@ def read_timestamp(folder: Path) -> str:
     if records.is_used:
         history = records.get(folder.name, folder.parent.name)
         return timestamp_text(history.when) if history and history.when else ""
+    return _text(folder / TIMESTAMP) or ""
+
+
+def _text(path: Path) -> str | None:
+    """The text of a short file; None where there is none that can be read."""
     try:
-        return read_bytes(folder / TIMESTAMP, most=_LONGEST).decode("ascii", "replace").strip()
+        return read_bytes(path, most=_LONGEST).decode("ascii", "replace").strip()
     except UnreadableSubmission:
-        return ""
+        return None
 
 
 def companions(folder: Path) -> dict[str, bytes]:
@@ -49,10 +54,7 @@ def companions(folder: Path) -> dict[str, bytes]:
     stamp = read_timestamp(folder)
     if stamp:
         found[TIMESTAMP] = stamp.encode()
-    try:
-        secret = read_bytes(folder / SECRET, most=_LONGEST).decode("ascii", "replace").strip()
-    except UnreadableSubmission:
-        secret = ""
+    secret = _text(folder / SECRET)
     if secret and _HEX.issuperset(secret):
         found[SECRET] = secret.encode()
     return found
@@ -63,11 +65,7 @@ def is_not_believed(folder: Path) -> bool:
     records = CollectedRecords(folder.parent.parent.parent / STATE_NAME)
     if not records.is_used or not (folder / TIMESTAMP).exists():
         return False
-    try:
-        there = read_bytes(folder / TIMESTAMP, most=_LONGEST).decode("ascii", "replace").strip()
-    except UnreadableSubmission:
-        return True
-    return there != read_timestamp(folder)
+    return _text(folder / TIMESTAMP) != read_timestamp(folder)
 
 
 def timestamp_text(when: datetime) -> str:
