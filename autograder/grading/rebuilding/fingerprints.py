@@ -46,12 +46,9 @@ class Fingerprints:
             ]
         )
 
+    @functools.cache  # noqa: B019  (lives as long as one batch)
     def of_sources(self, assignment: str) -> str:
         """Changes with an assignment's sources, with the class's configuration and with the code."""
-        return self._of_sources(assignment)
-
-    @functools.cache  # noqa: B019  (lives as long as one batch)
-    def _of_sources(self, assignment: str) -> str:
         folder = self._directory.path / "source" / assignment
         files = sorted(path for path in folder.rglob("*") if path.is_file())
         return _digest(
