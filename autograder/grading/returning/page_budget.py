@@ -13,8 +13,7 @@ import time
 from typing import TYPE_CHECKING
 
 from autograder.boxes.execution import Cell, CellType
-from autograder.grading.garbage_collection import without_garbage_collection
-from autograder.grading.rebuilding.submission import HARMLESS_LENGTH
+from autograder.grading.rebuilding.submission import HARMLESS_LENGTH, without_garbage_collection
 from autograder.judge.verdicts.deciding import Undecided, limited
 
 if TYPE_CHECKING:
