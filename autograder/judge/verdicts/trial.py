@@ -91,7 +91,16 @@ def check(
             again = again and not is_certain(exercise, evidence)
         if again:
             with Crowding() as crowding:
-                evidence = _look_again(exercise, subject, reference, seen, seed=seed, domain_id=domain_id)
+                second = look(
+                    exercise,
+                    subject,
+                    reference,
+                    Pace.REAL_TIME,
+                    seed=seed,
+                    domain_id=domain_id,
+                    before=evidence,
+                )
+                evidence = replace(second.evidence, before=evidence)
             with limited():
                 verdict = judge(exercise, evidence, seed)
                 # What is asked last goes through all mistakes once more.
@@ -110,22 +119,6 @@ def decide(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
             return judge(exercise, evidence, seed)
     except Undecided:
         return undecidable(exercise, seed)
-
-
-def _look_again(
-    exercise: Exercise, subject: Subject, reference: Reference, seen: Seen, *, seed: str, domain_id: int
-) -> Evidence:
-    """The evidence of a look in real time, with that of the first look."""
-    again = look(
-        exercise,
-        subject,
-        reference,
-        Pace.REAL_TIME,
-        seed=seed,
-        domain_id=domain_id,
-        before=seen.evidence,
-    )
-    return replace(again.evidence, before=seen.evidence)
 
 
 def look(
