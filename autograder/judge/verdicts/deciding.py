@@ -10,14 +10,16 @@ import contextlib
 import signal
 import threading
 import time
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from autograder.verdict import Diagnosis, State, Verdict
+from autograder.verdict import Diagnosis, failed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from autograder.kit.model import Exercise
+    from autograder.verdict import Verdict
 
 LIMIT = 10.0
 """Seconds of processor time for one decision; a usual one takes a hundredth of a second."""
@@ -78,16 +80,9 @@ def _no_longer(before: signal.Handlers | Callable[..., object] | int | None) -> 
 
 def undecidable(exercise: Exercise, seed: str) -> Verdict:
     """Zero points with the reason: the subject's own words are in the way, and would be at every further try."""
-    return Verdict(
-        exercise=exercise.id,
-        title=exercise.title,
-        state=State.FAILED,
-        score=0.0,
-        max_score=float(exercise.points),
-        diagnosis=Diagnosis(
-            "undecidable",
-            "The judge looked at what your program said and sent, and came to no end: there is far too much of it.",
-            "Log what the task asks for, one short line for each thing that happens, and nothing else.",
-        ),
-        seed=seed,
+    diagnosis = Diagnosis(
+        "undecidable",
+        "The judge looked at what your program said and sent, and came to no end: there is far too much of it.",
+        "Log what the task asks for, one short line for each thing that happens, and nothing else.",
     )
+    return replace(failed(exercise.id, exercise.title, float(exercise.points), diagnosis), seed=seed)
