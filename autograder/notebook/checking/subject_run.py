@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import inspect
 import threading
 import traceback
@@ -17,7 +16,7 @@ from autograder.messages.checks import Constructed, Raised, Returned, Started
 from autograder.notebook.cells.cell_output import student_frames
 from autograder.notebook.cells.meant_names import meant_name
 from autograder.notebook.checking.judge_link import MAX_TEXT
-from autograder.notebook.nodes.spin_threads import Failure, SpinThreads
+from autograder.notebook.nodes.spin_threads import Failure, SpinThreads, raise_in_thread
 
 if TYPE_CHECKING:
     from rclpy.context import Context
@@ -66,8 +65,8 @@ class SubjectRun:
         self._stopping.set()
         self._released.set()
         self._thread.join(timeout=END_LIMIT if self._spinning else END_LIMIT / 5)
-        if self._thread.is_alive():
-            _ask_to_leave(self._thread)
+        if self._thread.is_alive() and self._thread.ident is not None:
+            raise_in_thread(self._thread.ident, SystemExit)  # it may be in an endless loop
             self._thread.join(timeout=END_LIMIT)
         return not self._thread.is_alive()
 
@@ -146,9 +145,3 @@ def _accepted(function: Any, options: Mapping[str, Any]) -> dict[str, Any]:
     if any(p.kind is inspect.Parameter.VAR_KEYWORD for p in parameters.values()):
         return dict(options)
     return {name: value for name, value in options.items() if name in parameters}
-
-
-def _ask_to_leave(thread: threading.Thread) -> None:
-    """Raise SystemExit in a thread that will not end, such as one in an endless loop."""
-    if thread.ident is not None:
-        ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident), ctypes.py_object(SystemExit))

@@ -204,7 +204,7 @@ class SpinThreads:
     def _break_off(self) -> None:
         for _ in range(_ATTEMPTS):  # A bare `except:` in a loop survives the first.
             for ident in list(self._running):
-                _raise_in_thread(ident, CallbackBrokenOff)
+                raise_in_thread(ident, CallbackBrokenOff)
             wake_global_executor()
             if self._join(_LAST_GRACE / _ATTEMPTS):
                 return
@@ -321,8 +321,13 @@ class SpinThreads:
         return self._stop.is_set() and isinstance(error, NodeEndedError) and waited < _LONG_WAIT
 
 
-def _raise_in_thread(ident: int, error: type[BaseException]) -> None:
-    """Raise in another thread, at the next line of Python that it runs."""
+def raise_in_thread(ident: int, error: type[BaseException]) -> None:
+    """Raise in another thread, at the next line of Python that it runs.
+
+    Args:
+        ident: The thread's.
+        error: The class of what is raised.
+    """
     ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(ident), ctypes.py_object(error))
 
 
