@@ -132,13 +132,11 @@ class Finished:
         output: What it said on standard output and standard error, in that order of arrival, at most the allowed
             number of bytes.
         cut: Whether it said more.
-        seconds: Wall time.
     """
 
     returncode: int | None
     output: bytes
     cut: bool
-    seconds: float
 
 
 class Running:
@@ -152,19 +150,15 @@ class Running:
         self.pid = box.pid
         """The first process of the box, as the host counts."""
 
-    def fileno(self) -> int:
-        """Readable when it has said something, or when it and all that hold its output have ended."""
-        return self._output
-
     def read(self, within: float) -> bool:
         """Take up what it says; False once it has ended.
 
         Args:
             within: Seconds to wait for something to read.
         """
-        if not select.select([self._output], [], [], max(0.0, within))[0]:
+        piece = self.next_output(max(0.0, within))
+        if piece is None:
             return True
-        piece = os.read(self._output, 1 << 16)
         room = self._most - len(self._kept)
         self._kept += piece[:room]
         self._cut = self._cut or len(piece) > room
@@ -187,8 +181,8 @@ class Running:
             running = self.read(deadline - time.monotonic())
         if running:
             self._box.end()
-            return self._finished(None)
-        return self._finished(_returncode(self._box.wait_end()))
+        returncode = None if running else _returncode(self._box.wait_end())
+        return Finished(returncode, self.said, self._cut)
 
     def next_output(self, within: float) -> bytes | None:
         """Its output since the last call, which is not kept; None for nothing yet, no bytes at its end.
@@ -218,9 +212,6 @@ class Running:
             self._box.end()
             os.close(self._output)
             self._output = -1
-
-    def _finished(self, returncode: int | None) -> Finished:
-        return Finished(returncode, self.said, self._cut, time.monotonic() - self._began)
 
     def __enter__(self) -> Self:
         return self

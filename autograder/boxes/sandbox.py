@@ -140,33 +140,24 @@ class Enclosure:
         *,
         limit: float,
         binds: Sequence[Bind] = (),
-        environment: Mapping[str, str] | None = None,
         cwd: Path = WORK,
         output_bytes: int = OUTPUT_BYTES,
-        scratch: bool = True,
-        rlimits: Mapping[str, int] | None = None,
     ) -> Finished:
-        """Run a command in a box of its own, in the submission's network namespace, until it ends.
+        """Run a command with the scratch in a box of its own until it ends; the rest is as for :meth:`start`.
 
         When this returns no process of that box is alive, daemons included.
 
         Args:
-            command: Program and arguments, as they are called in the box.
+            command: See :meth:`start`.
             limit: Seconds of wall time; then the whole box is killed.
-            binds: What the box is to see beside the system, Python and the course's package.
-            environment: Its whole environment; :func:`autograder.boxes.environment.box_environment` where None.
+            binds: See :meth:`start`.
             cwd: Where it starts.
             output_bytes: How much of its output is kept.
-            scratch: See :meth:`box`. Two commands with the scratch see each other's files.
-            rlimits: Limits of each process, by the name that :mod:`resource` gives them, beside the guard's.
 
         Raises:
             NoSandbox: The box could not be made.
         """
-        with self.start(
-            command, binds=binds, environment=environment, cwd=cwd, output_bytes=output_bytes, scratch=scratch,
-            rlimits=rlimits,
-        ) as running:  # fmt: skip
+        with self.start(command, binds=binds, cwd=cwd, output_bytes=output_bytes) as running:
             return running.wait(limit)
 
     def start(
@@ -178,9 +169,22 @@ class Enclosure:
         cwd: Path = WORK,
         output_bytes: int = OUTPUT_BYTES,
         scratch: bool = True,
-        rlimits: Mapping[str, int] | None = None,
     ) -> Running:
-        """Start a command in a box of its own; leaving the result's context ends it. See :meth:`run`."""
+        """Start a command in a box of its own, in the submission's network namespace.
+
+        Leaving the context of what comes back ends it and all that it has started.
+
+        Args:
+            command: Program and arguments, as they are called in the box.
+            binds: What the box is to see beside the system, Python and the course's package.
+            environment: Its whole environment; :func:`autograder.boxes.environment.box_environment` where None.
+            cwd: Where it starts.
+            output_bytes: How much of its output is kept.
+            scratch: See :meth:`box`. Two commands with the scratch see each other's files.
+
+        Raises:
+            NoSandbox: The box could not be made.
+        """
         words = box_arguments(self._scratch, binds, scratch_visible=scratch)
         for variable, value in (box_environment() if environment is None else environment).items():
             words += ["--setenv", variable, value]
@@ -192,7 +196,7 @@ class Enclosure:
                 [nothing, writing, writing],
                 arguments=[*words, "--chdir", str(cwd)],
                 command=list(command),
-                **self._guarded(rlimits),
+                **self._guarded(),
             )
         except BaseException:
             os.close(reading)
@@ -215,7 +219,7 @@ class Enclosure:
         Args:
             programs: Where that fork server listens.
             words: Beginning with ``run``.
-            binds: See :meth:`run`.
+            binds: See :meth:`start`.
             environment: Its whole environment.
             cwd: Where it starts.
         """
@@ -253,12 +257,12 @@ class Enclosure:
     def _next_name(self) -> str:
         return f"command {next(self._commands)}"
 
-    def _guarded(self, rlimits: Mapping[str, int] | None = None) -> dict[str, Any]:
+    def _guarded(self) -> dict[str, Any]:
         if self._guard is None:
-            return {"rlimits": dict(rlimits or {})}
+            return {}
         return {
             "cgroups": self._guard.cgroups,
-            "rlimits": {**self._guard.rlimits, **(rlimits or {})},
+            "rlimits": self._guard.rlimits,
             "hidden_memory": self._guard.hidden_memory,
         }
 
