@@ -39,7 +39,7 @@ _NBGRADERS = _FORMGRADER / "templates"
 _BOOTSTRAP = _FORMGRADER / "static" / "node_modules" / "bootstrap" / "dist" / "css"
 _SCRIPT = re.compile(r"<script\b.*?</script\s*>", re.DOTALL | re.IGNORECASE)
 _REMEMBERED = 1024
-"""Pieces of a page of each kind; the given cells of a chapter are a few hundred."""
+"""Pieces of code; the given cells of a chapter are a few hundred."""
 _REMEMBERED_CHARACTERS = 8_000_000
 """Of rendered parts of pages; those that the students of a chapter share have about a million."""
 _PICTURE = re2.compile(r"(?i)<img\b[^>]*")
@@ -110,7 +110,7 @@ class PageExporter(HTMLExporter):
         css: Any = CSSHTMLHeaderPreprocessor(config=self.config)
         register: Any = self.register_preprocessor
         register(css, enabled=True)
-        self._set_filter("markdown2html", _markdown_to_html)
+        self._set_filter("markdown2html", markdown_to_html)
 
     def default_filters(self) -> Iterator[tuple[str, Any]]:
         """The filters of nbconvert, with ours in their place."""
@@ -198,22 +198,6 @@ def _highlighter(lexer: str | None) -> Any:
         return highlighted(source, language, (metadata or {}).get("magics_language"))
 
     return filtered
-
-
-@pass_context
-def _markdown_to_html(context: Any, source: str) -> str:
-    """The filter :func:`markdown_to_html`, with a memory of the texts that it has seen."""
-    cell = context.get("cell", {})
-    if cell.get("attachments"):
-        return markdown_to_html(context, source)
-    return _rendered(source, is_the_masters(cell))
-
-
-@functools.lru_cache(maxsize=_REMEMBERED)
-def _rendered(source: str, trusted: bool) -> str:
-    # Of the context, the filter reads only the cell.
-    cell = {"metadata": {"nbgrader": {"locked": trusted}}}
-    return markdown_to_html({"cell": cell}, source)
 
 
 def _with_alternative_texts(page: str) -> str:
