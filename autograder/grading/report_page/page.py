@@ -131,8 +131,7 @@ def _dropped(table: ClassTable) -> dict[str, list[str]]:
 def _cell(row: Row | None) -> str:
     if row is None or row.is_blank:
         return "excused" if row and row.state == EXCUSED else "–"
-    mark = "?" if row.waits else "*" if row.by_hand is not None or row.extra else ""
-    return f"{row.score:g}{mark}"
+    return f"{row.score:g}{row.mark}"
 
 
 def _progress(store: ClassStore, table: ClassTable) -> list[figures.Progress]:

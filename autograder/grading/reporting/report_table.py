@@ -190,20 +190,16 @@ def _unreadable(report: GradeReport) -> list[tuple[str, str]]:
 def _cell(row: Row | None, diagnoses: bool) -> Text:
     if row is None or row.state in (NOT_SUBMITTED, EXCUSED):
         return Text("–" if row is None or row.state == NOT_SUBMITTED else "excused", style="dim")
-    text = Text(f"{row.score:g}/{row.max_score:g}{_mark(row)}", style=_STYLES.get(row.state, "yellow"))
+    text = Text(f"{row.score:g}/{row.max_score:g}{row.mark}", style=_STYLES.get(row.state, "yellow"))
     if row.diagnosis and diagnoses:
         text.append(f" {row.diagnosis}", style="default")
     return text
 
 
-def _mark(row: Row) -> str:
-    return "?" if row.waits else "*" if row.by_hand is not None or row.extra else ""
-
-
 def _legend(rows: Sequence[Row]) -> list[str]:
     """The meaning of the marks behind points, as far as there are any."""
     waiting = sum(row.waits for row in rows)
-    marks = {_mark(row) for row in rows}
+    marks = {row.mark for row in rows}
     found = ["*  a person gave these points, or some of them"] if "*" in marks else []
     if waiting:
         found.append(f"?  waits for a person ({waiting} in all): give the points in formgrader")

@@ -103,6 +103,11 @@ class Row:
         """The points; None where there are none to be had."""
         return None if self.is_blank else self.score
 
+    @property
+    def mark(self) -> str:
+        """Behind the points: ``?`` where they wait for a person, ``*`` where a person gave some of them, or nothing."""
+        return "?" if self.waits else "*" if self.by_hand is not None or self.extra else ""
+
 
 def columns(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
     """The name of the column for each exercise, by assignment and exercise.
