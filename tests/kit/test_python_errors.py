@@ -134,6 +134,9 @@ SAID = {
     "TypeError: list.append() takes exactly one argument (2 given)": "numbers[-2] + numbers[-1]",
     "NameError: name 'Fibonacci_Feedback' is not defined": "Write it with a dot: Fibonacci.Feedback",
     "OSError: [Errno 28] No space left on device": "Read the traceback from the bottom",
+    "AssertionError: The 'linear' field must be a sub message of type 'Vector3'": "x, y or z",
+    "AssertionError: The 'x' field must be of type 'float'": "with a point",
+    "AssertionError: The 'data' field must be of type 'str'": "str(...)",
 }
 
 
@@ -198,6 +201,16 @@ def test_the_card_names_what_to_mend(last: str) -> None:
             "future = client.actions.send_goal_async(goal, feedback_callback=client.on_feedback())",
             "TypeError: FibonacciClient.on_feedback() missing 1 required positional argument: 'message'",
             "Write only its name, client.on_feedback, without",
+        ),
+        (
+            "self.create_subscription(String, 'chatter', self.hear(), 10)",
+            "TypeError: Listener.hear() missing 1 required positional argument: 'message'",
+            "The parentheses after hear call it at once",
+        ),
+        (
+            "self.show()",
+            "TypeError: Node.show() missing 1 required positional argument: 'text'",
+            "show got less than it needs",
         ),
         (
             "self.publish_feedback(Fibonacci.Feedback(partial_sequence=numbers))",
