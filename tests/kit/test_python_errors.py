@@ -11,11 +11,8 @@ from autograder.kit.evidence import Event, Evidence, Part, Reference
 
 TRANSITION = "RCLError: Failed to update goal state: goal_handle attempted invalid transition from state"
 SAID = {
-    "AttributeError: 'Talker' object has no attribute 'count'": "set it in __init__",
     "AttributeError: 'Talker' object has no attribute 'cuont'. Did you mean: 'count'?": "write count.",
     "AttributeError: 'Talker' object has no attribute 'create_timr'": "Compare the spelling: create_publisher",
-    "AttributeError: 'function' object has no attribute 'info'": "Write the parentheses after the method's name",
-    "NameError: name 'count' is not defined": "write self.count",
     "NameError: name 'count' is not defined. Did you mean: 'self.count'?": "To use it, write self.count",
     "NameError: name 'comand' is not defined. Did you mean: 'command'?": "and knows command",
     "NameError: name 'order' is not defined. Did you mean: 'ord'?": "request.order",
@@ -32,7 +29,6 @@ SAID = {
     "AttributeError: 'CancelingClient' object has no attribute 'cancel_goal_async'": "self.goal_handle.cancel",
     "AttributeError: 'CancelingClient' object has no attribute 'send_goal'": "by its name alone: send_goal(...)",
     "AttributeError: 'String' object attribute 'data' is read-only": "Restart Kernel and Run All Cells",
-    "AttributeError: 'AddTwoInts_Request' object has no attribute 'sum'": "The Request of AddTwoInts has no field",
     "AttributeError: 'NoneType' object has no attribute 'append'": "without numbers = before it",
     "AttributeError: 'NoneType' object has no attribute 'order'": "has run before this one",
     "TypeError: 'NoneType' object is not iterable": "without numbers = before it",
@@ -49,36 +45,21 @@ SAID = {
     "TypeError: ActionServer.__init__() missing 1 required positional argument: 'action_name'": "Write self first",
     "TypeError: ask() missing 3 required positional arguments: 'a', 'b', and 'patience_sec'": "'a', 'b', and",
     "TypeError: ask() takes 5 positional arguments but 6 were given": "takes 5 arguments and got 6",
-    "AttributeError: 'NoneType' object has no attribute 'sum'": "(or wait_for_server) has to come first",
     "TypeError: Publisher.publish() got an unexpected keyword argument 'data'": "publish(String(data=",
     "TypeError: Expected <class 'std_msgs.msg._string.String'>, got <class 'std_msgs.msg._string.Metaclass_String'>": (
         "Write parentheses after the type: msg = String()"
     ),
-    "NameError: name 'String' is not defined": "Write `from std_msgs.msg import String` at the top",
     "NameError: name 'Talker' is not defined": "import it in this file",
-    "AttributeError: 'ClientGoalHandle' object has no attribute 'is_done'": "is of the type ClientGoalHandle here",
-    "IndexError: pop from empty list": "what it takes one by one is used up",
-    "IndexError: string index out of range": "The string has fewer elements",
-    "NameError: name 'compute' is not defined": "define it in this file, above the line",
-    "NameError: name 'linear' is not defined": "command.linear.x = 0.5",
-    "UnboundLocalError: cannot access local variable 'i' where it is not associated with a value": "write self.i",
     "UnboundLocalError: local variable 'i' referenced before assignment": "write self.i",
-    "AttributeError: 'Future' object has no attribute 'sum'": "future.result().sum",
-    "SyntaxError: expected ':'": "Write a colon at the end of that line",
     "SyntaxError: invalid syntax": "just before it",
     "IndentationError: expected an indented block after 'if' statement on line 4": "what belongs below line 4",
     "SyntaxError: invalid syntax. Maybe you meant '==' or ':=' instead of '='?": "Write == in a condition",
     "ImportError: cannot import name 'Strng' from 'std_msgs.msg' (/opt/ros/x/__init__.py)": "nothing called Strng",
     "TypeError: unsupported operand type(s) for +: 'int' and 'str'": "A string and a number are added",
-    "ZeroDivisionError: division by zero": "before you divide",
-    "ValueError: not enough values to unpack (expected 2, got 1)": "Left of the = are 2 names",
     "ValueError: too many values to unpack (expected 2)": "Left of the = are 2 names",
     "ValueError: invalid literal for int() with base 10: '{five}'": "'{five}' is not a number",
     "ValueError: could not convert string to float: 'five'": "'five' is not a number",
-    "TypeError: 'str' object cannot be interpreted as an integer": "Leave out the str(...)",
-    "TypeError: ActionServer.__init__() got an unexpected keyword argument 'done'": "ActionServer takes no argument",
     "TypeError: spin() got an unexpected keyword argument 'nod'": "spin takes no argument called nod",
-    "IndexError: list assignment index out of range": "The list has fewer elements",
     "StopIteration": "and none was left",
     "AttributeError: 'ServerGoalHandle' object has no attribute 'order'": "Write goal_handle.request.order",
     "NameError: name 'a' is not defined": "request.a, or goal_handle.request.a",
@@ -217,7 +198,6 @@ def test_the_card_names_what_to_mend(last: str) -> None:
             "NameError: name 'self' is not defined",
             "goal_handle.publish_feedback",
         ),
-        ("client.call_async(request)", "TypeError", "without parentheses"),
         (
             "numbers = list(answer.result.sequence)",
             "AttributeError: 'function' object has no attribute 'sequence'",
@@ -236,13 +216,6 @@ def test_the_line_that_raised_tells_what_to_write(code: str, last: str, advice: 
         f'Traceback (most recent call last):\n  File "talker.py", line 3, in __init__\n    {code}\n    ^^^^\n'
     )
     assert advice in told(f"{frames}{last}")
-
-
-def test_a_method_that_is_not_found_where_it_is_handed_over_may_be_indented_too_far() -> None:
-    code = "self.timer = self.create_timer(0.5, self.tick)\n                                        ^^^^^^^^^"
-    frames = f'Traceback (most recent call last):\n  File "talker.py", line 3, in __init__\n    {code}\n'
-    words = told(f"{frames}AttributeError: 'Talker' object has no attribute 'tick'")
-    assert "indented by four spaces, like def __init__" in words
 
 
 def told(traceback: str) -> str:
