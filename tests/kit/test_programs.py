@@ -185,17 +185,18 @@ ENTRY = "talker = my_robot_pkg.talker:main"
 
 
 @pytest.mark.parametrize(
-    ("programs", "installed", "lost"),
+    ("module", "programs", "installed", "lost"),
     [
-        ((ENTRY,), ("talker",), True),
-        ((ENTRY,), ("simple_node", "talker"), False),
-        ((ENTRY, "hello = my_robot_pkg.simple_node:main"), ("hello", "talker"), False),
+        ("simple_node", (ENTRY,), ("talker",), True),
+        ("simple_node", (ENTRY,), ("simple_node", "talker"), False),
+        ("simple_node", (ENTRY, "hello = my_robot_pkg.simple_node:main"), ("hello", "talker"), False),
+        ("talker", (ENTRY,), (), False),
     ],
 )
-def test_an_entry_point_is_lost_where_nothing_starts_its_module(
-    programs: tuple[str, ...], installed: tuple[str, ...], lost: bool
+def test_an_entry_point_is_lost_where_its_module_is_there_and_nothing_starts_it(
+    module: str, programs: tuple[str, ...], installed: tuple[str, ...], lost: bool
 ) -> None:
-    made = report("my_robot_pkg/simple_node.py", programs=programs)
+    made = report(f"my_robot_pkg/{module}.py", programs=programs)
     made = replace(made, packages=[replace(made.packages[0], installed=installed)])
     assert package_programs.lost_entry_point(made, PACKAGE, "simple_node") is lost
 
@@ -253,19 +254,3 @@ def test_an_entry_point_that_leads_nowhere_is_told_from_an_import(
     advice = package_programs.entry_point(seen, Entry(PACKAGE, "talker"))
     assert (advice is not None) == bool(named)
     assert advice is None or named in advice.text
-
-
-@pytest.mark.parametrize(
-    ("modules", "programs", "lost"),
-    [
-        (("my_robot_pkg/simple_node.py",), (ENTRY,), True),
-        (("my_robot_pkg/simple_node.py",), (ENTRY, "hello = my_robot_pkg.simple_node:main"), False),
-        (("my_robot_pkg/talker.py",), (ENTRY,), False),
-    ],
-)
-def test_an_entry_point_is_lost_where_its_module_is_still_there(
-    modules: tuple[str, ...], programs: tuple[str, ...], lost: bool
-) -> None:
-    assert (
-        package_programs.lost_entry_point(report(*modules, programs=programs), PACKAGE, "simple_node") == lost
-    )
