@@ -189,6 +189,17 @@ def test_the_card_names_what_to_mend(last: str) -> None:
             "The parentheses after hear call it at once",
         ),
         (
+            "self.create_subscription(String, 'chatter', None, 10)",
+            "RuntimeError: Subscription.__init__(): callback should be either be callable with one argument",
+            "Besides self, a timer's callback takes nothing and a subscription's takes the message",
+        ),
+        (
+            "sys.exit(load_entry_point('my-robot-pkg==0.0.0', 'console_scripts', 'simple_node')())",
+            '  File "/x/my_robot_pkg/simple_node.py", line 10, in __init__\n    super().__init__("simple_node")\n'
+            "rclpy.exceptions.NotInitializedException: rclpy.init() has not been called",
+            "let the entry point end in :main",
+        ),
+        (
             "self.show()",
             "TypeError: Node.show() missing 1 required positional argument: 'text'",
             "show got less than it needs",
