@@ -39,31 +39,16 @@ def _evidence(*started: int, talkers: dict[int, str], listener: int) -> Evidence
     ("what", "next_step"),
     [
         (
-            "TypeError: Node(remappings=…) must be a list of pairs, got 'chatter' (a.launch.py, line 6)",
-            "list of pairs",
-        ),
-        (
-            "InvalidPythonLaunchFileError: 'generate_launch_description()' must return a LaunchDescription",
-            "`return`",
-        ),
-        (
             "TypeError: LaunchDescription.__init__() takes from 1 to 2 positional arguments but 3 were",
             "one list",
         ),
         ("TypeError: 'Node' object is not iterable (n.launch.py, line 6)", "one list"),
-        (
-            "TypeError: Node() got an unexpected keyword argument 'remap' (e.launch.py, line 6)",
-            "of the arguments",
-        ),
         ("NameError: name 'Nod' is not defined (l.launch.py, line 6)", "imports"),
-        ("package 'my_robot' not found", "ros2 pkg executables my_robot_pkg"),
-        ("executable 'listner' not found", "ros2 pkg executables my_robot_pkg"),
         (
             "TypeError: Node.__init__() takes 1 positional argument but 3 were given",
             'Node(package="my_robot_pkg", ',
         ),
         ("TypeError: Node.__init__() missing 1 required keyword-only argument: 'executable'", "executable="),
-        ("XML: mismatched tag, line 4", "with the example"),
     ],
 )
 def test_the_next_step_fits_what_the_launch_says(what: str, next_step: str) -> None:
