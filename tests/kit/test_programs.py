@@ -131,19 +131,6 @@ def test_a_program_without_an_entry_point_did_not_start() -> None:
     assert (finding.passed, finding.seen) == (False, "talker did not start; asker did not start")
 
 
-def test_an_entry_point_names_the_file_of_its_program() -> None:
-    def next_step(*programs: str) -> str:
-        seen = evidence([said(as_line(report("my_robot_pkg/asking.py", programs=programs, missing="asker")))])
-        advice = package_programs.entry_point(seen, Entry(PACKAGE, "asker", "asking"))
-        return advice.next_step if advice else ""
-
-    line = "'asker = my_robot_pkg.asking:main'"
-    assert line in next_step(ENTRY)
-    # Who has written no entry point yet is not told the answer.
-    assert line not in next_step()
-    assert package_programs.FORM in next_step()
-
-
 def test_a_traceback_after_ctrl_c_costs_nothing_and_is_worth_a_word() -> None:
     quiet = [said("hello"), subject(INTERRUPTED), subject("exited")]
     loud = [said("hello"), subject(INTERRUPTED), *map(said, TRACEBACK), subject("exited")]
@@ -205,7 +192,6 @@ def test_an_entry_point_is_lost_where_its_module_is_there_and_nothing_starts_it(
     ("modules", "programs", "wrong"),
     [
         (("my_robot_pkg/talker.py",), (ENTRY,), ""),
-        (("talker.py",), (ENTRY,), "src/my_robot_pkg/talker.py"),
         (("nodes/talker.py",), (ENTRY,), "src/my_robot_pkg/nodes/talker.py"),
         (("nodes/talker.py",), ("talker = nodes.talker:main",), ""),
         (("my_robot_pkg/chatting.py",), (ENTRY,), ""),
@@ -240,9 +226,7 @@ OWN_IMPORT = (
 @pytest.mark.parametrize(
     ("lines", "missing", "named"),
     [
-        (LOADING, "talker", "names the module talker, which is not there"),
         (LOADING, "my_robot_pakage", "names the module my_robot_pakage, which is not there"),
-        (LOADING, "my_robot_pkg.chatter", "leads to the module chatter, which is not there"),
         (LOADING, "my_robot_pkg", ""),
         ((*LOADING, *OWN_IMPORT), "helper", ""),
     ],
