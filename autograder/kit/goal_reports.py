@@ -179,7 +179,8 @@ def miscalled(part: Part) -> str:
     for line in said:
         plain = words.without_lists(line)
         if re2.search(r"(?i)\b(?:cancell?ed|aborted)\b", plain) and not re2.search(
-            r"(?i)\b(?:not?|false|if|unless|or)\b|\bun|succe|erfolg|\?|[=:] *0\b|\b4\b", plain
+            r"(?i)\b(?:not?|n?or|neither|never|without|nein|nicht|kein|weder|false|if|unless)\b|\bun|succe|erfolg|\?|[=:] *0\b|\b4\b",
+            plain,
         ):
             return line
     return ""
@@ -272,7 +273,7 @@ def aborted_as_seen(evidence: Evidence) -> str:
     if any("abort" in line.lower() for line in named):
         return ""
     for line in said:
-        if words.ends_as(words.SUCCEEDED, line) or words.ends_as(_CANCELED, line):
+        if any(words.ends_as(word, line) or words.flag(word, line) for word in (words.SUCCEEDED, _CANCELED)):
             return f"“{line}”"
     new = [line for line in _new_words(said, evidence.part(LATE)) if not _names_another(line)]
     if named or new or on_purpose(part.traceback):

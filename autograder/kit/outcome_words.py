@@ -13,7 +13,10 @@ CANCELED = r"(?:cancel+ed|abgebrochen|annul\w*)"
 SUCCEEDED = r"(?:succeeded|success)"
 ABORTED = "aborted"
 ACCEPTED = r"(?:accepted|akzeptiert|angenommen|aceptad[ao])"
-DOUBTFUL = r"not |n't|refus|reject|fail|nicht|unable|could|instead|denied|unknown|expect|want|but|should"
+DOUBTFUL = (
+    r"not |n't|refus|reject|fail|nicht|unable|could|instead|denied|unknown|expect|want|but|should|neither|\bnor\b|never"
+    r"|without|too late|ignor|before|despite|in spite|although|weder|\bohne|\bnie\b|zu spät|trotz"
+)
 """Words of who says that something is otherwise than it was meant to be."""
 SUCCESS = r"succe|erfolg"
 """Words in which success is spoken of."""
@@ -61,12 +64,14 @@ def flag(word: str, line: str) -> bool | None:
 
 
 def ends_as(word: str, line: str) -> bool:
-    """True if a line says that the goal ended so, as "the goal was canceled" and "status: CANCELED" do."""
+    """True if a line says that the goal ended so: "the goal was canceled", "status: CANCELED", "Canceled (5)"."""
     plain = _EMPTY_BOX.sub("", _ANSWERED.sub("", without_lists(line)))
     if re2.search(f"(?i){DOUBTFUL}", plain) or _names_another(word, plain):
         return False
     of_the_goal = r"\b(?:goal|it|ziel)\s+(?:is |was |has been |got |wurde |ended as |ended )?"
-    of_its_status = r"\b(?:status|state|zustand|outcome)\s*(?:is|was|=|:)?[\s\d()\[\]'\"=:-]*"
+    of_its_status = r"\b(?:status|state|zustand|outcome|result)\s*(?:is|was|=|:)?[\s\d()\[\]'\"=:-]*"
+    if re2.match(rf"(?i)[^\pL\pN]*{word}\s*(?:[,;.!(|-]|$)", plain):
+        return True
     return any(
         not re2.match(r"(?i)\s+after\b|\s*(?:=|:|->|\?)", plain[found.end() :])
         for found in re2.finditer(rf"(?i)(?:{of_the_goal}|{of_its_status}){word}\b", plain)

@@ -52,6 +52,14 @@ def right(canceled: str, succeeded: str) -> bool:
         ("ended (5) [0, 1]", "ended (4) [0, 1]"),
         ("Status: [ ] 4 SUCCEEDED [x] 5 CANCELED", "Status: [x] 4 SUCCEEDED [ ] 5 CANCELED"),
         ("not canceled: False, 5", "not canceled: True, 4"),
+        ("The goal was CANCELED.", "The goal was completed: the cancel request came too late."),
+        ("canceled", "completed (cancel ignored)"),
+        ("canceled", "finished before the cancel arrived"),
+        ("canceled", "was never canceled, it ran to its end"),
+        ("canceled", "ended without being canceled"),
+        ("canceled", "cancel requested after 3 messages, finished normally"),
+        ("Canceled, status 5", "Not canceled, status 4"),
+        ("canceled after 3 messages: 5", "canceled after 3 messages: 4"),
     ],
 )
 def test_who_says_how_each_goal_ended_is_right(canceled: str, succeeded: str) -> None:
@@ -76,6 +84,10 @@ def test_who_says_how_each_goal_ended_is_right(canceled: str, succeeded: str) ->
         ("done", "done"),
         ("goal canceled as asked: True (5)", "goal canceled as asked: True (4)"),
         ("[5, 1] done", "[4, 1] done"),
+        ("Canceled, status 5", "Canceled, status 4"),
+        ("=> CANCELED (5)", "=> CANCELED (4)"),
+        ("Result: canceled (5)", "Result: canceled (4)"),
+        ("Succeeded (5)", "Succeeded (4)"),
     ],
 )
 def test_a_word_that_is_true_of_the_other_goal_only_is_wrong(canceled: str, succeeded: str) -> None:
@@ -105,6 +117,8 @@ def test_who_says_the_same_of_both_goals_hears_of_the_one_for_which_it_is_false(
         ("Final status: ABORTED", False),
         ("status 6, canceled: False", False),
         ("it could not be canceled, it succeeded", False),
+        ("The goal ended otherwise: it neither succeeded nor was canceled.", False),
+        ("Canceled, status 6", True),
         ("das Ziel wurde abgebrochen", False),
     ],
 )

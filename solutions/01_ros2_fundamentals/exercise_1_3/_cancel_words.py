@@ -110,7 +110,7 @@ def false_claim(honoured: Part, refused: Part, aborted: Part | None = None) -> t
     return None
 
 
-def _claimed(part: Part, truth: str, word: str = "cancel|abgebrochen|annul") -> str | None:
+def _claimed(part: Part, truth: str, word: str = CANCELED) -> str | None:
     """A line that amounts to "the goal was canceled" where it was not, without a word of doubt.
 
     Args:
