@@ -178,10 +178,8 @@ def miscalled(part: Part) -> str:
         return next((line for line in said for word in _FAILURES if words.flag(word, line)), "")
     for line in said:
         plain = words.without_lists(line)
-        if re2.search(r"(?i)\b(?:cancell?ed|aborted)\b", plain) and not re2.search(
-            r"(?i)\b(?:not?|n?or|neither|never|without|nein|nicht|kein|weder|false|if|unless)\b|\bun|succe|erfolg|\?|[=:] *0\b|\b4\b",
-            plain,
-        ):
+        named = re2.search(r"(?i)\b(?:cancell?ed|aborted)\b", plain)
+        if named and not re2.search(rf"(?i){words.DENIAL}|{words.SUCCESS}|\?|[=:] *0\b|\b4\b", plain):
             return line
     return ""
 

@@ -18,6 +18,8 @@ DOUBTFUL = (
     r"|without|too late|ignor|before|despite|in spite|although|weder|\bohne|\bnie\b|zu spät|trotz"
 )
 """Words of who says that something is otherwise than it was meant to be."""
+DENIAL = r"\b(?:not?|n?or|neither|never|without|nein|nicht|kein|weder|false|if|unless)\b|\bun"
+"""Words that deny an end, or leave it open."""
 SUCCESS = r"succe|erfolg"
 """Words in which success is spoken of."""
 
