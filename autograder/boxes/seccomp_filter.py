@@ -4,9 +4,11 @@ The namespaces decide what a box can reach. The filter takes away what no answer
 had their holes: tracing other processes, mounting, namespaces in namespaces, keys, BPF, io_uring. Watching files
 (inotify) is among it because a user has 128 of such watches for all boxes and programs together; programs that watch
 look now and then instead where they cannot. Semaphores and messages of System V are among it because the kernel gives
-some thousand calls gigabytes that no process is seen to have. A call that is refused fails with EPERM, as it does for
-any user without the right to it; ``clone3`` does not exist (ENOSYS), because its flags are in memory that a filter
-cannot read, and libraries then use ``clone``.
+some thousand calls gigabytes that no process is seen to have, and asynchronous input and output (``io_setup``) because
+all programs of the machine share one number of requests. A lease (``fcntl``) makes everybody else who opens a file wait
+for up to 45 seconds, also where the file is read-only here: Python's own modules are the same files in every box. A
+call that is refused fails with EPERM, as it does for any user without the right to it; ``clone3`` does not exist
+(ENOSYS), because its flags are in memory that a filter cannot read, and libraries then use ``clone``.
 
 Numbers are those of the kernel's own tables (asm/unistd_64.h, asm-generic/unistd.h), which no kernel ever changes.
 """
@@ -14,6 +16,7 @@ Numbers are those of the kernel's own tables (asm/unistd_64.h, asm-generic/unist
 from __future__ import annotations
 
 import errno
+import fcntl
 import platform
 import socket
 import struct
@@ -27,19 +30,20 @@ if TYPE_CHECKING:
 
 _X86_64: Mapping[str, int] = {
     "ioctl": 16, "shmget": 29, "socket": 41, "socketpair": 53, "clone": 56, "semget": 64,
-    "msgget": 68, "ptrace": 101, "syslog": 103,
+    "msgget": 68, "fcntl": 72, "ptrace": 101, "syslog": 103,
     "uselib": 134, "vhangup": 153, "modify_ldt": 154, "pivot_root": 155, "chroot": 161, "acct": 163,
     "settimeofday": 164, "mount": 165, "umount2": 166, "swapon": 167, "swapoff": 168, "reboot": 169,
     "sethostname": 170, "setdomainname": 171, "iopl": 172, "ioperm": 173, "init_module": 175,
-    "delete_module": 176, "quotactl": 179, "lookup_dcookie": 212, "clock_settime": 227, "kexec_load": 246,
-    "add_key": 248, "request_key": 249, "keyctl": 250, "inotify_init": 253, "unshare": 272, "inotify_init1": 294,
+    "delete_module": 176, "quotactl": 179, "io_setup": 206, "lookup_dcookie": 212, "clock_settime": 227,
+    "kexec_load": 246, "add_key": 248, "request_key": 249, "keyctl": 250, "inotify_init": 253, "unshare": 272,
+    "inotify_init1": 294,
     "perf_event_open": 298, "fanotify_init": 300, "name_to_handle_at": 303, "open_by_handle_at": 304, "setns": 308,
     "process_vm_readv": 310, "process_vm_writev": 311, "kcmp": 312, "finit_module": 313, "memfd_create": 319,
     "kexec_file_load": 320, "bpf": 321, "userfaultfd": 323,
 }  # fmt: skip
 _AARCH64: Mapping[str, int] = {
-    "lookup_dcookie": 18, "inotify_init1": 26, "ioctl": 29, "umount2": 39, "mount": 40, "pivot_root": 41,
-    "chroot": 51, "vhangup": 58,
+    "io_setup": 0, "lookup_dcookie": 18, "fcntl": 25, "inotify_init1": 26, "ioctl": 29, "umount2": 39, "mount": 40,
+    "pivot_root": 41, "chroot": 51, "vhangup": 58,
     "quotactl": 60, "acct": 89, "unshare": 97, "kexec_load": 104, "init_module": 105, "delete_module": 106,
     "clock_settime": 112, "syslog": 116, "ptrace": 117, "reboot": 142, "sethostname": 161,
     "setdomainname": 162, "settimeofday": 170, "msgget": 186, "semget": 190, "shmget": 194, "socket": 198,
@@ -53,7 +57,7 @@ _EVERYWHERE: Mapping[str, int] = {
     "move_mount": 429, "fsopen": 430, "fsconfig": 431, "fsmount": 432, "fspick": 433, "clone3": 435,
     "pidfd_getfd": 438, "mount_setattr": 442, "quotactl_fd": 443, "memfd_secret": 447,
 }  # fmt: skip
-_BY_ARGUMENT = {"clone", "clone3", "socket", "socketpair", "ioctl"}
+_BY_ARGUMENT = {"clone", "clone3", "socket", "socketpair", "ioctl", "fcntl"}
 _HIDDEN_MEMORY = {"memfd_create", "shmget"}
 """Memory that no process is seen to have: refused where it is watched process by process, without a cgroup."""
 
@@ -62,6 +66,8 @@ _FAMILIES = (socket.AF_UNIX, socket.AF_INET, socket.AF_INET6, 16)
 the host of a virtual machine, past every network namespace."""
 _TERMINAL_TRICKS = (0x5412, 0x541C)
 """TIOCSTI types into a terminal, TIOCLINUX pastes into a console (asm-generic/ioctls.h)."""
+_LEASES = (fcntl.F_SETLEASE, fcntl.F_NOTIFY, 1040)
+"""Leases, signals when a folder changes, and what is both (F_SETDELEG, Linux 6.19; linux/fcntl.h)."""
 _NAMESPACES = (
     syscalls.CLONE_NEWNS | syscalls.CLONE_NEWCGROUP | syscalls.CLONE_NEWUTS | syscalls.CLONE_NEWIPC
     | syscalls.CLONE_NEWUSER | syscalls.CLONE_NEWPID | syscalls.CLONE_NEWNET
@@ -123,6 +129,7 @@ def filter_for_boxes(*, hidden_memory: bool = True, machine: str = "") -> bytes:
     program += [(_JUMP_EQUAL, 0, 1, calls["clone3"]), _fail(errno.ENOSYS)]
     program += _where(calls["clone"], 0, [(_JUMP_BITS, 0, 1, _NAMESPACES), _fail(errno.EPERM)])
     program += _where(calls["ioctl"], 1, _refuse_any(_TERMINAL_TRICKS))
+    program += _where(calls["fcntl"], 1, _refuse_any(_LEASES))
     program += _where(calls["socket"], 0, _refuse_others(_FAMILIES))
     program += _where(calls["socketpair"], 0, _refuse_others((socket.AF_UNIX,)))
     program.append((_RETURN, 0, 0, _ALLOW))
@@ -137,7 +144,10 @@ def _fail(number: int) -> _Instruction:
 
 
 def _where(call: int, argument: int, decide: Sequence[_Instruction]) -> list[_Instruction]:
-    """For one call, decide by the low half of an argument; what is not decided is allowed."""
+    """For one call, decide by the low half of an argument; what is not decided is allowed.
+
+    The kernel, too, takes no more than the low half of a flag, a family or a command.
+    """
     body = [(_LOAD, 0, 0, _ARGUMENTS + 8 * argument), *decide, (_RETURN, 0, 0, _ALLOW)]
     return [(_JUMP_EQUAL, 0, len(body), call), *body]
 

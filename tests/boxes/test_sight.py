@@ -227,6 +227,12 @@ def test_no_right_at_all(ask: Ask) -> None:
         "libc.setns(os.open('/proc/self/ns/net', 0), 0)",
         "libc.syscall(250, 0, -3, 0)",  # keyctl
         "libc.syscall(425, 8, 0)",  # io_uring_setup
+        "libc.syscall(206, 128, ctypes.byref(ctypes.c_ulong()))",  # io_setup
+        "libc.fcntl(os.open(json.__file__, os.O_RDONLY), 1024, 0)",  # a lease to read
+        "libc.fcntl(os.open(os.__file__, os.O_RDONLY), 1024, 1)",  # a lease to write
+        "libc.syscall(72, os.open(os.__file__, os.O_RDONLY), 1024 | 1 << 32, 1)",
+        "libc.fcntl(os.open('/tmp', os.O_RDONLY), 1026, 2)",  # signals when a file in a folder changes
+        "libc.fcntl(os.open('/tmp', os.O_RDONLY), 1040, bytes(8))",  # a delegation
         "libc.syscall(321, 0, 0, 0)",  # bpf
         "libc.syscall(298, 0, 0, -1, -1, 0)",  # perf_event_open
         "libc.syscall(323, 0)",  # userfaultfd
@@ -260,6 +266,33 @@ results.append(open("/dev/urandom", "rb").read(1) != b"")
 answer = results
 """
     assert ask(code) == [1, 3, 0, True, [1, 2], True, True]
+
+
+def test_what_honest_programs_say_of_descriptors_and_files(ask: Ask) -> None:
+    code = """
+import fcntl
+results = []
+reading, writing = os.pipe()
+results.append(fcntl.fcntl(reading, fcntl.F_SETPIPE_SZ, 8192) == fcntl.fcntl(writing, fcntl.F_GETPIPE_SZ))
+fcntl.fcntl(reading, fcntl.F_SETFL, fcntl.fcntl(reading, fcntl.F_GETFL) | os.O_NONBLOCK)
+results.append(os.get_blocking(reading))
+fcntl.fcntl(reading, fcntl.F_SETFD, 0)
+results.append(fcntl.fcntl(reading, fcntl.F_GETFD))
+results.append(fcntl.fcntl(fcntl.fcntl(reading, fcntl.F_DUPFD_CLOEXEC, 50), fcntl.F_GETFD))
+with open("/tmp/locked", "wb") as file:
+    fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    fcntl.fcntl(file, fcntl.F_OFD_GETLK, bytes(32))
+    results.append(fcntl.fcntl(file, fcntl.F_GETLEASE) == fcntl.F_UNLCK)
+try:
+    memory = os.memfd_create("sealed", os.MFD_ALLOW_SEALING)
+    fcntl.fcntl(memory, fcntl.F_ADD_SEALS, fcntl.F_SEAL_GROW)
+    results.append(fcntl.fcntl(memory, fcntl.F_GET_SEALS) == fcntl.F_SEAL_GROW)
+except PermissionError:  # where memory is counted process by process, there is no memory of no process
+    results.append(True)
+answer = results
+"""
+    assert ask(code) == [True, False, 0, 1, True, True]
 
 
 def test_a_sourced_ros_is_part_of_the_installation_and_a_workspace_is_not(tmp_path: Path) -> None:

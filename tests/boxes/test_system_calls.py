@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import fcntl
 import re
 import socket
 import struct
@@ -61,6 +62,7 @@ def test_what_needs_no_answer_is_refused(machine: str) -> None:
         "inotify_init1",
         "keyctl",
         "io_uring_setup",
+        "io_setup",
         "userfaultfd",
         "kexec_load",
         "semget",
@@ -94,6 +96,19 @@ def test_sockets_of_the_network_and_of_unix_only(machine: str) -> None:
     assert decide(machine, "socketpair", socket.AF_UNIX) == ALLOW
     assert decide(machine, "ioctl", 0, 0x5412) == ERRNO | errno.EPERM
     assert decide(machine, "ioctl", 0, 0x5413) == ALLOW
+
+
+@machines
+def test_descriptors_are_arranged_and_files_locked_and_nobody_is_made_to_wait_for_a_file(
+    machine: str,
+) -> None:
+    for command in range(1100):
+        makes_wait = command in (fcntl.F_SETLEASE, fcntl.F_NOTIFY, 1040)  # F_SETDELEG, since Linux 6.19
+        assert decide(machine, "fcntl", 3, command) == (ERRNO | errno.EPERM if makes_wait else ALLOW), command
+    # The kernel takes the command as 32 bits, whatever stands above them.
+    assert decide(machine, "fcntl", 3, 1 << 32 | fcntl.F_SETLEASE) == ERRNO | errno.EPERM
+    assert decide(machine, "fcntl", 3, fcntl.F_SETLEASE << 32 | fcntl.F_GETFD) == ALLOW
+    assert decide(machine, "fcntl", fcntl.F_SETLEASE, fcntl.F_GETFD, fcntl.F_SETLEASE) == ALLOW
 
 
 @machines
