@@ -30,7 +30,7 @@ class Limits:
         notebook_output_bytes: Output kept of all cells together.
         message_bytes: Largest single message that is read from a kernel.
         flood_bytes: Output that a cell may send, kept or not, before it is stopped.
-        cpu_seconds: Processor time of a box's processes together; of a submission that is executed twice, both times.
+        cpu_seconds: Processor time of a box's processes together; a submission that is executed twice has it each time.
         memory_bytes: Memory of a box's processes together, files in its scratch included.
         beside_bytes: The same, as long as others are executed beside. Who needs more is executed again, alone, so it
             decides nothing.

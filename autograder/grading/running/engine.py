@@ -32,8 +32,6 @@ _PER_CORE = 4
 BOX_BYTES = Limits().beside_bytes + 150_000_000
 """Memory that one more notebook may take: its box, its judge and its worker."""
 _RESERVE_BYTES = 1_000_000_000
-_LEFT_AT_LEAST = 0.1
-"""Part of the budget of processor time that a second execution always has: 20 s, where Lab 1.2 takes 2 s."""
 
 
 def cores() -> int:
@@ -92,9 +90,9 @@ def execute_all(
 class _Feed:
     """Tasks, for many threads.
 
-    What could not be checked, or was crowded out, comes once more when everything else is done, one at
-    a time: whatever the machine was short of was perhaps used up by another submission. Who has used the most processor
-    time comes last.
+    What could not be checked, or was crowded out, comes once more when everything else is done, one at a time: whatever
+    the machine was short of was perhaps used up by another submission. So it has all of its limits anew. Who has used
+    the most processor time comes last.
     """
 
     def __init__(self, tasks: Iterable[Task]) -> None:
@@ -105,17 +103,17 @@ class _Feed:
         self.taken = 0
         self.exhausted = False
 
-    def next(self) -> tuple[Task, float | None] | None:
-        """The next task, or None where there is none. To be followed by :meth:`done`.
+    def next(self) -> tuple[Task, bool] | None:
+        """The next task, and whether it comes for the first time; None where there is none.
 
-        With it, if it comes again, the seconds of processor time that it has used before; else None.
+        To be followed by :meth:`done`.
         """
         with self._changed:
             task = None if self.exhausted else next(self._tasks, None)
             if task is not None:
                 self.taken += 1
                 self._running += 1
-                return task, None
+                return task, True
             self.exhausted = True
             if not self._again:
                 return None
@@ -123,8 +121,8 @@ class _Feed:
             if not self._again:
                 return None
             self._running += 1
-            used, task = self._again.pop(0)
-            return task, used
+            _, task = self._again.pop(0)
+            return task, False
 
     def done(self, again: tuple[float, Task] | None = None) -> None:
         """A task is done, or is to come again: the processor time that it has used, and the task."""
@@ -210,15 +208,12 @@ class _WorkerThread(threading.Thread):
             self._done.put(None)
             self.worker.end()
 
-    def _execute(self, task: Task, used: float | None) -> None:
+    def _execute(self, task: Task, first: bool) -> None:
         again = None
         try:
-            first = used is None
             if first:
                 self._on_start(task)
-            budget = task.limits.cpu_seconds
-            left = max(budget - (used or 0.0), budget * _LEFT_AT_LEAST)
-            limits = replace(task.limits, beside=self._beside and first, cpu_seconds=left)
+            limits = replace(task.limits, beside=self._beside and first)
             execution = self.worker.execute(replace(task, limits=limits))
             says_nothing = bool(execution.trouble) or execution.crowded_out
             if says_nothing and first and not self.worker.stopping:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from autograder.boxes.execution import Execution
+from autograder.boxes.execution import CellRun, Ended, Execution
 from autograder.grading.running import engine
 from autograder.grading.task import Task
 
@@ -87,18 +87,23 @@ def test_who_crowded_out_gets_all_of_it_alone(run: Any) -> None:
     assert not any(d.task.limits.beside for d in done), "the task is the one that was given"
 
 
-def test_both_executions_have_one_budget_of_processor_time(run: Any) -> None:
+def test_each_execution_has_all_of_the_processor_time(run: Any) -> None:
     given: dict[str, list[float]] = {"a": [], "b": []}
-    used = {"a": 150.0, "b": 199.0}
+    used = {"a": 120.0, "b": 201.0}
 
     def busy(task: Task, times: int) -> Execution:
         given[task.student].append(task.limits.cpu_seconds)
-        return Execution((), crowded_out=task.limits.beside, cpu_seconds=used[task.student])
+        spent = Ended.OUT_OF_CPU if used[task.student] > task.limits.cpu_seconds else Ended.DONE
+        return Execution(
+            (CellRun(spent),), crowded_out=task.limits.beside, cpu_seconds=min(used[task.student], 200.0)
+        )
 
-    _, _, done = run(busy, "ab")
-    assert given["a"] == [200.0, 50.0]
-    assert given["b"] == [200.0, 20.0], "enough that the kernel starts and the limit is met in a cell"
-    assert {d.task.limits.cpu_seconds for d in done} == {200.0}, "which is what the feedback names"
+    results, _, _ = run(busy, "ab")
+    assert results["a"].cells[0].ended is Ended.DONE, (
+        "it uses 120 s of its 200 s, and others crowded it before"
+    )
+    assert given["a"] == [200.0, 200.0]
+    assert given["b"] == [200.0, 200.0], "what it earns before it has used up its time, it earns in both"
 
 
 def test_of_those_that_come_again_who_was_busiest_comes_last(run: Any) -> None:
