@@ -1,7 +1,8 @@
 """A subject's log lines and output while it is checked, told to the judge and kept off the cell.
 
 Only threads that began with the check are captured, so that a demonstration node that still runs in the background is
-not taken for the subject.
+not taken for the subject. What the kernel's streams are told is captured, whoever holds them: a handler of Python's
+``logging`` keeps the stream that it found when its cell was run, as ``from sys import stdout`` does.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import os
 import sys
 import threading
 import traceback
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.impl.rcutils_logger import RcutilsLogger
@@ -45,16 +47,15 @@ class CapturedOutput:
             return bool(usual_log(logger, message, severity, **options))
 
         setattr(RcutilsLogger, "log", log)  # noqa: B010  (mypy forbids to assign to a method)
-        sys.stdout = _CapturedStream(sys.stdout, self._tell, captured)
-        sys.stderr = _CapturedStream(sys.stderr, self._tell, captured)
+        self._streams = [_CapturedStream(stream, self._tell, captured) for stream in self._usual_streams]
+        sys.stdout, sys.stderr = self._streams
         self._silence_compiled_code()
         return self
 
     def __exit__(self, *_: object) -> None:
         setattr(RcutilsLogger, "log", self._usual_log)  # noqa: B010
-        for stream in (sys.stdout, sys.stderr):
-            if isinstance(stream, _CapturedStream):
-                stream.finish()
+        for stream in reversed(self._streams):  # the two may be one: what was put over the other goes first
+            stream.finish()
         sys.stdout, sys.stderr = self._usual_streams
         while self._descriptors:
             descriptor, saved = self._descriptors.pop()
@@ -89,19 +90,26 @@ class CapturedOutput:
 
 
 class _CapturedStream:
-    """Stands in for sys.stdout: forwards the lines of captured threads, passes on everybody else's."""
+    """Stands in for sys.stdout, and hears what its stream itself is told.
+
+    It forwards the lines of captured threads, and passes on everybody else's.
+    """
 
     def __init__(self, stream: Any, tell: Callable[[str, bool], None], captured: Callable[[], bool]) -> None:
         self._stream = stream
+        self._usual_write = stream.write
+        self._own_write = getattr(stream, "__dict__", {}).get("write")
         self._tell = tell
         self._captured = captured
         self._rest = ""
         self._lock = threading.Lock()
+        with suppress(AttributeError):  # a stream of the student's own may let nobody change it
+            stream.write = self.write
 
     def write(self, text: str) -> int:
         """Take some text; whole lines are told at once."""
         if not self._captured():
-            written: int = self._stream.write(text)
+            written: int = self._usual_write(text)
             return written
         with self._lock:
             *lines, rest = (self._rest + text).split("\n")
@@ -111,7 +119,12 @@ class _CapturedStream:
         return len(text)
 
     def finish(self) -> None:
-        """Tell the last line, which had no end."""
+        """Put the stream back as it was, and tell the last line, which had no end."""
+        with suppress(AttributeError):
+            if self._own_write is None:
+                del self._stream.write
+            else:
+                self._stream.write = self._own_write
         with self._lock:
             rest, self._rest = self._rest, ""
         if rest:

@@ -1,0 +1,156 @@
+"""What a subject writes is told to the judge through whichever object it writes, and nothing of it reaches the cell."""
+
+from __future__ import annotations
+
+import io
+import logging
+import sys
+import threading
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from rclpy.node import Node
+from std_msgs.msg import String
+
+from autograder.notebook.checking.captured_output import CapturedOutput
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from checked import a_judge
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+class Unchangeable:
+    """A stream of a student's own, of which nothing can be replaced."""
+
+    __slots__ = ("text",)
+
+    def __init__(self) -> None:
+        self.text = ""
+
+    def write(self, text: str) -> int:
+        self.text += text
+        return len(text)
+
+    def getvalue(self) -> str:
+        return self.text
+
+
+def printer(stream: Any) -> Callable[[str], object]:
+    return partial(print, file=stream)
+
+
+def logger(stream: Any) -> Callable[[str], object]:
+    log = logging.Logger("listener")
+    log.addHandler(logging.StreamHandler(stream))
+    return log.warning
+
+
+def writer(stream: Any) -> Callable[[str], object]:
+    return lambda text: stream.write(f"{text}\n")
+
+
+def in_a_thread(do: Callable[[], object]) -> None:
+    thread = threading.Thread(target=do)
+    thread.start()
+    thread.join()
+
+
+@pytest.fixture
+def told() -> list[str]:
+    return []
+
+
+@pytest.mark.parametrize("name", ["stdout", "stderr"])
+@pytest.mark.parametrize("holding", [printer, logger, writer])
+def test_a_stream_that_was_taken_hold_of_before_is_heard(
+    monkeypatch: pytest.MonkeyPatch,
+    told: list[str],
+    holding: Callable[[Any], Callable[[str], object]],
+    name: str,
+) -> None:
+    stream = io.StringIO()
+    monkeypatch.setattr(sys, name, stream)
+    say = holding(stream)
+    with CapturedOutput(lambda line, _: told.append(line)):
+        in_a_thread(lambda: say("I heard: hello"))
+    assert told == ["I heard: hello"]
+    assert stream.getvalue() == ""
+    say("afterwards")
+    in_a_thread(lambda: say("and in a thread"))
+    assert stream.getvalue() == "afterwards\nand in a thread\n"
+    assert "write" not in vars(stream)
+
+
+def test_both_ways_to_a_stream_are_one(monkeypatch: pytest.MonkeyPatch, told: list[str]) -> None:
+    held = io.StringIO()
+    monkeypatch.setattr(sys, "stdout", held)
+
+    def say() -> None:
+        print("I heard: ", end="")
+        held.write("hello\nand no")
+        print(" end", end="")
+
+    with CapturedOutput(lambda line, _: told.append(line)):
+        in_a_thread(say)
+    assert told == ["I heard: hello", "and no end"]
+    assert held.getvalue() == ""
+
+
+def test_who_was_there_before_writes_into_its_cell(monkeypatch: pytest.MonkeyPatch, told: list[str]) -> None:
+    stream = io.StringIO()
+    monkeypatch.setattr(sys, "stdout", stream)
+    say = printer(stream)
+    with CapturedOutput(lambda line, _: told.append(line)):
+        say("a demonstration")
+        print("another one", file=sys.stdout)
+    assert stream.getvalue() == "a demonstration\nanother one\n"
+    assert told == []
+
+
+def test_one_stream_for_both_is_put_back(monkeypatch: pytest.MonkeyPatch, told: list[str]) -> None:
+    both = io.StringIO()
+    own_write = both.write
+    both.write = own_write  # type: ignore[method-assign]
+    monkeypatch.setattr(sys, "stdout", both)
+    monkeypatch.setattr(sys, "stderr", both)
+    with CapturedOutput(lambda line, _: told.append(line)):
+        in_a_thread(lambda: both.write("once\n"))
+        in_a_thread(lambda: print("twice", file=sys.stdout))
+    assert told == ["once", "twice"]
+    assert vars(both)["write"] is own_write
+    assert (sys.stdout, sys.stderr) == (both, both)
+
+
+def test_a_stream_that_lets_nobody_change_it_is_heard_by_its_name(
+    monkeypatch: pytest.MonkeyPatch, told: list[str]
+) -> None:
+    own = Unchangeable()
+    monkeypatch.setattr(sys, "stdout", own)
+    with CapturedOutput(lambda line, _: told.append(line)):
+        in_a_thread(lambda: print("hello"))
+        print("a demonstration")
+    assert told == ["hello"]
+    assert own.getvalue() == "a demonstration\n"
+    assert sys.stdout is own
+
+
+@pytest.mark.ros
+def test_a_listener_with_a_logger_of_pythons_own_passes() -> None:
+    log = logging.Logger("listener")
+    log.addHandler(logging.StreamHandler(sys.stderr))
+
+    class ListenerNode(Node):
+        def __init__(self) -> None:
+            super().__init__("listener_node")
+            self.create_subscription(String, "chatter", self.hear, 10)
+
+        def hear(self, message: String) -> None:
+            log.warning("I heard: %s", message.data)
+
+    with a_judge() as checked:
+        verdict = checked("lab_1_2.listener", ListenerNode)
+    assert verdict.score == verdict.max_score
