@@ -206,6 +206,9 @@ def _validate(file: Path, shown: str) -> None:
     except InvalidPackage as error:
         what = re2.sub(r"^Error\(s\) in package '[^']*':\s*", "", str(error)).strip()
         raise BadPackage(f"{shown} is not valid: {what}") from error
+    except AssertionError as error:
+        # It asserts nothing but the format, and tells to update catkin_pkg.
+        raise BadPackage(f'{shown} is not valid: <package format="…"> has to be 1, 2 or 3') from error
     except (*UNREADABLE, ExpatError) as error:
         raise BadPackage(f"{shown} is not valid: {_told(error)}") from error
 

@@ -99,6 +99,15 @@ def test_an_odd_package_file_is_the_packages_own_fault(workspace: Path, content:
     assert simple_package_xml(content.decode("utf-8", "replace"))
 
 
+def test_a_format_that_does_not_exist_is_the_packages_own_fault(workspace: Path) -> None:
+    # catkin_pkg asserts that it is one of three: that was "could not be checked" in place of a diagnosis.
+    file = workspace / "src" / "tiny_pkg" / "package.xml"
+    file.write_text(file.read_text().replace('format="3"', 'format="4"'))
+    assert trouble_in(workspace / "src") == (
+        'tiny_pkg/package.xml is not valid: <package format="…"> has to be 1, 2 or 3'
+    )
+
+
 def test_a_package_file_is_not_longer_than_it_looks(workspace: Path) -> None:
     # Two thousand bytes stood for 120,000 dependencies, and fifty such packages took minutes outside of any box.
     many = f"""<!ENTITY a "<depend>x</depend>"><!ENTITY b "{"&a;" * 400}">"""
