@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import re2
@@ -29,6 +30,8 @@ MUCH = 5
 """Characters in a row of a text that a line has in it only if it was made of that text."""
 OFTEN = 3
 """Times that the last text is said before that alone is too often."""
+GROWING = 6
+"""Lines in a row, each with all that came before, that are more than a look back at the last few texts."""
 
 
 def tells(line: str, text: str) -> bool:
@@ -181,6 +184,20 @@ def repeated(part: Part, sent: Sequence[str]) -> dict[str, int]:
     # A program may say at its end once more what it said last.
     only_the_last = many.keys() == {next(reversed(claims), None)}
     return {} if only_the_last and max(many.values()) < OFTEN else many
+
+
+def retold(part: Part, sent: Sequence[str]) -> str:
+    """The third of the lines that say, with each new text, all texts before it once more; empty where there are none.
+
+    Of each text, the line with the fewest texts counts: who says each in a line of its own may show all of them beside
+    it. Some texts in one line, such as the last two, a batch, or a summary, are no such repetition.
+    """
+    lines = [(line, {text for text in sent if tells(line, text)}) for line in part.said()]
+    holding = [[one for one in lines if text in one[1]] for text in dict.fromkeys(sent)]
+    # Two texts may have one line.
+    shortest = dict(min(those, key=lambda one: len(one[1])) for those in holding if those)
+    grows = all(earlier < later for earlier, later in pairwise(shortest.values()))
+    return list(shortest)[2] if grows and len(shortest) >= GROWING else ""
 
 
 def _claim(lines: Sequence[str], text: str) -> str | None:

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import pytest
 
 from autograder.kit.evidence import Event, Part
-from autograder.kit.texts_said import invented, is_said, repeated, tells
+from autograder.kit.texts_said import GROWING, invented, is_said, repeated, retold, tells
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 SENT = ("amber birch 1234", "cedar delta 5678")
 
@@ -72,6 +77,38 @@ def test_a_text_that_was_sent_twice_is_said_twice() -> None:
     sent = (SENT[0], *SENT)
     assert not repeated(Part("p", {}, [first, first, last]), sent)
     assert repeated(Part("p", {}, [first, first, first, last]), sent) == {SENT[0]: 2}
+
+
+TEXTS = [f"amber birch {1000 + place}" for place in range(GROWING + 2)]
+
+
+def _retold(lines: list[str], said: Callable[[str], list[Event]] = _terminal) -> str:
+    return retold(Part("p", {}, [event for line in lines for event in said(line)]), [TEXTS[0], *TEXTS])
+
+
+@pytest.mark.parametrize("said", [_terminal, _notebook])
+def test_all_that_came_before_once_more_with_each_text_is_a_repetition(
+    said: Callable[[str], list[Event]],
+) -> None:
+    so_far = [f"I heard: {TEXTS[: place + 1]}" for place in range(len(TEXTS))]
+    assert _retold(so_far, said) == so_far[2]
+    assert _retold([*so_far[:2], *so_far[1:]], said) == so_far[2]
+    assert _retold([", ".join(reversed(TEXTS[: place + 1])) for place in range(len(TEXTS))], said)
+    own = [f"I heard: {text}" for text in TEXTS]
+    beside = [line for both in zip(so_far, own, strict=True) for line in both]
+    assert not _retold(beside, said)
+
+
+@pytest.mark.parametrize("last", [1, 2, 3, 5])
+def test_a_look_back_at_the_last_few_texts_is_none(last: int) -> None:
+    assert not _retold([str(TEXTS[max(0, place - last) : place + 1]) for place in range(len(TEXTS))])
+
+
+def test_several_texts_in_one_line_are_none() -> None:
+    assert not _retold([" | ".join(TEXTS[place : place + 3]) for place in range(0, len(TEXTS), 3)])
+    assert not _retold([" | ".join(TEXTS)])
+    assert not _retold([*TEXTS, f"all: {TEXTS}"])
+    assert not _retold([])
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from autograder.kit import common_mistakes as common
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.hangs import HANGS
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
-from autograder.kit.texts_said import changed, invented, is_said, repeated
+from autograder.kit.texts_said import changed, invented, is_said, repeated, retold
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -293,13 +293,16 @@ def says_nothing_else(evidence: Evidence) -> Finding:
     sent = _sent_texts(evidence)
     heard_any = any(is_said(text, evidence.main) for text in sent)
     made_up, again = invented(evidence.main, sent), repeated(evidence.main, sent)
+    anew = retold(evidence.main, sent)
     if made_up:
         seen = f"“{made_up[0]}”"
     elif again:
         seen = "“{}” {} times".format(*_most_often(again))
+    elif anew:
+        seen = f"with each string all before it once more: “{anew}”"
     else:
         seen = "only what was sent" if heard_any else "it said none of the strings"
-    return Finding(heard_any and not made_up and not again, "only what was sent, and once", seen)
+    return Finding(heard_any and not (made_up or again or anew), "only what was sent, and once", seen)
 
 
 def _most_often(again: Mapping[str, int]) -> tuple[str, int]:
@@ -308,7 +311,14 @@ def _most_often(again: Mapping[str, int]) -> tuple[str, int]:
 
 def _said_again(evidence: Evidence) -> Advice | None:
     """It says texts more often than they were sent."""
-    again = repeated(evidence.main, _sent_texts(evidence))
+    sent = _sent_texts(evidence)
+    again = repeated(evidence.main, sent)
+    if not again and retold(evidence.main, sent):
+        return Advice(
+            "With each string that arrives, your program says all that came before once more.",
+            "Log message.data, the string that the callback was just given, and not the list or text in which you keep "
+            "them all.",
+        )
     if not again:
         return None
     text, times = _most_often(again)
