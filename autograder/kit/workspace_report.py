@@ -39,7 +39,7 @@ class Interface:
     Attributes:
         file: Its path inside the package, such as ``"srv/AddTwoInts.srv"``.
         text: What it says, without comments; None where the exercise is not about it, or it was left out.
-        listed: Whether the package's CMakeLists.txt names it.
+        listed: Whether the package's CMakeLists.txt names it, or is too long to be looked into.
     """
 
     file: str
@@ -116,7 +116,7 @@ def as_line(report: WorkspaceReport, others: Sequence[PackageReport] = ()) -> st
             report,
             log=report.log[-limit:],
             line=report.line[:limit],
-            complete=_written(replace(report, packages=needed)) == whole,
+            complete=report.complete and _written(replace(report, packages=needed)) == whole,
         )
         for beside in (others, named, named[:_FEW], ()):
             line = _written(replace(cut, packages=[*needed, *beside]))

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from autograder.workspaces import builds, packages
-from autograder.workspaces.interface_packages import simple_package_xml
+from autograder.workspaces.interface_packages import holds_only_interfaces, simple_package_xml
 from autograder.workspaces.sources import BadSources
 
 sys.path.insert(0, str(Path(__file__).parent))
-from made_workspaces import packages_in
+from made_workspaces import CMAKE, PACKAGE_XML, interface_package, packages_in
 
 
 def test_a_package_is_read_and_not_run(workspace: Path) -> None:
@@ -122,6 +122,42 @@ def test_a_package_file_with_thousands_of_dependencies_is_not_validated(workspac
     content = f"<package><name>tiny_pkg</name>{depends}</package>"
     (workspace / "src" / "tiny_pkg" / "package.xml").write_text(content)
     assert "larger than 20 kB" in trouble_in(workspace / "src")
+
+
+def test_of_many_large_package_files_only_some_are_validated(
+    workspace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Half a second each: fifty took half a minute of a grader's worker, at each start of a program.
+    validated: list[str] = []
+    monkeypatch.setattr(packages, "_validate", lambda _, shown: validated.append(shown))
+    content = PACKAGE_XML.replace("For a test", "x" * 18_000)
+    for number in range(20):
+        (folder := workspace / "src" / f"p{number}").mkdir()
+        (folder / "package.xml").write_text(content.format(name=f"p{number}"))
+    assert len(packages_in(workspace / "src")) == 21
+    assert len(validated) == 6  # five of these, and the small one
+
+
+def test_a_cmake_file_is_read_once_and_only_where_it_is_short(
+    workspace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # A thousand interfaces beside 250,000 lines of comments took 25 minutes of a grader's worker.
+    interface_package(workspace / "src" / "short", "# AddTwoInts_cpp\n")
+    interface_package(workspace / "src" / "long", "#\n" * 30_000)
+    reads: list[Path] = []
+    text = packages._text
+
+    def read(file: Path) -> str:
+        reads.append(file)
+        return text(file)
+
+    monkeypatch.setattr(packages, "_text", read)
+    long, short, _ = sorted(packages_in(workspace / "src"), key=lambda package: package.folder.name)
+    assert short.cmake_lists == f"\n{CMAKE}"
+    assert long.cmake_lists is None
+    assert holds_only_interfaces(short)
+    assert not holds_only_interfaces(long)
+    assert len(reads) == 2
 
 
 def test_nobody_looks_at_hundreds_of_packages(workspace: Path) -> None:
