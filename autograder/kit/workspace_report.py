@@ -144,7 +144,9 @@ def _left_out(interface: Interface) -> Interface:
 
 
 def _written(report: WorkspaceReport) -> str:
-    return MARK + json.dumps(asdict(report), ensure_ascii=False, separators=(",", ":"))
+    line = MARK + json.dumps(asdict(report), ensure_ascii=False, separators=(",", ":"))
+    # The name of a file that is no UTF-8 has lone surrogates in Python, with which nothing can be printed.
+    return line.encode(errors="replace").decode()
 
 
 def report_of(part: Part, phase: str = "built") -> WorkspaceReport | None:

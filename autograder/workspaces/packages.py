@@ -184,8 +184,11 @@ def _package_files(src: Path) -> Iterator[Path]:
 
 def _package(file: Path, room: Room) -> Package:
     shown = f"{file.parent.name}/package.xml"
-    with file.open("rb") as opened:
-        text = opened.read(MAX_PACKAGE_XML + 1)
+    try:
+        with file.open("rb") as opened:
+            text = opened.read(MAX_PACKAGE_XML + 1)
+    except OSError as error:
+        raise BadPackage(f"{shown} cannot be read: {error.strerror}") from error
     if len(text) > MAX_PACKAGE_XML:
         raise BadPackage(f"{shown} is larger than {MAX_PACKAGE_XML // 1000} kB")
     if b"<!ENTITY" in text:
@@ -238,7 +241,8 @@ def _entry_points(setup: str) -> Iterator[str]:
     for node in ast.walk(tree):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             for line in node.value.splitlines():
-                if re2.fullmatch(r"\s*[\w.-]+\s*=\s*[\w.]+\s*:\s*[\w.]+\s*", line):
+                # A text may also have lone surrogates in it, which re2 does not take.
+                if line.isascii() and re2.fullmatch(r"\s*[\w.-]+\s*=\s*[\w.]+\s*:\s*[\w.]+\s*", line):
                     yield line.strip()
 
 

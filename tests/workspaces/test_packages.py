@@ -180,3 +180,17 @@ def test_a_setup_too_deep_to_be_read_has_no_programs(workspace: Path, deep: str)
     (workspace / "src" / "tiny_pkg" / "setup.py").write_text(deep)
     (package,) = packages_in(workspace / "src")
     assert package.programs == ()
+
+
+def test_texts_in_setup_may_hold_what_is_no_text(workspace: Path) -> None:
+    setup = workspace / "src" / "tiny_pkg" / "setup.py"
+    setup.write_text(setup.read_text() + 'odd = """\\ud800 = a.b:c\nlater = tiny_pkg.later:main"""\n')
+    (package,) = packages_in(workspace / "src")
+    assert set(package.programs) == {"hello = tiny_pkg.hello:main", "later = tiny_pkg.later:main"}
+
+
+def test_a_package_file_that_cannot_be_read_is_the_packages_own_fault(workspace: Path) -> None:
+    file = workspace / "src" / "tiny_pkg" / "package.xml"
+    file.unlink()
+    file.symlink_to("nowhere")
+    assert trouble_in(workspace / "src") == "tiny_pkg/package.xml cannot be read: No such file or directory"

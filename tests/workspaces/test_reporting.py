@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -115,6 +116,13 @@ def test_of_definitions_the_one_that_is_asked_for_is_reported_without_comments(t
         ("srv/B.srv", "int64 a\nstring b '#'  # two\n---\nint64 c"),
         ("srv/A.srv", None),
     ]
+
+
+def test_a_file_whose_name_is_no_text_is_reported(tmp_path: Path) -> None:
+    (tmp_path / os.fsdecode(b"f\xfcr.py")).touch()
+    seen = report_of(part(built_line(Build(tmp_path, ok=True, packages=(Package("a", tmp_path, ""),)))))
+    assert seen is not None
+    assert list(seen.packages[0].modules) == ["f?r.py"]
 
 
 def package_with(folder: Path, name: str, **texts: str) -> Package:
