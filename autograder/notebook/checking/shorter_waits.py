@@ -4,17 +4,20 @@ A student reads the verdict in the cell, so no time is spent where nothing can h
 the moment at which it ends: ``wait_for_service`` and ``wait_for_server`` sleep a quarter of a second at a time
 (rclpy/client.py and rclpy/action/client.py, "the sleep time is arbitrary"). Where the judge knows that no server will
 come for some seconds, so much of these waits is left out, and told; but not to a subject that looks at a clock, which
-would see that no time has passed. For an answer that the judge holds back it is told
-how long the subject would wait. What the subject sleeps is shortened only where the scenario asks for it, in a look
-that is confirmed in real time where it fails.
+would see that no time has passed, nor to one that has set a timer or has a second thread that sleeps, which go by
+clocks of their own. For an answer that the judge holds back it is told how long the subject would wait. What the
+subject sleeps is shortened only where the scenario asks for it, in a look that is confirmed in real time where it
+fails.
 """
 
 from __future__ import annotations
 
+import asyncio
 import datetime
 import functools
 import math
 import sys
+import threading
 import time
 import weakref
 from time import monotonic  # as it is while that of the module is watched
@@ -60,6 +63,8 @@ _CLOCKS = (
     (Clock, "now"),
 )
 """The same, of clocks. Those of ``datetime`` cannot be replaced: who has imported it is taken to look at one."""
+_TIMERS = ((asyncio.BaseEventLoop, "call_at"), (threading.Timer, "__init__"), (Node, "create_timer"))
+"""The same, of what sets a timer. Whatever has a limit in asyncio goes by ``call_at``."""
 
 
 class ShorterWaits:
@@ -88,6 +93,7 @@ class ShorterWaits:
         self.factor = factor
         self.spare = 0.0 if _has_imported_datetime() else spare
         self._calls = 0
+        self._asleep: set[int] = set()
         self._futures: weakref.WeakSet[Any] = weakref.WeakSet()
 
     def __enter__(self) -> Self:
@@ -98,9 +104,17 @@ class ShorterWaits:
         usual_sleep = usual["sleep"]
 
         def sleep(seconds: float, /) -> None:
-            if self.factor < 1.0 and seconds > SHORT and self._is_subject():
+            if not self._is_subject():
+                usual_sleep(seconds)
+                return
+            if self.factor < 1.0 and seconds > SHORT:
                 seconds = max(SHORT, seconds * self.factor)
-            usual_sleep(seconds)
+            thread = threading.get_ident()
+            self._asleep.add(thread)
+            try:
+                usual_sleep(seconds)
+            finally:
+                self._asleep.discard(thread)
 
         def wait_for_service(client: Any, timeout_sec: float | None = None) -> bool:
             deadline = self._deadline(timeout_sec, client.service_is_ready, usual_sleep)
@@ -148,10 +162,10 @@ class ShorterWaits:
             setattr(owner, name, value)
 
     def _watch_clocks(self) -> None:
-        """Spare a subject nothing from the moment on in which its own code looks at a clock."""
-        for owner, name in _CLOCKS:
+        """Spare a subject nothing from the moment on in which its own code looks at a clock, or it sets a timer."""
+        for owner, name in _CLOCKS + _TIMERS:
             clock = getattr(owner, name)
-            watched = self._watched(clock)
+            watched = self._watched(clock, by_student=(owner, name) in _CLOCKS)
             # ``from time import monotonic`` has given it a name in the notebook, too.
             notebook = sys.modules["__main__"]
             names = [(notebook, name) for name, value in list(vars(notebook).items()) if value is clock]
@@ -159,11 +173,17 @@ class ShorterWaits:
                 self._usual.append((*place, clock))
                 setattr(*place, watched)
 
-    def _watched(self, clock: Callable[..., Any]) -> Callable[..., Any]:
-        def watched(*arguments: Any) -> Any:
-            if self.spare and is_students(sys._getframe(1).f_code.co_filename) and self._is_subject():
+    def _watched(self, clock: Callable[..., Any], *, by_student: bool) -> Callable[..., Any]:
+        @functools.wraps(clock)
+        def watched(*arguments: Any, **options: Any) -> Any:
+            # rclpy looks at clocks, too. A timer is set for the subject, whoever does it.
+            if (
+                self.spare
+                and self._is_subject()
+                and (not by_student or is_students(sys._getframe(1).f_code.co_filename))
+            ):
                 self.spare = 0.0
-            return clock(*arguments)
+            return clock(*arguments, **options)
 
         return watched
 
@@ -172,6 +192,8 @@ class ShorterWaits:
     ) -> float:
         """The end of a wait that begins now; what can be left out of it is left out, and told."""
         left = math.inf if timeout_sec is None else timeout_sec
+        if self._asleep - {threading.get_ident()}:
+            self.spare = 0.0
         if self.spare > 0.0 and left > 0.0 and self._is_subject() and not ready():
             spared = min(left, self.spare)
             self.spare -= spared

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import sys
+import threading
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import rclpy
 from my_robot_interfaces.srv import AddTwoInts
+from rclpy.executors import SingleThreadedExecutor
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from checked import a_judge
@@ -65,11 +68,93 @@ def in_rounds_until_a_deadline(client: Any, patience: float) -> bool:
     return True
 
 
+def within_a_limit_of_asyncio(client: Any, patience: float) -> bool:
+    async def in_rounds() -> bool:
+        try:
+            async with asyncio.timeout(patience):
+                while not client.wait_for_service(timeout_sec=0.1):
+                    await asyncio.sleep(0)
+        except TimeoutError:
+            return False
+        return True
+
+    return asyncio.run(in_rounds())
+
+
+def in_a_thread_of_asyncio(client: Any, patience: float) -> bool:
+    async def in_rounds() -> bool:
+        stopped = threading.Event()
+
+        def wait() -> None:
+            while not (stopped.is_set() or client.wait_for_service(timeout_sec=0.1)):
+                pass
+
+        try:
+            await asyncio.wait_for(asyncio.to_thread(wait), patience)
+        except TimeoutError:
+            return False
+        finally:
+            stopped.set()
+        return True
+
+    return asyncio.run(in_rounds())
+
+
+def until_a_timer_ends_it(client: Any, patience: float) -> bool:
+    expired = threading.Event()
+    timer = threading.Timer(patience, expired.set)
+    timer.start()
+    while not expired.is_set():
+        if client.wait_for_service(timeout_sec=0.1):
+            timer.cancel()
+            return True
+    return False
+
+
+def until_a_timer_of_ros_ends_it(client: Any, patience: float) -> bool:
+    expired = threading.Event()
+    node = rclpy.create_node("watchdog")
+    node.create_timer(patience, expired.set)
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    threading.Thread(target=executor.spin, daemon=True).start()
+    while not (expired.is_set() or client.wait_for_service(timeout_sec=0.1)):
+        pass
+    executor.shutdown()
+    return bool(client.service_is_ready())
+
+
+def until_a_thread_has_slept(client: Any, patience: float) -> bool:
+    expired = threading.Event()
+
+    def expire() -> None:
+        time.sleep(patience)
+        expired.set()
+
+    threading.Thread(target=expire, daemon=True).start()
+    while not (expired.is_set() or client.wait_for_service(timeout_sec=0.1)):
+        pass
+    return bool(client.service_is_ready())
+
+
 def never_where_it_is_short(client: Any, patience: float) -> bool:
     return patience >= 1.0 and bool(client.wait_for_service())
 
 
-@pytest.mark.parametrize("wait", [waits, in_whole_seconds, until_a_deadline, in_rounds_until_a_deadline])
+@pytest.mark.parametrize(
+    "wait",
+    [
+        waits,
+        in_whole_seconds,
+        until_a_deadline,
+        in_rounds_until_a_deadline,
+        within_a_limit_of_asyncio,
+        in_a_thread_of_asyncio,
+        until_a_timer_ends_it,
+        until_a_timer_of_ros_ends_it,
+        until_a_thread_has_slept,
+    ],
+)
 def test_who_keeps_the_patience_is_right(wait: Any) -> None:
     with a_judge() as checked:
         verdict = checked("lab_1_3.client", adder(wait))

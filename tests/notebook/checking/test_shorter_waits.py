@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 import datetime
 import sys
 import threading
 import time
 from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 import rclpy.client
@@ -17,6 +18,9 @@ from rclpy.node import Node
 
 from autograder.notebook.checking.captured_output import CapturedOutput
 from autograder.notebook.checking.shorter_waits import LOOKS_TOLD, GraphQuestions, ShorterWaits
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 def client(*, ready: threading.Event) -> Any:
@@ -100,6 +104,50 @@ def test_who_has_imported_datetime_is_taken_to_look_at_it(
     waits = ShorterWaits(lambda: True)
     waits.begin_run(spare=12.0)
     assert waits.spare == 0.0
+
+
+async def _within_a_limit() -> None:
+    async with asyncio.timeout(60.0):
+        pass
+
+
+@pytest.mark.parametrize(
+    "set_a_timer",
+    [lambda: asyncio.run(_within_a_limit()), lambda: threading.Timer(60.0, print, args=())],
+)
+def test_who_sets_a_timer_waits_in_full(set_a_timer: Callable[[], object]) -> None:
+    subject = False
+    with ShorterWaits(lambda: subject) as waits:
+        waits.begin_run(spare=12.0)
+        set_a_timer()
+        assert waits.spare == 12.0  # another's
+        subject = True
+        set_a_timer()
+        assert waits.spare == 0.0
+
+
+def test_so_does_who_has_a_second_thread_that_sleeps(monkeypatch: pytest.MonkeyPatch) -> None:
+    asleep, awake = threading.Event(), threading.Event()
+    sleep = time.sleep
+
+    def slept(seconds: float) -> None:
+        if seconds < 60.0:
+            sleep(seconds)
+            return
+        asleep.set()
+        awake.wait()
+
+    monkeypatch.setattr(time, "sleep", slept)
+    nobody = client(ready=threading.Event())
+    with ShorterWaits(lambda: True) as waits:
+        waits.begin_run(spare=12.0)
+        thread = threading.Thread(target=lambda: time.sleep(60.0))
+        thread.start()
+        asleep.wait()
+        assert not Client.wait_for_service(nobody, 0.05)
+        assert waits.spare == 0.0
+        awake.set()
+        thread.join()
 
 
 def test_a_look_of_rclpys_own_at_a_clock_changes_nothing() -> None:
