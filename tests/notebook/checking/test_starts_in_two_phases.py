@@ -28,6 +28,11 @@ LARGEST = 46
 """The largest order whose numbers fit into the result."""
 
 
+def say(message: String) -> None:
+    """What a listener does with each message."""
+    print(message.data)
+
+
 class _Starting(Node):
     """A node that makes what it is for in the first call of a timer."""
 
@@ -77,7 +82,7 @@ class Listener(_Starting):
         super().__init__("listener_node")
 
     def configure(self) -> None:
-        self.create_subscription(String, "chatter", lambda m: self.get_logger().info(m.data), 10)
+        self.create_subscription(String, "chatter", say, 10)
 
 
 class ListenerOfAThread(Node):
@@ -86,21 +91,21 @@ class ListenerOfAThread(Node):
         threading.Timer(0.2, self.configure).start()
 
     def configure(self) -> None:
-        self.create_subscription(String, "chatter", lambda m: self.get_logger().info(m.data), 10)
+        self.create_subscription(String, "chatter", say, 10)
 
 
-class ManagedListener(LifecycleNode):  # type: ignore[misc]
+class ManagedListener(LifecycleNode):
     def __init__(self) -> None:
         super().__init__("listener_node")
         self._boot = self.create_timer(0.0, self._begin)
 
     def _begin(self) -> None:
         self._boot.cancel()
-        self.trigger_configure()
-        self.trigger_activate()
+        self.trigger_configure()  # type: ignore[no-untyped-call]
+        self.trigger_activate()  # type: ignore[no-untyped-call]
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        self.create_subscription(String, "chatter", lambda m: self.get_logger().info(m.data), 10)
+        self.create_subscription(String, "chatter", say, 10)
         return TransitionCallbackReturn.SUCCESS
 
 
