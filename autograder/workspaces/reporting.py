@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.workspace_report import Interface, PackageReport, WorkspaceReport, as_line
-from autograder.workspaces.packages import MAX_LOOK
-from autograder.workspaces.room import Room
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -54,10 +52,7 @@ def no_sources_line(trouble: str) -> str:
 def _line(made: Build, phase: str, plan: Plan | None, missing: str = "") -> str:
     needed = set(plan.targets(made)) if plan else set[str]()
     definition = plan.definition if plan else ""
-    room = Room(MAX_LOOK)
-    packages = [_described(p, definition, made, room) for p in made.packages if p.name in needed]
-    complete = room.sufficed
-    others = [_described(p, definition, made, room) for p in made.packages if p.name not in needed]
+    described = [_described(package, definition, made) for package in made.packages]
     return as_line(
         WorkspaceReport(
             phase=phase,
@@ -66,24 +61,20 @@ def _line(made: Build, phase: str, plan: Plan | None, missing: str = "") -> str:
             package=made.package,
             line=made.line,
             log=made.log[-MAX_LOG:],
-            packages=packages,
+            packages=[package for package in described if package.name in needed],
             missing=missing,
-            complete=complete,
         ),
-        others,
+        [package for package in described if package.name not in needed],
     )
 
 
-def _described(package: Package, definition: str, made: Build, room: Room) -> PackageReport:
+def _described(package: Package, definition: str, made: Build) -> PackageReport:
     files = sorted(package.interface_files, key=lambda file: file.name != definition)
-    programs = made.entry_points(package.name, room)
-    if not programs and room.has(package.folder / "setup.py"):
-        programs = package.programs
     return PackageReport(
         package.name,
         package.build_type,
-        programs,
-        [_interface(package, file, definition, room) for file in files],
+        made.entry_points(package.name) or package.programs,
+        [_interface(package, file, definition) for file in files],
         package.dependencies,
         tuple(file.as_posix() for file in package.modules),
         package.commented,
@@ -91,9 +82,9 @@ def _described(package: Package, definition: str, made: Build, room: Room) -> Pa
     )
 
 
-def _interface(package: Package, file: Path, definition: str, room: Room) -> Interface:
-    listed = package.cmake_lists is None or file.name in package.cmake_lists
-    if file.name != definition or not room.has(package.folder / file):
+def _interface(package: Package, file: Path, definition: str) -> Interface:
+    listed = file.name in package.cmake_lists
+    if file.name != definition:
         return Interface(file.as_posix(), None, listed)
     text = (package.folder / file).read_text(encoding="utf-8", errors="replace")
     return Interface(file.as_posix(), _without_comments(text), listed)
