@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.kit.crashes import CRASHES, OTHER_CRASHES, meant
+from autograder.kit.crashes import CRASHES, OTHER_CRASHES, meant, traceback_of
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 
 NO_CONTEXT = "object does not support the context manager protocol"
@@ -153,3 +153,11 @@ def test_the_innermost_line_tells(rest: str, expected: bool) -> None:
 
 def test_nothing_is_meant_by_nothing() -> None:
     assert not meant("")
+
+
+def test_a_traceback_that_was_cut_off_does_not_hide_a_whole_one_of_another_run() -> None:
+    whole = 'Traceback (most recent call last):\n  File "server.py", line 3, in execute\nAttributeError: no'
+    ends = (whole, "Traceback (most recent call last):")
+    parts = [Part(text, {}, [Event(1.0, "subject", "raised", {"traceback": text})]) for text in ends]
+    assert traceback_of(Evidence(parts, Reference("lab_9_1.server", {}))) == whole
+    assert traceback_of(Evidence(parts[1:], Reference("lab_9_1.server", {}))) == ends[1]
