@@ -285,7 +285,8 @@ def _reason_against(entry: zipfile.ZipInfo, name: str, parts: tuple[str, ...]) -
 def _read_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
     try:
         with archive.open(entry) as file:
-            data = file.read(MAX_BYTES + 1)
+            # No more than it claims: zipfile unpacks as much as it is asked for, and cuts it afterwards.
+            data = file.read(min(entry.file_size, MAX_BYTES) + 1)
     except (
         NotTaken,
         zipfile.BadZipFile,

@@ -56,7 +56,7 @@ def show(report: GradeReport, console: Console | None = None) -> None:
     for words in _legend(report.rows):
         _line(console, words)
     for refused in report.refused:
-        _line(console, f"refused      {printable(str(refused.path))}: {refused.reason}", "yellow")
+        _line(console, f"refused      {printable(str(refused.path))}: {printable(refused.reason)}", "yellow")
     for where, reason in _unreadable(report):
         _line(console, f"unreadable   {printable(where)}: {printable(reason)}", "yellow")
     for notice in report.notices:

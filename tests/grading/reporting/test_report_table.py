@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import io
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from rich.console import Console
 
-from autograder.grading.reporting.report_table import tables
+from autograder.grading.classes.class_directory import Refused
+from autograder.grading.reporting.report import GradeReport
+from autograder.grading.reporting.report_table import show, tables
 from autograder.grading.reporting.rows import Row, columns
+
+if TYPE_CHECKING:
+    from conftest import TinyClass
 
 STUDENTS = ("ada", "a-student-with-quite-a-long-id", "zoe")
 EXERCISES = {
@@ -50,3 +57,13 @@ def test_diagnoses_stand_beside_the_points_where_there_is_room() -> None:
     text = printed(130, diagnoses=True)
     assert text.count("/10 wrong_text") == len(ROWS)
     assert text.count("7/60") == len(STUDENTS)
+
+
+def test_a_file_that_is_not_taken_writes_no_line_of_its_own(tiny: TinyClass) -> None:
+    out = io.StringIO()
+    refused = Refused(Path("eve.zip"), "nobody is called x\x1b[2J\u202e\nada: 10 of 10")
+    show(GradeReport(tiny.path, (), refused=(refused,)), Console(file=out, width=200))
+    (line,) = (line for line in out.getvalue().splitlines() if "eve.zip" in line)
+    assert "ada: 10 of 10" in line
+    assert "\x1b[2J" not in line
+    assert "\u202e" not in line
