@@ -26,8 +26,8 @@ def traceback_of(evidence: Evidence) -> str:
 
     A TimeoutError is how a client is asked to say that nobody serves it, so it is none; nor is what a thread says when
     the main program ends and shuts ROS down under it. What a program raises on purpose in one part, as where its goal
-    is refused, does not hide a slip in another one. One that was cut off, where two threads printed theirs at once, only
-    counts where there is no other.
+    is refused, does not hide a slip in another one. One that was cut off, where two threads printed theirs at once,
+    only counts where there is no other.
     """
     shown = sorted((part.traceback for part in reversed(list(evidence))), key=_is_cut_off)
     crashes = [text for text in shown if text and not _NO_CRASH.search(text)]
