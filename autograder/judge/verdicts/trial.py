@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
+from functools import partial
 from random import Random
 from typing import TYPE_CHECKING
 
@@ -82,7 +83,8 @@ def check(
     began = time.monotonic()
     crowded = False
     subject.begin(domain_id)
-    seen = look(exercise, subject, reference, Pace.FAST, seed=seed, domain_id=domain_id)
+    look_at = partial(look, exercise, subject, reference, seed=seed, domain_id=domain_id)
+    seen = look_at(Pace.FAST)
     evidence = seen.evidence
     try:
         with limited():
@@ -91,16 +93,7 @@ def check(
             again = again and not is_certain(exercise, evidence)
         if again:
             with Crowding() as crowding:
-                second = look(
-                    exercise,
-                    subject,
-                    reference,
-                    Pace.REAL_TIME,
-                    seed=seed,
-                    domain_id=domain_id,
-                    before=evidence,
-                )
-                evidence = replace(second.evidence, before=evidence)
+                evidence = replace(look_at(Pace.REAL_TIME, before=evidence).evidence, before=evidence)
             with limited():
                 verdict = judge(exercise, evidence, seed)
                 # What is asked last goes through all mistakes once more.
@@ -177,10 +170,12 @@ def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
     found = _recognised(exercise, evidence)
     if found is not None:
         mistake, advice = found
-        words = (
-            of_its_kind(shortened(text), evidence.in_a_notebook) for text in (advice.text, advice.next_step)
+        in_a_notebook = evidence.in_a_notebook
+        text, next_step = (
+            _cut(of_its_kind(shortened(words), in_a_notebook), 2 * MAX_WORDS)
+            for words in (advice.text, advice.next_step)
         )
-        return Diagnosis(mistake.key, *(_cut(text, 2 * MAX_WORDS) for text in words)), advice.traceback
+        return Diagnosis(mistake.key, text, next_step), advice.traceback
     unknown = Diagnosis(
         "unknown",
         "This is none of the mistakes that the judge knows by name.",
