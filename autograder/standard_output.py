@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import sys
 from contextlib import contextmanager
-from typing import IO, TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, BinaryIO, Protocol
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -39,15 +39,38 @@ def stray_lines_on_stderr() -> Iterator[None]:
         os.close(kept)
 
 
-def short_lines(stream: IO[bytes], limit: int) -> Iterator[bytes]:
+class Chunks(Protocol):
+    """A stream that gives what there is, without waiting for more."""
+
+    def read1(self, size: int, /) -> bytes:
+        """At most so many bytes; none at the end of the stream."""
+
+
+_CHUNK = 65_536
+
+
+def short_lines(stream: Chunks, limit: int) -> Iterator[bytes]:
     """The lines of a stream as they come, each with its end; of a longer one only the beginning.
+
+    A carriage return ends a line, too: a program may write one line of the terminal over and over.
 
     Args:
         stream: What is read to its end.
         limit: Bytes of a line that are given.
     """
-    begins = True
-    while piece := stream.readline(limit):
-        if begins:
-            yield piece
-        begins = piece.endswith(b"\n")
+    rest, begins = b"", True
+    while chunk := stream.read1(_CHUNK):
+        lines = (rest + chunk).splitlines(keepends=True)
+        # A carriage return at its end may be the first half of a line's end.
+        rest = b"" if lines[-1].endswith(b"\n") else lines.pop()
+        for line in lines:
+            if begins:
+                yield line[:limit]
+            begins = True
+        if len(rest) >= limit:
+            if begins:
+                yield rest[:limit]
+            # The last byte tells, with the next one, whether the line has ended.
+            rest, begins = rest[-1:], False
+    if rest and begins:
+        yield rest

@@ -91,3 +91,27 @@ def test_a_long_line_is_cut_and_the_next_one_is_whole() -> None:
 
 def test_a_line_of_just_that_length_is_no_two_lines() -> None:
     assert list(short_lines(io.BytesIO(b"1234\n12345\n1\n"), 5)) == [b"1234\n", b"12345", b"1\n"]
+
+
+def test_a_carriage_return_ends_a_line_before_the_next_newline_comes() -> None:
+    waiting = [b"\rwaiting 1 s", b"\rwaiting 2 s", b"\r", b"\nthe sum is 3\r\n", b"\r\r\nend\r"]
+    came: list[bytes] = []
+
+    class Stream:
+        def read1(self, _: int) -> bytes:
+            came.append(b"(more)")
+            return waiting.pop(0) if waiting else b""
+
+    for line in short_lines(Stream(), 100):
+        came.append(line)
+    assert [line for line in came if line != b"(more)"] == [
+        *(b"\r", b"waiting 1 s\r", b"waiting 2 s\r\n", b"the sum is 3\r\n"),
+        *(b"\r", b"\r\n", b"end\r"),
+    ]
+    assert came.index(b"waiting 1 s\r") == 3  # with the second piece
+
+
+def test_the_end_of_a_line_that_was_cut_is_seen_in_two_pieces() -> None:
+    pieces = [b"12345", b"6\r", b"\n78\r", b"9\n", b""]
+    stream = type("Stream", (), {"read1": lambda *_: pieces.pop(0)})()
+    assert list(short_lines(stream, 5)) == [b"12345", b"78\r", b"9\n"]

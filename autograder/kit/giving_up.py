@@ -46,6 +46,7 @@ SILENT = "ended without a word"
 _SHUT_DOWN = "rclpy.executors.ExternalShutdownException"
 _NUMBER = re2.compile(r"-?\d+(?:\.\d+)?")
 _VALUE = re2.compile(rf"{_NUMBER.pattern}|\b(?:None|True|False)\b")
+_SIGNS = re2.compile(r"[^\pL\pN#]+")
 AGAIN_AND_AGAIN = 3
 """The number of times that a client says that it waits, to have said it again and again."""
 SAYS_SO_TO = 8.0
@@ -97,7 +98,7 @@ def await_it(bench: Bench) -> None:
 
 
 def says_that_it_waits(part: Part) -> bool:
-    """True if the subject says the same, but for numbers, again and again, and not only at the beginning.
+    """True if the subject says the same, but for numbers and signs, again and again, and not only at the beginning.
 
     The beginning is where its client was seen: on a busy machine a program may need seconds to come so far.
     """
@@ -107,15 +108,20 @@ def says_that_it_waits(part: Part) -> bool:
 
 
 def _moments(part: Part) -> dict[str, set[int]]:
-    """The moments at which it said each line; lines that differ in their numbers are one."""
+    """The moments at which it said each line; lines that differ in their numbers, or in signs alone, are one."""
     moments: dict[str, set[int]] = {}
     passed = 0.0
     for event in part.events:
         if event.kind == "spared":
             passed += float(event.data["seconds"])
         for line in filter(str.strip, replace(part, events=[event]).said()):
-            moments.setdefault(shape(line), set()).add(int((event.t + passed) / MOMENT))
+            moments.setdefault(_in_letters(line), set()).add(int((event.t + passed) / MOMENT))
     return moments
+
+
+def _in_letters(line: str) -> str:
+    """The shape of a line without its signs: a row of dots that grows, or a bar that turns, says nothing new."""
+    return _SIGNS.sub(" ", shape(line)).strip()
 
 
 def shape(line: str) -> str:
@@ -183,7 +189,8 @@ def _telling(part: Part, usual: Sequence[Part]) -> list[str]:
     return [
         line
         for line in lines
-        if shape(line) in again or not any(_in_words(part, line).says_the_same_as(words) for words in known)
+        if _in_letters(line) in again
+        or not any(_in_words(part, line).says_the_same_as(words) for words in known)
     ]
 
 

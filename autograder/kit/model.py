@@ -146,7 +146,8 @@ class Bench(Protocol):
     def await_endpoint(self, role: str, name: str) -> bool:
         """Wait until the subject's endpoint is on the graph and matched.
 
-        Gives up at once when the subject has ended or is known to have made all it makes.
+        Gives up at once when the subject has ended or is known to have made all it makes. A held subject that may make
+        it in a callback is released for that.
 
         Args:
             role: ``"publisher"``, ``"subscription"``, ``"client"``, ``"action_client"``, ``"service"`` or

@@ -39,7 +39,7 @@ class Interface:
     Attributes:
         file: Its path inside the package, such as ``"srv/AddTwoInts.srv"``.
         text: What it says, without comments; None where the exercise is not about it, or it was left out.
-        listed: Whether the package's CMakeLists.txt names it.
+        listed: Whether the package's CMakeLists.txt names it, or is too long to be looked into.
     """
 
     file: str
@@ -116,7 +116,7 @@ def as_line(report: WorkspaceReport, others: Sequence[PackageReport] = ()) -> st
             report,
             log=report.log[-limit:],
             line=report.line[:limit],
-            complete=_written(replace(report, packages=needed)) == whole,
+            complete=report.complete and _written(replace(report, packages=needed)) == whole,
         )
         for beside in (others, named, named[:_FEW], ()):
             line = _written(replace(cut, packages=[*needed, *beside]))
@@ -144,7 +144,9 @@ def _left_out(interface: Interface) -> Interface:
 
 
 def _written(report: WorkspaceReport) -> str:
-    return MARK + json.dumps(asdict(report), ensure_ascii=False, separators=(",", ":"))
+    line = MARK + json.dumps(asdict(report), ensure_ascii=False, separators=(",", ":"))
+    # The name of a file that is no UTF-8 has lone surrogates in Python, with which nothing can be printed.
+    return line.encode(errors="replace").decode()
 
 
 def report_of(part: Part, phase: str = "built") -> WorkspaceReport | None:

@@ -70,9 +70,13 @@ class Started(_RunMessage, frozen=True):
 
 
 class Constructed(_RunMessage, frozen=True):
-    """The node is made; ``marker`` is the topic that was made after all that its constructor makes."""
+    """The node is made; ``marker`` is the topic that was made after all that its constructor makes.
+
+    ``goes_on`` says that something of it is left, a timer or a thread, which may make more once the node is spun.
+    """
 
     marker: str
+    goes_on: bool = False
 
 
 class Spared(_RunMessage, frozen=True):

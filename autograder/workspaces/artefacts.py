@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 MAX_FILES = 5_000
 MAX_BYTES = 64_000_000
+BLOCK = 4_096
+"""Bytes that each file and folder takes of a disk besides those of the file: also thousands of empty ones take room."""
 MAX_NAME = 240
 """Bytes of each part of a path."""
 MAX_DEPTH = 24
@@ -69,10 +71,10 @@ def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> int:
     Args:
         archive: A tar file that may be anything: whoever was built could have written it.
         folder: A folder that is not there yet.
-        most: Bytes that all files may have together.
+        most: Bytes that all files and folders may take together.
 
     Returns:
-        The bytes that they have.
+        The bytes that they take.
 
     Raises:
         BadArtefacts: It has entries that lead out of the folder, links to anything but one of its files, devices, or
@@ -82,25 +84,28 @@ def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> int:
         raise BadArtefacts("what the build made could not be packed")
     folder.mkdir(mode=0o755)
     number = size = 0
+    made: set[PurePosixPath] = set()
     links: dict[PurePosixPath, PurePosixPath] = {}
     try:
         with tarfile.open(fileobj=io.BytesIO(archive), mode="r:", tarinfo=_ShortHeaders) as tar:
             for member in tar:
                 number += 1
                 size += max(member.size, 0)
-                _check_room(number, size, most)
+                place = PurePosixPath(*_parts(member.name))
+                made.update((place, *place.parents))
+                _check_room(number, size + len(made) * BLOCK, most)
                 if member.issym():
-                    links[PurePosixPath(*_parts(member.name))] = _target(member)
+                    links[place] = _target(member)
                 else:
                     _take(tar, member, folder)
         for link in links:
             size += _copy(link, links, folder)
-            _check_room(number, size, most)
+            _check_room(number, size + len(made) * BLOCK, most)
     except (tarfile.TarError, OSError, ValueError, RecursionError, MemoryError, OverflowError) as error:
         if isinstance(error, BadArtefacts):
             raise
         raise BadArtefacts(f"what the build made cannot be read: {error}") from error
-    return size
+    return size + len(made) * BLOCK
 
 
 def _check_room(number: int, size: int, most: int) -> None:

@@ -20,13 +20,15 @@ from typing import IO, TYPE_CHECKING
 
 import platformdirs
 
+from autograder.workspaces.artefacts import BLOCK
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 VARIABLE = "AUTOGRADER_WORKSPACE_CACHE"
 """Names another folder for the cache; a grader gives each box its own."""
-LIMIT = 500_000_000
-"""Bytes that all entries may have together; one interface package has 1.3 million."""
+LIMIT = 1_000_000_000
+"""Bytes that all entries may take together; one interface package takes two million."""
 IN_USE = 900.0
 """Seconds after its last use in which an entry is not removed: its programs may still run, as long as a check lasts."""
 ASK_EVERY = 0.1
@@ -118,8 +120,7 @@ def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -
     Raises:
         GivenUp: It is not.
     """
-    with (base / f"{key}.lock").open("a") as lock:
-        _await_turn(lock, cancelled)
+    with _turn(base / f"{key}.lock", cancelled) as lock:
         folder = base / key
         marker = folder / _MARKER
         complete = _is_of(key, marker) and is_ones_own(folder)
@@ -137,6 +138,24 @@ def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -
         make_room(base)
 
 
+@contextlib.contextmanager
+def _turn(file: Path, cancelled: Callable[[], bool]) -> Iterator[IO[str]]:
+    """Hold a lock. Whoever had it may have removed it with its entry: then another one counts, which is new."""
+    while True:
+        with file.open("a") as lock:
+            _await_turn(lock, cancelled)
+            if _is_at(lock, file):
+                yield lock
+                return
+
+
+def _is_at(lock: IO[str], file: Path) -> bool:
+    try:
+        return os.path.samestat(os.fstat(lock.fileno()), file.stat())
+    except FileNotFoundError:
+        return False
+
+
 def _await_turn(lock: IO[str], cancelled: Callable[[], bool]) -> None:
     while True:
         try:
@@ -151,7 +170,9 @@ def _await_turn(lock: IO[str], cancelled: Callable[[], bool]) -> None:
 
 
 def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[str]:
-    """Remove the entries that were not used for longest, until all together have at most ``limit`` bytes.
+    """Remove the entries that were not used for longest, until all together take at most ``limit`` bytes.
+
+    What builds that failed or were killed have left goes, too.
 
     Args:
         base: The cache.
@@ -171,19 +192,25 @@ def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[st
         if _remove(base, folder):
             total -= sizes[folder]
             removed.append(folder.name)
+    for lock in base.glob("*.lock"):
+        if _last_use(folder := lock.with_suffix("")) is None:
+            _remove(base, folder)
     return removed
 
 
 def _remove(base: Path, folder: Path) -> bool:
-    # Opened so that nothing in it is lost: a builder that has the lock has written into it who it is.
-    with (base / f"{folder.name}.lock").open("a") as lock:
+    file = base / f"{folder.name}.lock"
+    with file.open("a") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             return False  # somebody uses it
+        if not _is_at(lock, file):
+            return False  # somebody else has removed it just now
         # Without its marker it does not count, should the rest stay behind.
         (folder / _MARKER).unlink(missing_ok=True)
         shutil.rmtree(folder, ignore_errors=True)
+        file.unlink(missing_ok=True)
     return True
 
 
@@ -195,5 +222,10 @@ def _last_use(folder: Path) -> float | None:
 
 
 def _size(folder: Path) -> int:
-    files = (Path(root_, name) for root_, _, names in os.walk(folder) for name in names)
-    return sum(file.lstat().st_size for file in files if not file.is_symlink())
+    size = 0
+    for root_, _, names in os.walk(folder):
+        size += BLOCK
+        for name in names:
+            with contextlib.suppress(FileNotFoundError):  # another worker may be removing it
+                size += BLOCK + Path(root_, name).lstat().st_size
+    return size

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.workspaces.packages import Package
+    from autograder.workspaces.room import Room
 
 MAX_LOG = 40_000
 """Characters of a failed build's log that are kept: its end."""
@@ -64,9 +65,11 @@ class Build:
         """The names of the programs that ``ros2 run`` finds of an installed package; empty where it is none."""
         return tuple(p for prefix in self.prefixes if prefix.name == package for p in programs(prefix))
 
-    def entry_points(self, package: str) -> tuple[str, ...]:
+    def entry_points(self, package: str, room: Room) -> tuple[str, ...]:
         """The entry points of an installed Python package, as ``name = module:function``, however it names them."""
-        return tuple(e for prefix in self.prefixes if prefix.name == package for e in entry_points(prefix))
+        return tuple(
+            e for prefix in self.prefixes if prefix.name == package for e in entry_points(prefix, room)
+        )
 
 
 Targets = Callable[[Build], Iterable[str]]

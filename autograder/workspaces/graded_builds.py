@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from autograder.workspaces.jobs import BuildOrder, Jobs
     from autograder.workspaces.packages import Package
 
-ROOM = 16_000_000
-"""Bytes for all builds of one notebook together; an interface package has 1.3 million, a Python package far less."""
+ROOM = 32_000_000
+"""Bytes for all builds of one notebook together; an interface package takes two million, a Python package 300,000."""
 
 
 class GradedBuilds(Builds):

@@ -41,6 +41,7 @@ def holds_only_interfaces(package: Package) -> bool:
             path.suffix in DEFINITIONS or path.relative_to(package.folder).as_posix() in known
             for path in files
         )
+        and package.cmake_lists is not None
         and "_cpp" not in package.cmake_lists
     )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import os
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +14,7 @@ from xml.parsers.expat import ExpatError
 
 import re2
 
+from autograder.workspaces.room import Room
 from autograder.workspaces.sources import BadSources, Tree, is_source, read
 
 if TYPE_CHECKING:
@@ -39,6 +41,11 @@ MAX_PACKAGE_XML = 20_000
 declares entities, with which two thousand bytes stand for eight million."""
 MAX_SETUP = 50_000
 """Bytes of a setup.py that is read. Python's own parser takes minutes for half a megabyte of one f-string."""
+MAX_CMAKE_LISTS = 50_000
+"""Bytes of a CMakeLists.txt that is looked into."""
+MAX_LOOK = 100_000
+"""Bytes of all packages' files together that are looked into where that takes long: Python's parser and catkin_pkg need
+half a second for what one file may have. What is left out at such a look is not taken for missing or wrong."""
 
 _HIDING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 
@@ -82,10 +89,13 @@ class Package:
         found = [file.relative_to(self.folder) for file in self.folder.rglob("*.py") if file.is_file()]
         return tuple(sorted(found, key=lambda file: (len(file.parts), file)))
 
-    @property
-    def cmake_lists(self) -> str:
-        """The text of its CMakeLists.txt without comments; empty where there is none."""
-        return re2.sub(r"#.*", "", _text(self.folder / "CMakeLists.txt"))
+    @cached_property
+    def cmake_lists(self) -> str | None:
+        """The text of its CMakeLists.txt without comments; empty where there is none, None where it is too long."""
+        text = _text(self.folder / "CMakeLists.txt")
+        if len(text) > MAX_CMAKE_LISTS:
+            return None
+        return "\n".join(line.partition("#")[0] for line in text.split("\n"))
 
     @property
     def programs(self) -> tuple[str, ...]:
@@ -99,13 +109,13 @@ class Package:
 
 def find_packages(src: Path) -> tuple[list[Package], list[str]]:
     """The packages below ``src`` that colcon would build, by name, and what is wrong with those that cannot be used."""
-    packages, unusable = [], []
+    packages, unusable, room = [], [], Room(MAX_LOOK)
     files = sorted(islice(_package_files(src), MAX_PACKAGES + 1))
     if len(files) > MAX_PACKAGES:
         return [], [f"there are more than {MAX_PACKAGES} packages below {src.name}"]
     for file in files:
         try:
-            packages.append(_package(file))
+            packages.append(_package(file, room))
         except BadPackage as error:
             unusable.append(str(error))
     return sorted(packages, key=lambda package: package.name), unusable
@@ -172,10 +182,13 @@ def _package_files(src: Path) -> Iterator[Path]:
             yield Path(root, "package.xml")
 
 
-def _package(file: Path) -> Package:
+def _package(file: Path, room: Room) -> Package:
     shown = f"{file.parent.name}/package.xml"
-    with file.open("rb") as opened:
-        text = opened.read(MAX_PACKAGE_XML + 1)
+    try:
+        with file.open("rb") as opened:
+            text = opened.read(MAX_PACKAGE_XML + 1)
+    except OSError as error:
+        raise BadPackage(f"{shown} cannot be read: {error.strerror}") from error
     if len(text) > MAX_PACKAGE_XML:
         raise BadPackage(f"{shown} is larger than {MAX_PACKAGE_XML // 1000} kB")
     if b"<!ENTITY" in text:
@@ -187,7 +200,8 @@ def _package(file: Path) -> Package:
     name = (root.findtext("name") or "").strip()
     if not name:
         raise BadPackage(f"{shown} has no <name>")
-    _validate(file, shown)
+    if room.has(file):
+        _validate(file, shown)
     depends = [
         child.text.strip() for child in root if child.text and re2.search("depend|member_of", child.tag)
     ]
@@ -206,6 +220,9 @@ def _validate(file: Path, shown: str) -> None:
     except InvalidPackage as error:
         what = re2.sub(r"^Error\(s\) in package '[^']*':\s*", "", str(error)).strip()
         raise BadPackage(f"{shown} is not valid: {what}") from error
+    except AssertionError as error:
+        # It asserts nothing but the format, and tells to update catkin_pkg.
+        raise BadPackage(f'{shown} is not valid: <package format="…"> has to be 1, 2 or 3') from error
     except (*UNREADABLE, ExpatError) as error:
         raise BadPackage(f"{shown} is not valid: {_told(error)}") from error
 
@@ -224,7 +241,8 @@ def _entry_points(setup: str) -> Iterator[str]:
     for node in ast.walk(tree):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             for line in node.value.splitlines():
-                if re2.fullmatch(r"\s*[\w.-]+\s*=\s*[\w.]+\s*:\s*[\w.]+\s*", line):
+                # A text may also have lone surrogates in it, which re2 does not take.
+                if line.isascii() and re2.fullmatch(r"\s*[\w.-]+\s*=\s*[\w.]+\s*:\s*[\w.]+\s*", line):
                     yield line.strip()
 
 

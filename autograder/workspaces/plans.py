@@ -17,6 +17,7 @@ from autograder.kit.runners import RunsProgram, RunsPrograms, ServesInterface
 from autograder.kit.workspace_report import AMENT_PACKAGE
 from autograder.workspaces.install_folder import files_of_interfaces, has_service, is_indexed
 from autograder.workspaces.packages import WORKSPACE
+from autograder.workspaces.room import Room
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -28,8 +29,9 @@ COURSE_PACKAGE = "my_robot_pkg"
 """The course's own programs, which are launched where a student has none."""
 _LAUNCH_FILES = ("launch.py", ".xml", ".yaml", ".yml")
 """The endings of launch files' names."""
-_LARGEST = 1_000_000
-"""Bytes that a launch file may have to be looked into; what a student's folder holds may be of any size."""
+_LARGEST = 500_000
+"""Bytes that a launch file, and all that it includes, may have to be looked into; what a student's folder holds may be
+of any size."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,7 @@ def launch_targets(file: Path) -> Callable[[Build], Iterable[str]]:
 
     def targets(found: Build) -> list[str]:
         words = _launch_words(file, found)
-        return [package.name for package in found.packages if package.name in words]
+        return [package.name for package in found.packages if words is None or package.name in words]
 
     return targets
 
@@ -125,6 +127,8 @@ def lacks_programs(file: Path, made: Build, course_build: Build) -> bool:
     other names has them: ``talker`` is then a variable, a node's name or a word in a comment.
     """
     words, own, given = _launch_words(file, made), _programs(made), _programs(course_build)
+    if words is None:
+        return False
     return bool(words & given - own) and not words & own - given
 
 
@@ -157,19 +161,22 @@ def ros2() -> str:
     return str(beside) if beside.exists() else shutil.which("ros2") or "ros2"
 
 
-def _launch_words(file: Path, build: Build) -> set[str]:
+def _launch_words(file: Path, build: Build) -> set[str] | None:
     """The words of a launch file and of those that it includes: whatever has its name in the text of another one.
 
-    Tags and keys, such as ``<node`` and ``node:``, are not among the words.
+    Tags and keys, such as ``<node`` and ``node:``, are not among the words. None where they are too long to be looked
+    into.
     """
     near = [
         *file.parent.iterdir(),
         *(path for package in build.packages for path in package.folder.rglob("*")),
     ]
     others = {path for path in near if path.name.endswith(_LAUNCH_FILES) and _is_small(path)}
-    words: set[str] = set()
+    room, words = Room(_LARGEST), set[str]()
     unread = {file}
     while unread:
+        if not all(map(room.has, unread)):
+            return None
         others -= unread
         text = "\n".join(path.read_text(encoding="utf-8", errors="replace") for path in unread)
         words.update(re2.findall(r"</?\w+|\w+:?", text))

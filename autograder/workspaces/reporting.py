@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.workspace_report import Interface, PackageReport, WorkspaceReport, as_line
+from autograder.workspaces.packages import MAX_LOOK
+from autograder.workspaces.room import Room
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -52,7 +54,10 @@ def no_sources_line(trouble: str) -> str:
 def _line(made: Build, phase: str, plan: Plan | None, missing: str = "") -> str:
     needed = set(plan.targets(made)) if plan else set[str]()
     definition = plan.definition if plan else ""
-    described = [_described(package, definition, made) for package in made.packages]
+    room = Room(MAX_LOOK)
+    packages = [_described(p, definition, made, room) for p in made.packages if p.name in needed]
+    complete = room.sufficed
+    others = [_described(p, definition, made, room) for p in made.packages if p.name not in needed]
     return as_line(
         WorkspaceReport(
             phase=phase,
@@ -61,20 +66,24 @@ def _line(made: Build, phase: str, plan: Plan | None, missing: str = "") -> str:
             package=made.package,
             line=made.line,
             log=made.log[-MAX_LOG:],
-            packages=[package for package in described if package.name in needed],
+            packages=packages,
             missing=missing,
+            complete=complete,
         ),
-        [package for package in described if package.name not in needed],
+        others,
     )
 
 
-def _described(package: Package, definition: str, made: Build) -> PackageReport:
+def _described(package: Package, definition: str, made: Build, room: Room) -> PackageReport:
     files = sorted(package.interface_files, key=lambda file: file.name != definition)
+    programs = made.entry_points(package.name, room)
+    if not programs and room.has(package.folder / "setup.py"):
+        programs = package.programs
     return PackageReport(
         package.name,
         package.build_type,
-        made.entry_points(package.name) or package.programs,
-        [_interface(package, file, definition) for file in files],
+        programs,
+        [_interface(package, file, definition, room) for file in files],
         package.dependencies,
         tuple(file.as_posix() for file in package.modules),
         package.commented,
@@ -82,9 +91,9 @@ def _described(package: Package, definition: str, made: Build) -> PackageReport:
     )
 
 
-def _interface(package: Package, file: Path, definition: str) -> Interface:
-    listed = file.name in package.cmake_lists
-    if file.name != definition:
+def _interface(package: Package, file: Path, definition: str, room: Room) -> Interface:
+    listed = package.cmake_lists is None or file.name in package.cmake_lists
+    if file.name != definition or not room.has(package.folder / file):
         return Interface(file.as_posix(), None, listed)
     text = (package.folder / file).read_text(encoding="utf-8", errors="replace")
     return Interface(file.as_posix(), _without_comments(text), listed)

@@ -109,6 +109,8 @@ def _waits(
 
 
 EACH_SECOND = tuple((float(t), f"waiting, try {t}") for t in range(1, 12))
+GROWING_DOTS = tuple((float(t), f"waiting{'.' * t}") for t in range(0, 12, 4))
+TURNING_BAR = tuple((float(t), f"waiting {'|/-'[t // 4]}") for t in range(0, 12, 4))
 ABORTED = tuple(
     (5.0, line)
     for line in (
@@ -150,6 +152,8 @@ AT_ONCE = tuple((0.1 + t / 1000, "waiting") for t in range(200))
         ),
         pytest.param(_waits(*RAISED, ends=5.0), "", id="ends with an exception"),
         pytest.param(_waits(*EACH_SECOND), "", id="says again and again that it waits"),
+        pytest.param(_waits(*GROWING_DOTS), "", id="says it with one dot more each time"),
+        pytest.param(_waits(*TURNING_BAR), "", id="says it beside a bar that turns"),
         pytest.param(
             _waits(*EACH_SECOND[4::5], (11.9, "waiting, try 3")), "", id="says so every five seconds"
         ),

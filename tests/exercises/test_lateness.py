@@ -133,10 +133,12 @@ def test_a_patient_client_of_an_action_is_started_again_with_less_to_wait_for(
         ([MISSED_SERVER, MISSED_SERVER, DONE], True, 3),
         ([MISSED_SERVER] * (TRIES + 1), True, TRIES + 1),
         ([MISSED_SERVER], False, 1),
-        ([[SEEN, ended(0.9)]], True, 1),
+        ([[SEEN, ended(0.9)], DONE], True, 2),
+        ([[SEEN, ended(0.9)]] * 2, True, 2),
+        ([[SEEN, ended(0.9)]], False, 1),
         ([[SEEN]], True, 1),
     ],
-    ids=["met", "missed twice", "never met", "never asks", "impatient", "not ended"],
+    ids=["met", "missed twice", "never met", "never asks", "lost", "ends at once", "unknown", "not ended"],
 )
 def test_who_knows_how_to_ask_and_misses_a_server_that_is_there_is_started_again(
     runs: list[list[Event]], known: bool, count: int

@@ -15,20 +15,24 @@ TOPIC, TYPE = "/chatter", "std_msgs/msg/String"
 
 def _messages(numbers: list[int], period: float, *, first: int = 1, simulated: bool = True) -> list[Event]:
     """Messages as the judge hears them, the first being the publisher's ``first``."""
+    return _with_texts([f"Hello, world! {n}" for n in numbers], period, first=first, simulated=simulated)
+
+
+def _with_texts(texts: list[str], period: float, *, first: int = 1, simulated: bool = True) -> list[Event]:
     return [
         Event(
             t=0.3 + i * period,
             kind="message",
             name=TOPIC,
             data={
-                "fields": {"data": f"Hello, world! {n}"},
+                "fields": {"data": text},
                 "number": first + i,
                 "sent": 50 + i * period,
                 "arrived": 50.001 + i * period,
             },
             sim=100 + i * period if simulated else None,
         )
-        for i, n in enumerate(numbers)
+        for i, text in enumerate(texts)
     ]
 
 
@@ -62,13 +66,56 @@ def test_a_first_message_that_nobody_could_hear_is_forgiven() -> None:
     assert judged("counter", _evidence(_messages(list(range(1, 21)), 0.5, first=2)))
 
 
-def test_a_counter_that_starts_at_one_is_not() -> None:
-    evidence = _evidence(_messages(list(range(1, 21)), 0.5, first=1))
+def told(key: str, evidence: Evidence) -> str:
+    """What is told of a mistake; empty where the evidence does not show it."""
+    advice = next(mistake for mistake in talker.EXERCISE.mistakes if mistake.key == key).recognise(evidence)
+    return advice.text if advice else ""
+
+
+@pytest.mark.parametrize(("heard", "number"), [(1, 1), (2, 2), (3, 3)])
+def test_a_counter_that_starts_at_one_is_not(heard: int, number: int) -> None:
+    """Also where the first messages came before anybody could hear them."""
+    evidence = _evidence(_messages(list(range(heard, heard + 20)), 0.5, first=number))
     assert not judged("counter", evidence)
-    starts = next(mistake for mistake in talker.EXERCISE.mistakes if mistake.key == "counter_start")
-    advice = starts.recognise(evidence)
-    assert advice is not None
-    assert advice.text == "The first message carries the number 1; the counter must begin at 0."
+    assert told("counter_start", evidence) == (
+        "The first message carries the number 1; the counter must begin at 0."
+    )
+
+
+def points(evidence: Evidence) -> float:
+    return sum(c.points for c in talker.EXERCISE.criteria if c.judge(evidence).passed)
+
+
+@pytest.mark.parametrize("greeting", ["Talker started", "Talker 7 started", ""])
+@pytest.mark.parametrize("before", [1, 2])
+def test_a_greeting_costs_the_same_whether_it_was_heard_or_not(greeting: str, before: int) -> None:
+    texts = [*[greeting] * before, *(f"Hello, world! {i}" for i in range(20))]
+    heard = _evidence(_with_texts(texts, 0.5))
+    lost = _evidence(_with_texts(texts[before:], 0.5, first=before + 1))
+    assert points(heard) == points(lost) == 8
+    assert judged("counter", heard)
+    assert told("wrong_text", heard).startswith(f"Your talker says “{greeting}”")
+    assert not judged("counter", lost)
+    more = "1 message" if before == 1 else "2 messages"
+    assert told("counter_start", lost) == (
+        f"“Hello, world! 0” was message {before + 1} of your node: it published {more} more before it than it counted, "
+        "too early for anybody to hear."
+    )
+
+
+def test_a_greeting_hides_no_wrong_start() -> None:
+    texts = ["Talker started", *(f"Hello, world! {i}" for i in range(1, 21))]
+    heard = _evidence(_with_texts(texts, 0.5))
+    assert not judged("counter", heard)
+    assert told("counter_start", heard) == (
+        "The first message carries the number 1; the counter must begin at 0."
+    )
+
+
+def test_another_text_with_a_number_that_leads_on_is_no_greeting() -> None:
+    texts = ["hello world 0", *(f"Hello, world! {i}" for i in range(1, 20))]
+    assert judged("counter", _evidence(_with_texts(texts, 0.5)))
+    assert not judged("text", _evidence(_with_texts(texts, 0.5)))
 
 
 def _spaced(gaps: list[float], *, simulated: bool = False) -> list[Event]:

@@ -154,10 +154,12 @@ def test_an_archive_that_was_written_by_hand_is_refused_and_comes_to_an_end(
 
 def test_too_much_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(BadArtefacts, match="too much"):
-        unpack(packed(("a", tarfile.REGTYPE, "", 11)), tmp_path / "bytes", most=10)
+        unpack(packed(("a", tarfile.REGTYPE, "", 11)), tmp_path / "bytes", most=2 * artefacts.BLOCK + 10)
     copies = [(name, tarfile.SYMTYPE, "a", 0) for name in "bcd"]
     with pytest.raises(BadArtefacts, match="too much"):
-        unpack(packed(("a", tarfile.REGTYPE, "", 3), *copies), tmp_path / "copies", most=10)
+        unpack(
+            packed(("a", tarfile.REGTYPE, "", 3), *copies), tmp_path / "copies", most=5 * artefacts.BLOCK + 10
+        )
     monkeypatch.setattr(artefacts, "MAX_FILES", 2)
     with pytest.raises(BadArtefacts, match="too much"):
         unpack(packed(*((name, tarfile.DIRTYPE, "", 0) for name in "abc")), tmp_path / "files")
@@ -167,3 +169,15 @@ def test_too_much_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 def test_garbage_is_refused(data: bytes, tmp_path: Path) -> None:
     with pytest.raises(BadArtefacts):
         unpack(data, tmp_path / "install")
+
+
+def test_empty_files_and_folders_take_room_too(tmp_path: Path) -> None:
+    few = packed(*((f"{number}", tarfile.REGTYPE, "", 0) for number in range(9)))
+    assert unpack(few, tmp_path / "few", most=10 * artefacts.BLOCK) == 10 * artefacts.BLOCK
+    many = packed(*((f"{number}", tarfile.REGTYPE, "", 0) for number in range(10)))
+    with pytest.raises(BadArtefacts, match="too much"):
+        unpack(many, tmp_path / "many", most=10 * artefacts.BLOCK)
+    # A file's path makes folders that the archive does not list.
+    deep = packed(("/".join("abcdefghijk"), tarfile.REGTYPE, "", 0))
+    with pytest.raises(BadArtefacts, match="too much"):
+        unpack(deep, tmp_path / "deep", most=10 * artefacts.BLOCK)

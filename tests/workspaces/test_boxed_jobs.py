@@ -208,7 +208,7 @@ def test_the_builds_of_one_notebook_have_so_much_room_and_no_more(
     cache = tmp_path / "narrow"
     cache.mkdir(mode=0o700)
     (workspace / "src" / "tiny_pkg" / "tiny_pkg" / "fat.py").write_bytes(b"#" * 300_000)
-    narrow = GradedBuilds(cache, jobs, room=400_000)
+    narrow = GradedBuilds(cache, jobs, room=800_000)
     first = made(narrow, workspace)
     assert first.ok
     second = made(narrow, workspace, "# other sources\n")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import os
 import signal
 import subprocess
@@ -13,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from autograder.workspaces import cache
+from autograder.workspaces.artefacts import BLOCK
 
 
 def fill(key: str, size: int = 10) -> None:
@@ -53,6 +55,7 @@ def test_the_build_of_a_killed_builder_is_ended_before_another_begins(empty_cach
     program = """
 import os, signal
 from autograder.workspaces import cache
+from autograder.workspaces.artefacts import BLOCK
 from autograder.workspaces.own_session import OwnSession
 # The session's first process is gone, and one that it has started goes on writing.
 below = "while true; do mkdir -p half; echo x > half/$$; done"
@@ -127,7 +130,9 @@ def test_the_oldest_go_first_and_those_in_use_stay(empty_cache: Path) -> None:
     for number, key in enumerate("abc"):
         fill(key, size=100)
         os.utime(empty_cache / key / "complete", (number, number))
-    assert cache.make_room(empty_cache, limit=250) == ["a"]
+    each = 100 + len("complete") + 3 * BLOCK
+    assert cache.make_room(empty_cache, limit=3 * each) == []
+    assert cache.make_room(empty_cache, limit=3 * each - 100) == ["a"]
     fill("d", size=1000)
     assert cache.make_room(empty_cache, limit=0) == ["b", "c"]
     assert (empty_cache / "d").is_dir()
@@ -139,3 +144,58 @@ def test_an_entry_that_somebody_holds_is_not_removed(empty_cache: Path) -> None:
     with cache.entry("a", cache.root()):
         os.utime(empty_cache / "a" / "complete", (0, 0))
         assert cache.make_room(empty_cache, limit=0) == []
+
+
+def test_empty_files_and_folders_count(empty_cache: Path) -> None:
+    with cache.entry("a", cache.root()) as entry:
+        for number in range(100):
+            (entry.folder / f"{number}").touch()
+        entry.finish()
+    os.utime(empty_cache / "a" / "complete", (0, 0))
+    assert cache.make_room(empty_cache, limit=100 * BLOCK) == ["a"]
+
+
+def test_what_another_worker_removes_meanwhile_does_not_count(
+    empty_cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fill("a")
+    walked = list(os.walk(empty_cache / "a"))
+    (empty_cache / "a" / "file").unlink()
+    monkeypatch.setattr(os, "walk", lambda _: walked)
+    assert cache.make_room(empty_cache, limit=0) == []
+
+
+def test_locks_go_with_their_entries(empty_cache: Path) -> None:
+    fill("a")
+    os.utime(empty_cache / "a" / "complete", (0, 0))
+    with contextlib.suppress(ValueError), cache.entry("failed", cache.root()):
+        raise ValueError
+    with cache.entry("held", cache.root()):
+        assert cache.make_room(empty_cache, limit=0) == ["a"]
+        assert [file.name for file in empty_cache.iterdir() if file.is_file()] == ["held.lock"]
+    assert list(empty_cache.iterdir()) == []
+
+
+def test_who_waited_for_a_lock_that_was_removed_takes_the_one_that_is_there(empty_cache: Path) -> None:
+    """Else two would build one entry: the lock that was removed is nobody else's any more."""
+    empty_cache.mkdir(mode=0o700)
+    lock = empty_cache / "a.lock"
+    waiting = threading.Event()
+
+    def cancelled() -> bool:
+        waiting.set()
+        return False
+
+    def build() -> None:
+        with cache.entry("a", cache.root(), cancelled) as entry:
+            held.append(os.path.samestat(os.fstat(entry.lock), lock.stat()))
+
+    held: list[bool] = []
+    with lock.open("a") as first:
+        fcntl.flock(first, fcntl.LOCK_EX)
+        builder = threading.Thread(target=build)
+        builder.start()
+        assert waiting.wait(timeout=60)
+        lock.unlink()
+    builder.join(timeout=60)
+    assert held == [True]

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from autograder.workspaces import builds, packages
-from autograder.workspaces.interface_packages import simple_package_xml
+from autograder.workspaces.interface_packages import holds_only_interfaces, simple_package_xml
 from autograder.workspaces.sources import BadSources
 
 sys.path.insert(0, str(Path(__file__).parent))
-from made_workspaces import packages_in
+from made_workspaces import CMAKE, PACKAGE_XML, interface_package, packages_in
 
 
 def test_a_package_is_read_and_not_run(workspace: Path) -> None:
@@ -99,6 +99,15 @@ def test_an_odd_package_file_is_the_packages_own_fault(workspace: Path, content:
     assert simple_package_xml(content.decode("utf-8", "replace"))
 
 
+def test_a_format_that_does_not_exist_is_the_packages_own_fault(workspace: Path) -> None:
+    # catkin_pkg asserts that it is one of three: that was "could not be checked" in place of a diagnosis.
+    file = workspace / "src" / "tiny_pkg" / "package.xml"
+    file.write_text(file.read_text().replace('format="3"', 'format="4"'))
+    assert trouble_in(workspace / "src") == (
+        'tiny_pkg/package.xml is not valid: <package format="…"> has to be 1, 2 or 3'
+    )
+
+
 def test_a_package_file_is_not_longer_than_it_looks(workspace: Path) -> None:
     # Two thousand bytes stood for 120,000 dependencies, and fifty such packages took minutes outside of any box.
     many = f"""<!ENTITY a "<depend>x</depend>"><!ENTITY b "{"&a;" * 400}">"""
@@ -113,6 +122,42 @@ def test_a_package_file_with_thousands_of_dependencies_is_not_validated(workspac
     content = f"<package><name>tiny_pkg</name>{depends}</package>"
     (workspace / "src" / "tiny_pkg" / "package.xml").write_text(content)
     assert "larger than 20 kB" in trouble_in(workspace / "src")
+
+
+def test_of_many_large_package_files_only_some_are_validated(
+    workspace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Half a second each: fifty took half a minute of a grader's worker, at each start of a program.
+    validated: list[str] = []
+    monkeypatch.setattr(packages, "_validate", lambda _, shown: validated.append(shown))
+    content = PACKAGE_XML.replace("For a test", "x" * 18_000)
+    for number in range(20):
+        (folder := workspace / "src" / f"p{number}").mkdir()
+        (folder / "package.xml").write_text(content.format(name=f"p{number}"))
+    assert len(packages_in(workspace / "src")) == 21
+    assert len(validated) == 6  # five of these, and the small one
+
+
+def test_a_cmake_file_is_read_once_and_only_where_it_is_short(
+    workspace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # A thousand interfaces beside 250,000 lines of comments took 25 minutes of a grader's worker.
+    interface_package(workspace / "src" / "short", "# AddTwoInts_cpp\n")
+    interface_package(workspace / "src" / "long", "#\n" * 30_000)
+    reads: list[Path] = []
+    text = packages._text
+
+    def read(file: Path) -> str:
+        reads.append(file)
+        return text(file)
+
+    monkeypatch.setattr(packages, "_text", read)
+    long, short, _ = sorted(packages_in(workspace / "src"), key=lambda package: package.folder.name)
+    assert short.cmake_lists == f"\n{CMAKE}"
+    assert long.cmake_lists is None
+    assert holds_only_interfaces(short)
+    assert not holds_only_interfaces(long)
+    assert len(reads) == 2
 
 
 def test_nobody_looks_at_hundreds_of_packages(workspace: Path) -> None:
@@ -135,3 +180,17 @@ def test_a_setup_too_deep_to_be_read_has_no_programs(workspace: Path, deep: str)
     (workspace / "src" / "tiny_pkg" / "setup.py").write_text(deep)
     (package,) = packages_in(workspace / "src")
     assert package.programs == ()
+
+
+def test_texts_in_setup_may_hold_what_is_no_text(workspace: Path) -> None:
+    setup = workspace / "src" / "tiny_pkg" / "setup.py"
+    setup.write_text(setup.read_text() + 'odd = """\\ud800 = a.b:c\nlater = tiny_pkg.later:main"""\n')
+    (package,) = packages_in(workspace / "src")
+    assert set(package.programs) == {"hello = tiny_pkg.hello:main", "later = tiny_pkg.later:main"}
+
+
+def test_a_package_file_that_cannot_be_read_is_the_packages_own_fault(workspace: Path) -> None:
+    file = workspace / "src" / "tiny_pkg" / "package.xml"
+    file.unlink()
+    file.symlink_to("nowhere")
+    assert trouble_in(workspace / "src") == "tiny_pkg/package.xml cannot be read: No such file or directory"

@@ -59,3 +59,18 @@ def test_what_a_launch_file_includes_belongs_to_it(tmp_path: Path) -> None:
     file.write_text('<include file="$(dirname)/chat.launch.py"/> <!-- talker and listener -->')
     assert not lacks_programs(file, own, course)
     assert list(launch_targets(file)(own)) == [PACKAGE]
+
+
+def test_in_launch_files_that_are_far_too_long_nothing_is_taken_for_missing(tmp_path: Path) -> None:
+    own = built(tmp_path / "own", "speak", "hear")
+    course = built(tmp_path / "course", "talker", "listener")
+    folder = own.packages[0].folder / "launch"
+    for number in range(3):
+        words = f"'talker' {number + 1}.launch.py" + f" {'x' * 99}" * 2_000
+        (folder / f"{number}.launch.py").write_text(words)
+    file = folder / "0.launch.py"
+    assert not lacks_programs(file, own, course)
+    assert list(launch_targets(file)(own)) == [PACKAGE]
+    (folder / "2.launch.py").unlink()
+    assert lacks_programs(file, own, course)
+    assert list(launch_targets(file)(own)) == []

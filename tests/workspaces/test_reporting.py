@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -117,6 +118,46 @@ def test_of_definitions_the_one_that_is_asked_for_is_reported_without_comments(t
     ]
 
 
+def test_a_file_whose_name_is_no_text_is_reported(tmp_path: Path) -> None:
+    (tmp_path / os.fsdecode(b"f\xfcr.py")).touch()
+    seen = report_of(part(built_line(Build(tmp_path, ok=True, packages=(Package("a", tmp_path, ""),)))))
+    assert seen is not None
+    assert list(seen.packages[0].modules) == ["f?r.py"]
+
+
+def package_with(folder: Path, name: str, **texts: str) -> Package:
+    """A package of these files; in their names _ stands for the dot."""
+    (folder / name).mkdir()
+    for file, text in texts.items():
+        (folder / name / file.replace("_", ".")).write_text(text)
+    return Package(name, folder / name, "ament_cmake")
+
+
+@pytest.mark.parametrize(
+    ("needed", "looked_into", "complete"), [("a", "ab", True), ("d", "da", True), ("abcd", "ab", False)]
+)
+def test_the_packages_that_are_needed_are_looked_into_first_and_only_so_far(
+    needed: str, looked_into: str, complete: bool, tmp_path: Path
+) -> None:
+    setup = '"p = a.b:c"  #' + "x" * 40_000
+    packages = tuple(package_with(tmp_path, name, setup_py=setup) for name in "abcd")
+    found = Build(tmp_path, ok=True, packages=packages)
+    seen = report_of(part(found_line(found, Plan(lambda _: needed, lambda _: "", lambda _: []))), "found")
+    assert seen is not None
+    assert seen.complete == complete
+    assert [package.name for package in seen.packages if package.programs] == [*looked_into]
+
+
+def test_a_definition_without_room_is_left_out_and_not_taken_for_missing(tmp_path: Path) -> None:
+    long = package_with(tmp_path, "a", A_srv="int64 a\n" * 20_000, CMakeLists_txt="#" * 60_000)
+    found = Build(tmp_path, ok=True, packages=(long,))
+    plan = Plan(lambda _: ["a"], lambda _: "", lambda _: [], definition="A.srv")
+    seen = report_of(part(found_line(found, plan)), "found")
+    assert seen is not None
+    assert not seen.complete
+    assert list(seen.packages[0].interfaces) == [Interface("A.srv", None, True)]
+
+
 def test_entry_points_are_those_that_are_installed(tmp_path: Path) -> None:
     prefix = tmp_path / "install" / "a"
     metadata = prefix / LIBRARY / "a-0.0.0.egg-info"
@@ -130,6 +171,10 @@ def test_entry_points_are_those_that_are_installed(tmp_path: Path) -> None:
     seen = report_of(part(built_line(made)))
     assert seen is not None
     assert (list(seen.packages[0].programs), list(seen.packages[0].installed)) == (["p = a.b:c"], ["p"])
+    (metadata / "entry_points.txt").write_text("p = a.b:c\n" * 20_000)
+    seen = report_of(part(built_line(made)))
+    assert seen is not None
+    assert list(seen.packages[0].programs) == []
 
 
 def test_nonsense_is_no_report() -> None:

@@ -211,7 +211,11 @@ class TestBench:
         return self._recorder.wait(lambda: self._subject.ended, within)
 
     def await_endpoint(self, role: str, name: str) -> bool:
-        """Wait until the subject's endpoint is on the graph and matched with the judge's, if it has one."""
+        """Wait until the subject's endpoint is there and matched; who makes it once it is spun is let spin for that."""
+        there = self._presence.await_endpoint(role, name)
+        if there or not self._subject.may_make_more:
+            return there
+        self.release()
         return self._presence.await_endpoint(role, name)
 
     def await_node(self) -> bool:

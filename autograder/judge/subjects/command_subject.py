@@ -6,7 +6,7 @@ import os
 import signal
 import subprocess
 import threading
-from typing import IO, TYPE_CHECKING, Any, Protocol
+from typing import IO, TYPE_CHECKING, Any, Protocol, cast
 
 from autograder.judge.settings import subject_environment
 from autograder.judge.subjects.subject import CannotStart, InOwnProcesses
@@ -23,6 +23,7 @@ from autograder.standard_output import short_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+    from io import BufferedReader
     from pathlib import Path
 
     from autograder.judge.bench.recorder import Recorder
@@ -193,7 +194,7 @@ class CommandSubject(InOwnProcesses):
     def _read(self, record: Record, stream: IO[bytes] | None, name: str, budget: _Budget) -> None:
         assert stream is not None
         with stream:
-            for line in short_lines(stream, MAX_LINE):
+            for line in short_lines(cast("BufferedReader", stream), MAX_LINE):
                 if budget.left <= 0:
                     continue
                 budget.left -= len(line)

@@ -59,6 +59,7 @@ class RemoteSubject:
         self._run = 0
         self._fresh = True
         self._marker: str | None = None
+        self._may_make_more = False
         self._ended = False
         self._end: Callable[..., None] = lambda *_, **__: None
         self._ready = threading.Event()
@@ -95,7 +96,7 @@ class RemoteSubject:
         self._run += 1
         self._recorder = recorder
         self._end = recorder.end_of_this_part()
-        self._marker, self._ended = None, False
+        self._marker, self._may_make_more, self._ended = None, False, False
         self._stopped.clear()
         fresh, self._fresh = self._fresh, False
         sleep_factor, spare = options.pop("sleep_factor", 1.0), options.pop("spare", 0.0)
@@ -112,7 +113,9 @@ class RemoteSubject:
         self._tell(checks.Interrupt(self._run))
 
     def release(self) -> None:
-        """Let the made node spin."""
+        """Let the made node spin; where it may make more, nobody knows any longer when it has made all."""
+        if self._may_make_more:
+            self._marker, self._may_make_more = None, False
         self._tell(checks.Release(self._run))
 
     @property
@@ -128,6 +131,11 @@ class RemoteSubject:
     def marker(self) -> str | None:
         """The topic that the notebook made after the subject's constructor had ended."""
         return self._marker or None
+
+    @property
+    def may_make_more(self) -> bool:
+        """True until the release of a node that has a timer or a thread of its own."""
+        return self._may_make_more
 
     def stack(self) -> str:
         """Ask the notebook where the subject's threads are."""
@@ -193,7 +201,8 @@ class RemoteSubject:
                 record("willing", "to wait for an answer", seconds=_bounded(seconds), call=call)
             case checks.Looked():
                 record("looked", "graph")
-            case checks.Constructed(marker=marker):
+            case checks.Constructed(marker=marker, goes_on=goes_on):
+                self._may_make_more = goes_on
                 self._marker = marker[:MAX_MARKER]
                 record("subject", "constructed")
             case checks.Exited(code=code):

@@ -54,6 +54,10 @@ class Subject(Protocol):
     def marker(self) -> str | None:
         """A topic that appears on the graph after everything the subject made; None where nobody can know."""
 
+    @property
+    def may_make_more(self) -> bool:
+        """True if it is held and has a timer or a thread, which may make more once it is released."""
+
     def processes(self) -> frozenset[int]:
         """The ids of the processes that it has started and that live; none where nobody can tell."""
 
@@ -73,6 +77,7 @@ class InOwnProcesses:
     shares_participant = False
     keeper = ""
     marker = None
+    may_make_more = False
 
     def processes(self) -> frozenset[int]:
         """Nobody can tell, where they are not this process's children."""

@@ -63,24 +63,43 @@ class Publisher:
 
     @cached_property
     def counters(self) -> list[int]:
-        """The last number of each text, where that is a whole one."""
-        return counters(self.texts)
+        """The last number of each text, where that is a whole one; without those of greetings."""
+        return counters(self.texts[self.greetings :])
 
     @cached_property
     def templates(self) -> list[str]:
         """The texts with a ``#`` for each whole number."""
         return [template(text) for text in self.texts]
 
+    @cached_property
+    def greetings(self) -> int:
+        """The number of messages before it begins to count: they have another text, and no number that leads on.
+
+        Who publishes one while it makes its publisher is heard or not, by chance, and counts the same in both cases.
+        """
+        begins = self.templates.index(max(self.templates, key=self.templates.count)) if self.texts else 0
+        around = counters(self.texts[begins - 1 : begins + 1]) if begins else []
+        leads_on = len(around) > 1 and around[1] == around[0] + 1
+        return 0 if leads_on else begins
+
+    @property
+    def number_of_first(self) -> int:
+        """The number that the first counting message has by DDS, which numbers each publisher's messages from 1.
+
+        Greetings that were heard are left out, so that it tells how many came before it and were not heard.
+        """
+        counting = self.messages[self.greetings :]
+        return max(1, int(counting[0].data.get("number", 1)) - self.greetings) if counting else 1
+
     @property
     def first_number(self) -> int | None:
         """The number of its first message, also where that was sent before anybody could hear it; None for none.
 
         A loop may publish in the moment in which it makes its publisher, which no listener can be quick enough for.
-        DDS numbers each publisher's messages from 1, so that what was lost is known.
+        What was lost is known by its number. One below zero means that not all of it were texts with numbers.
         """
-        if not self.messages or not (first := counters(self.texts[:1])):
-            return None
-        return first[0] - (int(self.messages[0].data.get("number", 1)) - 1)
+        first = counters(self.texts[self.greetings :][:1])
+        return first[0] - (self.number_of_first - 1) if first else None
 
     @property
     def begun(self) -> int:

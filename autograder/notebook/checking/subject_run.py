@@ -86,12 +86,14 @@ class SubjectRun:
                 self._tell(Raised(self._number, formatted(error)))
 
     def _make_and_spin(self) -> None:
+        others = set(threading.enumerate())
         node = self._subject(*self._arguments)
         if not isinstance(node, Node):
             raise TypeError(
                 f"{self._subject.__name__} is no Node: write class {self._subject.__name__}(Node)"
             )
-        self._tell(Constructed(self._number, _mark(node, self._number)))
+        goes_on = any(node.timers) or not others.issuperset(threading.enumerate())
+        self._tell(Constructed(self._number, _mark(node, self._number), goes_on))
         self._released.wait()
         threads = SpinThreads(
             [node],

@@ -174,7 +174,7 @@ def serve_goal(bench: Bench, name: str, *, accept: bool, pause: float, late: flo
     sequence = [0, 1]
     cancelled = send_feedback_until_cancelled(bench, server, sequence, pause)
     if cancelled:
-        send_late_feedback(bench, server, sequence, watch=name == HONOURED)
+        send_late_feedback(bench, server, sequence, name)
     server.await_result_request(END_LIMIT[bench.pace] if cancelled else FEEDBACK_GAP[Pace.REAL_TIME])
     if cancelled:
         hold_back(bench, "result_request")
@@ -236,13 +236,12 @@ def say_that_it_runs(bench: Bench, server: ActionCounterpart) -> None:
         bench.run_time(LATE_GAP)
 
 
-def send_late_feedback(bench: Bench, server: ActionCounterpart, sequence: list[int], *, watch: bool) -> None:
+def send_late_feedback(bench: Bench, server: ActionCounterpart, sequence: list[int], name: str) -> None:
     """Let time pass in which nothing more may be asked for, then send feedback that must not be acted on."""
     action, _ = bench.reference.only("action_client")
-    enough = len(sequence) + FEW_LATE
-    if watch:
-        enough = WITH_LATE + 2
-        # While its answer is held back, and later on.
+    enough = WITH_LATE + 2 if name == HONOURED else len(sequence) + FEW_LATE
+    if name in (HONOURED, CANCEL_REFUSED):
+        # While its answer is held back, and later on: a client may ask again by the clock, or once it was refused.
         bench.wait_until(lambda seen: seen.main.first("cancel_answered") is not None, GOAL_LIMIT)
         bench.pass_time(LAB_TIME, "action_client", action)
     else:

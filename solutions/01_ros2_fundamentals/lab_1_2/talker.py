@@ -7,7 +7,7 @@ from itertools import pairwise
 import re2
 
 from autograder.kit.draft import Draft
-from autograder.kit.in_words import first_difference
+from autograder.kit.in_words import counted, first_difference
 from autograder.kit.model import Advice, Finding
 from autograder.kit.recipes.publisher import Hears, Publisher
 
@@ -46,9 +46,12 @@ def counter(seen: Publisher, expected: Publisher) -> Finding:
     """The numbers are the reference's, from the first message on."""
     numbers = seen.counters
     # Who publishes too slowly, which is another criterion's matter, has not come so far.
-    all_of_them = len(numbers) >= seen.enough or (bool(numbers) and seen.goes_on_slowly(expected))
+    enough = seen.enough - seen.greetings
+    all_of_them = len(numbers) >= enough or (bool(numbers) and seen.goes_on_slowly(expected))
     steady = all_of_them and numbers == list(range(numbers[0], numbers[0] + len(numbers)))
-    found = ", ".join(map(str, numbers)) if len(numbers) < seen.enough else around(numbers, slip(numbers))
+    found = ", ".join(map(str, numbers)) if len(numbers) < enough else around(numbers, slip(numbers))
+    if steady and (more := uncounted(seen, expected)):
+        found = f"{counted(more, 'message')} more before {found}"
     passed = steady and seen.went_on and starts_right(seen, expected)
     return Finding(passed, row(expected.counters[:5]), found or "no whole number arrived")
 
@@ -59,6 +62,12 @@ talker.asks("rate", 3, "Keeps the rate", heard.keeps_rate)
 def starts_right(seen: Publisher, expected: Publisher) -> bool:
     """True if it counted from the reference's first number."""
     return seen.first_number == expected.counters[0]
+
+
+def uncounted(seen: Publisher, expected: Publisher) -> int:
+    """The messages too many, of those before anybody could hear them, for a counter that begins at the start."""
+    first, begins = seen.first_number, expected.counters[0]
+    return begins - first if first is not None and seen.counters[0] >= begins > first else 0
 
 
 def slip(numbers: list[int]) -> int:
@@ -118,17 +127,25 @@ def wrong_text(seen: Publisher, expected: Publisher) -> Advice | None:
     )
 
 
-@talker.mistake(
-    "counter_start",
-    late=True,
-    says="The first message carries the number {seen.counters[0]}; the counter must begin at {expected.counters[0]}.",
-    next_step="Set your counter in __init__, as in self.count = {expected.counters[0]}, and add 1 only after the "
-    "message was published.",
-)
-def counter_start(seen: Publisher, expected: Publisher) -> bool:
-    """It counts by one, but from another number."""
+@talker.mistake("counter_start", late=True)
+def counter_start(seen: Publisher, expected: Publisher) -> Advice | None:
+    """It counts by one, but from another number, or not from its first message on."""
     steady = len(seen.counters) > 1 and all(b - a == 1 for a, b in pairwise(seen.counters))
-    return steady and not starts_right(seen, expected)
+    if not steady or starts_right(seen, expected):
+        return None
+    if more := uncounted(seen, expected):
+        return Advice(
+            f"“{seen.texts[seen.greetings]}” was message {seen.number_of_first} of your node: it published "
+            f"{counted(more, 'message')} more before it than it counted, too early for anybody to hear.",
+            "Publish nothing before the first of these, as in __init__: a line such as “Talker started” "
+            "goes into the log.",
+        )
+    first = seen.counters[0] if seen.first_number is None else seen.first_number
+    return Advice(
+        f"The first message carries the number {first}; the counter must begin at {expected.counters[0]}.",
+        f"Set your counter in __init__, as in self.count = {expected.counters[0]}, and add 1 only after the message "
+        "was published.",
+    )
 
 
 @talker.mistake("counter_step", late=True)
