@@ -23,7 +23,8 @@ from autograder.mcap_files import ROS_2, MessageFile, definition
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from autograder.judge.verdicts.keeping import Kept, KeptEvent, KeptLook, KeptPart
+    from autograder.judge.verdicts.keeping import Kept, KeptLook
+    from autograder.kit.evidence import Event, Part
 
 _ENDS = {"message": "publisher", "sent": "subscription"}
 """The subject's end of a topic on which it is heard, and of one on which it is spoken to."""
@@ -129,7 +130,7 @@ def _channel_in_cdr(file: MessageFile, topic: str, type_name: str) -> tuple[int,
     return channel, kind
 
 
-def _seen(kept: Kept) -> Iterator[tuple[str, KeptEvent, int, dict[str, Any]]]:
+def _seen(kept: Kept) -> Iterator[tuple[str, Event, int, dict[str, Any]]]:
     """Each event with its topic, its time and its message."""
     began = kept.at - kept.verdict.seconds
     for look in kept.looks:
@@ -140,7 +141,7 @@ def _seen(kept: Kept) -> Iterator[tuple[str, KeptEvent, int, dict[str, Any]]]:
             began += max((event.t for event in part.events), default=0.0)
 
 
-def _topic(event: KeptEvent) -> str:
+def _topic(event: Event) -> str:
     if event.kind in _ENDS:
         return event.name
     if event.kind == "log":
@@ -148,7 +149,7 @@ def _topic(event: KeptEvent) -> str:
     return f"{event.name}/{event.kind}" if event.kind in _OF_CALLS else f"/judge/{event.kind}"
 
 
-def _message(look: KeptLook, part: KeptPart, event: KeptEvent) -> dict[str, Any]:
+def _message(look: KeptLook, part: Part, event: Event) -> dict[str, Any]:
     fields = event.data.get("fields", {})
     more = {key: value for key, value in event.data.items() if key != "fields"}
     return {

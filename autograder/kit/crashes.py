@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.kit.evidence import is_cut_off
 from autograder.kit.known_crashes import KNOWN
 from autograder.kit.model import Advice, Mistake
 from autograder.kit.python_errors import meaning
@@ -29,13 +30,10 @@ def traceback_of(evidence: Evidence) -> str:
     is refused, does not hide a slip in another one. One that was cut off, where two threads printed theirs at once,
     only counts where there is no other.
     """
-    shown = sorted((part.traceback for part in reversed(list(evidence))), key=_is_cut_off)
-    crashes = [text for text in shown if text and not _NO_CRASH.search(text)]
+    last_first = [part.traceback for part in reversed(list(evidence)) if part.traceback]
+    shown = sorted(last_first, key=lambda text: is_cut_off(text.split("\n")))
+    crashes = [text for text in shown if not _NO_CRASH.search(text)]
     return next((text for text in crashes if not meant(text)), crashes[0] if crashes else "")
-
-
-def _is_cut_off(traceback: str) -> bool:
-    return traceback.rpartition("\n")[2].startswith((" ", "Traceback"))
 
 
 def _recogniser(crash: Crash) -> Mistake:

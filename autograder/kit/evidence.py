@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Iterator, Mapping, Sequence  # noqa: TC003  (what reads kept evidence needs the types)
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import re2
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
 
 
 @dataclass(frozen=True)
@@ -213,9 +211,12 @@ def _traceback_in(lines: Sequence[str]) -> str:
         ]
         return "\n".join(lines[syntax[0] : ends[-1] + 1]) if ends and syntax else ""
     found = [_traceback_at(lines, start) for start in starts]
-    cut_off = (" ", "\t", _TRACEBACK, *_OF_A_TRACEBACK)
-    complete = [taken for taken in found if len(taken) > 1 and not taken[-1].startswith(cut_off)]
-    return "\n".join((complete or found)[-1])
+    return "\n".join(next((taken for taken in reversed(found) if not is_cut_off(taken)), found[-1]))
+
+
+def is_cut_off(traceback: Sequence[str]) -> bool:
+    """True of the lines of a traceback that end before the error's own words."""
+    return len(traceback) < 2 or traceback[-1].startswith((" ", "\t", _TRACEBACK, *_OF_A_TRACEBACK))
 
 
 def _traceback_at(lines: Sequence[str], start: int) -> list[str]:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from autograder.judge.verdicts import reference
-from autograder.kit.evidence import Event, Evidence, Part
+from autograder.kit.evidence import Evidence, Part
 from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
 
 if TYPE_CHECKING:
@@ -41,29 +41,11 @@ class NoEvidence(ValueError):
     """These bytes are no evidence; the message says why."""
 
 
-class KeptEvent(msgspec.Struct, frozen=True, omit_defaults=True):
-    """One event; see :class:`autograder.kit.evidence.Event`."""
-
-    t: float
-    kind: str
-    name: str
-    data: dict[str, Any] = {}
-    sim: float | None = None
-
-
-class KeptPart(msgspec.Struct, frozen=True):
-    """One run of the subject, with the inputs that were drawn for it."""
-
-    name: str
-    inputs: dict[str, Any]
-    events: list[KeptEvent]
-
-
 class KeptLook(msgspec.Struct, frozen=True):
     """One run of the scenario."""
 
     real_time: bool
-    parts: list[KeptPart]
+    parts: list[Part]
 
 
 class Kept(msgspec.Struct, frozen=True):
@@ -197,13 +179,7 @@ def evidence_of(kept: Kept, expected: Reference) -> Evidence:
     """
     evidence: Evidence | None = None
     for look in kept.looks:
-        parts = [
-            Part(
-                part.name, part.inputs, tuple(Event(e.t, e.kind, e.name, e.data, e.sim) for e in part.events)
-            )
-            for part in look.parts
-        ]
-        evidence = Evidence(parts, expected, look.real_time, evidence)
+        evidence = Evidence(look.parts, expected, look.real_time, evidence)
     if evidence is None:
         raise NoEvidence("the judge saw nothing")
     return evidence
