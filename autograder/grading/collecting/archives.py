@@ -39,6 +39,8 @@ _DEEPEST_FOLDER = 100
 """Folders in each other; Python looks into no more than some hundreds."""
 _LEFT_BY_PROGRAMS = ("__MACOSX", ".git", ".ipynb_checkpoints", "__pycache__", ".DS_Store")
 """Files that systems and editors leave beside a student's work."""
+EMPTY = "holds no file, or only what programs leave beside a work"
+"""Said of an archive or a folder of which nothing is taken."""
 _LEADS_OUT = "its name leads out of the archive"
 _LONGEST_NAME = 1_000
 """Characters of a path; a zip may have paths of 65,535, too many to print."""
@@ -137,18 +139,25 @@ def _of_source(source: Path, *, opened: bool) -> Iterator[File]:
         yield from _of_zip(File(source, (), alone.read), file, _LARGEST_LIST)
 
 
-def within(file: File, data: bytes, room: Room, depth: int = 1) -> Iterator[tuple[File, bytes]]:
-    """The files of an archive that a student has handed in with what they hold, those of archives in it, too."""
+def within(file: File, data: bytes, room: Room, depth: int = 1) -> Iterator[tuple[File, bytes | NotTaken]]:
+    """The files of an archive that a student has handed in, those of archives in it, too.
+
+    With each comes what it holds, or the reason why that cannot be taken.
+    """
+    holds_a_file = False
     for inner in _of_zip(file, io.BytesIO(data), _LARGEST_LIST_OF_ONE, room):
+        holds_a_file = True
         try:
             held = inner.read()
-        except NotTaken:
-            yield inner, b""
+        except NotTaken as reason:
+            yield inner, reason
             continue
         if is_zip(inner.name, held) and depth < _DEEPEST:
             yield from within(inner, held, room, depth + 1)
         else:
             yield inner, held
+    if not holds_a_file:
+        yield file, NotTaken(f"it {EMPTY}")
 
 
 def _of_folder(source: Path) -> Iterator[File]:
@@ -178,7 +187,10 @@ def _of_zip(outer: File, data: BinaryIO, largest_list: int, room: Room | None = 
         bounded.most = MAX_BYTES + 1  # from here on, the files themselves
         entries = [entry for entry in archive.infolist() if not entry.is_dir()]
     except (NotTaken, zipfile.BadZipFile, ValueError, NotImplementedError, OSError, EOFError) as error:
-        yield replace(outer, read=_refusing(f"it is no zip file that can be read: {error}"))
+        reason = f"it is no zip file that can be read: {error}"
+        if room is None and isinstance(error, NotTaken):
+            reason += ". Unpack it, and collect the folder"  # one student's many names are no reason to lose all others
+        yield replace(outer, read=_refusing(reason))
         return
     if room is not None and (reason := room.take(entries)):
         yield replace(outer, read=_refusing(reason))

@@ -10,9 +10,9 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.collecting.archives import File, NotTaken, Room, files_of, is_zip, within
+from autograder.grading.collecting.archives import EMPTY, File, NotTaken, Room, files_of, is_zip, within
 from autograder.grading.collecting.assignment_of import AssignmentOf, NoTarget, is_notebook, stem_of
-from autograder.grading.collecting.forms import FORMS, plain, read_path
+from autograder.grading.collecting.forms import FORMS, is_drives_own, plain, read_alone, read_path
 from autograder.grading.collecting.lists import GRADESCOPE, Entry, is_unread, read_list
 from autograder.grading.collecting.outcomes import CollectReport, Outcome, State, WaitingList
 from autograder.grading.collecting.records import Collected, CollectedRecords
@@ -126,7 +126,7 @@ class _Collecting:
         notes += [
             f"{name} is in the list of times, and nobody is called so" for name in self._student_of.strangers
         ]
-        notes += [f"{source} holds no file" for source, files in downloads.items() if not files]
+        notes += [note for source, files in downloads.items() if (note := self._taken_for(source, files))]
         came = {(one.student, one.assignment) for one in self._outcomes if one.state in _CAME}
         came |= {(student, "") for student, _ in came}
         self._outcomes = [
@@ -193,13 +193,39 @@ class _Collecting:
         return is_csv and source not in self._handed_in_alone
 
     def _is_handed_in(self, source: Path) -> bool:
-        """True if a file that the instructor names is one student's: a system has called it so.
+        """True if a file that the instructor names is one student's: it has a student's name, or one that systems give.
 
-        As with ``download/*``: who hands in an archive or a table must not have it read as the instructor's.
+        As with ``download/*``, or what came by mail: who hands in an archive or a table must not have it read as the
+        instructor's, in which names say whose work it is. Google's form is that of many other names, as in
+        ``Grades - ROS 2.csv``: there, somebody of the class must be meant.
         """
-        ways = (read_path((source.name,), form, self._assignment_from.is_notebook) for form in FORMS)
-        known = self._roster.students and source.is_file()
-        return bool(known and any(way is not None and self._student_of.find(way) for way in ways))
+        if not source.is_file() or is_drives_own(source.name):
+            return False
+        by_a_system = any(way.identity.lms not in ("", "google") for way in self._ways(source))
+        return by_a_system or self._is_known(source)
+
+    def _ways(self, source: Path) -> list[Found]:
+        return read_alone(source, self._assignment_from.is_notebook)
+
+    def _is_known(self, source: Path) -> bool:
+        return any(map(self._student_of.find, self._ways(source)))
+
+    def _taken_for(self, source: Path, files: Sequence[File]) -> str:
+        """What a file was taken for, where its name leaves that open; empty where nobody has to know."""
+        if not files:
+            return f"{source} {EMPTY}"
+        suffix = source.suffix.lower()
+        if source not in self._handed_in_alone and suffix == ".zip" and not self._form:
+            return (
+                f"{source} was taken for a download, in which names say whose work it is: if one student sent it, "
+                "rename it to the student's id"
+            )
+        if source in self._handed_in_alone and suffix in (".zip", ".csv") and not self._is_known(source):
+            return (
+                f"{source} was taken for one student's work, as a system gives it such a name: if it is a download "
+                "or a list, rename it to submissions.zip or list.csv"
+            )
+        return ""
 
     def _entries(self, file: File) -> list[Entry]:
         try:
@@ -221,6 +247,7 @@ class _Collecting:
 
     def _take(self, files: list[File], source: Path, depth: int) -> None:
         form = self._form or self._likely_form(files, depth)
+        by_its_own_name = self._ways(source) if source in self._handed_in_alone else []
         rooms: dict[tuple[str, ...], Room] = defaultdict(Room)
         for file in files:
             found = (
@@ -228,19 +255,24 @@ class _Collecting:
                 if form and file.parts
                 else None
             )
-            ways = [found] if found else plain(file.parts)[:depth] if file.parts else []
+            in_folders = plain(file.parts)[:depth] if file.parts else []
+            ways = [found] if found else [*in_folders, *by_its_own_name]
             known = (owners for way in ways if (owners := self._student_of.find(way)) is not None)
             owners = next(known, Owners(found))
             try:
                 data = file.read()
-            except NotTaken:
-                data = b""
-            if not is_zip(file.name, data) or not data:
+            except NotTaken as error:
+                self._not_taken(file, str(error), owners)
+                continue
+            if not is_zip(file.name, data):
                 self._take_file(file, data, owners, source)
                 continue
             ids = tuple(one.id for students in owners.members for one in students)
             for inner, held in within(file, data, rooms[ids or file.parts[:depth]]):
-                self._take_file(inner, held, owners, source)
+                if isinstance(held, NotTaken):
+                    self._not_taken(inner, str(held), owners)
+                else:
+                    self._take_file(inner, held, owners, source)
 
     def _likely_form(self, files: Sequence[File], depth: int) -> str:
         """The form that most of the names have; empty where as many are in folders that are called as students are.
@@ -261,18 +293,15 @@ class _Collecting:
         likely = max(FORMS, key=lambda form: len(votes[form]))
         return likely if len(votes[likely]) > len(in_folders) else ""
 
+    def _not_taken(self, file: File, reason: str, owners: Owners) -> None:
+        """Say why a file cannot be read."""
+        if is_notebook(file.name, b"") or is_zip(file.name, b""):
+            self._refuse(file, reason, owners)
+        else:
+            self._outcomes.append(self._soft(file, reason, owners))
+
     def _take_file(self, file: File, data: bytes, owners: Owners, source: Path) -> None:
-        """Take a file whose bytes are known, or say why not."""
-        try:
-            data = data or file.read()
-        except NotTaken as error:
-            may_be_work = is_notebook(file.name, b"") or is_zip(file.name, b"")
-            self._outcomes.append(
-                self._outcome(file, State.NOT_PLACED, str(error), owners)
-                if may_be_work
-                else self._soft(file, str(error), owners)
-            )
-            return
+        """Take a file, or say why not."""
         if not is_notebook(file.name, data):
             self._outcomes.append(self._no_notebook(file, owners))
             return

@@ -16,6 +16,7 @@ from autograder.regular_files import name_as_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+    from pathlib import Path
 
     _Who = Callable[[Mapping[str, str]], tuple[Identity, tuple[Identity, ...]]]
     """Tells from the groups of a pattern the student, and the student of each way to read the name."""
@@ -27,6 +28,7 @@ _COPY_OF = "Copy of "
 _MARK = r" ?\((\d{1,6})\)|-(\d{1,6})| - [Cc]opy"
 _MARKED = re2.compile(rf"^(?P<base>.+?)(?P<marks>(?:{_MARK})+)$")
 _MARKS = re2.compile(_MARK)
+_DRIVES_OWN = re2.compile(r"-\d{8}T\d{6}Z(?:-\d+)+(?: \(\d+\))?\.zip$")
 
 
 @dataclass(frozen=True)
@@ -95,6 +97,17 @@ def plain(parts: Sequence[str]) -> list[Found]:
         repository = [Identity("github", number=login) for login in (bare, *_ends(bare, "-"))]
         ways.append(replace(found, readings=(Identity(login=part, name=part), *repository)))
     return ways
+
+
+def read_alone(file: Path, is_notebook: Callable[[str], bool]) -> list[Found]:
+    """The ways to read the name of a file that an instructor names: as a system gives it, or called as a student is."""
+    ways = (read_path((file.name,), form, is_notebook) for form in FORMS)
+    return [way for way in ways if way is not None] + plain((file.stem, file.name))
+
+
+def is_drives_own(name: str) -> bool:
+    """True of an archive that Google Drive makes of a folder: ``Lab 1.2-20251003T140506Z-1-001.zip``."""
+    return _DRIVES_OWN.search(name) is not None
 
 
 def read_time(text: str) -> datetime | None:

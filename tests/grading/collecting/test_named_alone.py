@@ -36,6 +36,65 @@ def test_a_students_zip_is_no_download_whose_names_are_believed(klass: TinyClass
     assert not any("99999" in one.label for one in report.outcomes if one.student == "ben")
 
 
+@pytest.mark.parametrize("has_list", [True, False])
+def test_a_zip_of_somebody_unknown_is_no_download_either(
+    tiny: TinyClass, tmp_path: Path, *, has_list: bool
+) -> None:
+    """Eve's name is in no list; without any list, each name of the system's is a student's."""
+    if has_list:
+        (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
+    forged = zipped({"barben_102_99999_lab_1_2.ipynb": work(tiny, 1)})
+    (tmp_path / "malloryeve_666_9001_work.zip").write_bytes(forged)
+    (tmp_path / "malloryeve_666_9004_list.csv").write_text("id,handed_in\nben,2030-01-01\n")
+    (tmp_path / "barben_102_9002_lab_1_2.ipynb").write_text(work(tiny, 3))
+    report = collect(tiny.path, sorted(tmp_path.glob("*_9*")))
+    ben = "ben" if has_list else "barben"
+    assert lies(tiny, ben) == work(tiny, 3)
+    assert placed(report).keys() == ({ben} if has_list else {ben, "malloryeve"})
+    told = [note for note in report.notes if "rename it to submissions.zip or list.csv" in note]
+    assert len(told) == (2 if has_list else 0)
+    assert not has_list or "nobody in the class is called malloryeve" in why(report)
+
+
+def test_what_is_called_after_a_student_is_that_students(klass: TinyClass, tmp_path: Path) -> None:
+    """Zips and notebooks that came by mail, and a repository that was downloaded by hand."""
+    forged = {"barben_102_99999_lab_1_2.ipynb": work(klass, 1), "lab_1_2.ipynb": work(klass, 2)}
+    (tmp_path / "ada.zip").write_bytes(zipped(forged))
+    (tmp_path / "Ben Bär.ipynb").write_text(work(klass, 3))
+    (tmp_path / "lab-1-2-josen-main.zip").write_bytes(
+        zipped({"lab-1-2-josen-main/lab_1_2.ipynb": work(klass)})
+    )
+    report = collect(klass.path, sorted(tmp_path.glob("*.*")))
+    assert placed(report).keys() == {"ada", "ben", "jose"}
+    assert lies(klass, "ada") == work(klass, 2)
+    assert report.notes == ()
+
+
+def test_what_a_zip_was_taken_for_is_said_where_its_name_leaves_that_open(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    files = {"barben_102_9002_lab_1_2.ipynb": work(klass, 3)}
+    download = write_zip(tmp_path / "homework.zip", files)
+    (note,) = collect(klass.path, [download]).notes
+    assert note.startswith(f"{download} was taken for a download")
+    assert collect(klass.path, [download], form="canvas").notes == ()
+
+
+def test_drives_own_name_of_an_archive_is_no_students(tiny: TinyClass, tmp_path: Path) -> None:
+    files = {f"Lab/{student} - lab_1_2.ipynb": work(tiny, 1) for student in ("Ada Lovelace", "Ben Bar")}
+    report = collect(tiny.path, [write_zip(tmp_path / "ROS 2 - Lab-20251003T140506Z-1-001.zip", files)])
+    assert placed(report).keys() == {"Ada Lovelace", "Ben Bar"}
+
+
+def test_an_archive_of_which_nothing_is_taken_has_a_line(klass: TinyClass, tmp_path: Path) -> None:
+    archive = zipped({"__MACOSX/._lab_1_2.ipynb": "x", ".DS_Store": "y"})
+    (tmp_path / "ada").mkdir()
+    (tmp_path / "ada" / "work.zip").write_bytes(archive)
+    report = collect(klass.path, [tmp_path / "ada"])
+    assert [one.student for one in report.having(State.NOT_PLACED)] == ["ada"]
+    assert "it holds no file, or only what programs leave beside a work" in why(report)
+
+
 def test_a_students_table_is_no_list_of_the_instructors(klass: TinyClass, tmp_path: Path) -> None:
     """Ada's table says that Ben handed in years later, and that what has her number is his."""
     table = "user_id,submitted_at,login_id\n102,2030-01-01T00:00:00Z,ben\n101,2020-01-01T00:00:00Z,ben\n"
@@ -56,7 +115,10 @@ def test_a_download_and_a_list_are_still_what_they_are(klass: TinyClass, tmp_pat
     (tmp_path / "Grades - CS_101.csv").write_text(
         "user_id,login_id,submitted_at\n102,ben,2025-01-01T00:00Z\n"
     )
-    sources = [write_zip(tmp_path / "CS_7_2_submissions.zip", files), tmp_path / "Grades - CS_101.csv"]
+    sources = [
+        write_zip(tmp_path / "cs_7_2-lab-1-2 submissions.zip", files),
+        tmp_path / "Grades - CS_101.csv",
+    ]
     report = collect(klass.path, sources)
     assert placed(report).keys() == {"ben"}
     assert report.having(State.PLACED)[0].when is not None

@@ -281,7 +281,7 @@ def test_times_come_from_a_list_of_ones_own_also_later(klass: TinyClass, tmp_pat
         "ada/lab_1_2 was handed in 2025-10-03 14:05 UTC",
         "zoe/lab_1_2 was handed in 2025-10-04 08:00 UTC",
         "zack is in the list of times, and nobody is called so",
-        f"{nothing} holds no file",
+        f"{nothing} holds no file, or only what programs leave beside a work",
     )
     assert stamp(klass, "ada") == "2025-10-03 14:05:00.000000 UTC"
     assert stamp(klass, "zoe") == "2025-10-04 08:00:00.000000 UTC"
