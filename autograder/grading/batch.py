@@ -302,13 +302,13 @@ class _Batch:
 
     def _settle(self, work: Work) -> None:
         """Mark a submission as written if the gradebook has the grades of exactly this work."""
-        entered = self._entered.get(work.key)
-        if entered is None or not entered.is_in(self._entries.get(work.key, SubmissionEntry())):
+        entered, entry = self._entered.get(work.key), self._entries.get(work.key, SubmissionEntry())
+        if entered is None or not entered.is_in(entry):
             return
         if not self._directory.has_converted(work.submission, entered.tasks):
             return
         try:
-            handed_in_at(work.submission.folder)
+            handed_in_at(work.submission.folder, believed=entry.handed_in)
         except ValueError:
             return  # the writer refuses it, with the reason
         if entered.fingerprint != work.fingerprint:

@@ -83,7 +83,7 @@ class Origin:
     """The master that a source of a class was made of.
 
     Attributes:
-        master: The master's file.
+        master: The master's file, below the course's top folder where it is there.
         text: Stands for the whole of it.
         work: Stands for its graded cells and those that students write.
     """

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from autograder.grading.task import Task
 
 NAME = "class.db"
-_FORM = 1
+_FORM = 2
 """Goes up with each change of the tables; a file of another form is refused."""
 _TABLES = """
 -- What came of each notebook when it was executed last. Its task is the hash of all that the result depends on.
@@ -39,11 +39,12 @@ CREATE TABLE IF NOT EXISTS result (
     student TEXT, assignment TEXT, notebook TEXT, task TEXT NOT NULL, execution BLOB NOT NULL,
     PRIMARY KEY (student, assignment, notebook)
 );
--- What the judge saw of it, for appeals: its packed evidence by exercise, and the cells that were run.
+-- What the judge saw of it, for appeals: its packed evidence by exercise, and the cells that were run. Of the task that
+-- stands in the gradebook, and of the one that was executed last.
 CREATE TABLE IF NOT EXISTS evidence (
     student TEXT, assignment TEXT, notebook TEXT, task TEXT NOT NULL, course TEXT NOT NULL,
     checks BLOB NOT NULL, cells BLOB NOT NULL,
-    PRIMARY KEY (student, assignment, notebook)
+    PRIMARY KEY (student, assignment, notebook, task)
 );
 -- What stands in the gradebook, and what it was made of; see the class Entered.
 CREATE TABLE IF NOT EXISTS entered (
@@ -68,6 +69,11 @@ CREATE TABLE IF NOT EXISTS origin (
 -- The cells with points in the sources, for as long as the sources have this fingerprint.
 CREATE TABLE IF NOT EXISTS graded_cells (fingerprint TEXT PRIMARY KEY, cells BLOB NOT NULL);
 """
+_NOT_ENTERED = (
+    "task NOT IN (SELECT value FROM entered AS e, json_each(CAST(e.tasks AS TEXT))"
+    " WHERE e.student = evidence.student AND e.assignment = evidence.assignment)"
+)
+"""True of evidence on which nothing that stands in the gradebook rests."""
 _RUNS = 50
 """Runs whose tables are kept."""
 _PATIENCE = 30.0
@@ -109,7 +115,9 @@ class ClassStore:
     # -- results of tasks
 
     def keep(self, task: Task, execution: Execution) -> Execution:
-        """Keep a result and its evidence, in place of what is there of the same notebook; the result without evidence.
+        """Keep a result and its evidence, in place of the last ones of the same notebook; the result without evidence.
+
+        The evidence of what stands in the gradebook stays: a run that enters nothing must leave it to an appeal.
 
         Where the grader itself had trouble nothing is kept and nothing is replaced: the next run tries again.
         """
@@ -122,10 +130,13 @@ class ClassStore:
             book.execute(
                 "REPLACE INTO result VALUES (?, ?, ?, ?, ?)", (*names, seen.task, msgspec.json.encode(result))
             )
-            book.execute("DELETE FROM evidence WHERE (student, assignment, notebook) = (?, ?, ?)", names)
+            book.execute(
+                f"DELETE FROM evidence WHERE (student, assignment, notebook) = (?, ?, ?) AND {_NOT_ENTERED}",
+                names,
+            )
             if seen.checks:
                 book.execute(
-                    "INSERT INTO evidence VALUES (?, ?, ?, ?, ?, ?, ?)",
+                    "REPLACE INTO evidence VALUES (?, ?, ?, ?, ?, ?, ?)",
                     (*names, seen.task, seen.course, msgspec.msgpack.encode(seen.checks), seen.cells),
                 )
         return result
@@ -147,10 +158,10 @@ class ClassStore:
             book.executemany("DELETE FROM result WHERE (student, assignment) = (?, ?)", names)
 
     def evidence(self, student: str, exercise: str) -> KeptEvidence | None:
-        """The last evidence of a student's check; None where none is kept."""
+        """The evidence of a student's check that stands in the gradebook, else the last; None where none is kept."""
         for assignment, notebook, task, course, checks, cells in self._rows(
             "SELECT assignment, notebook, task, course, checks, cells FROM evidence WHERE student = ?"
-            " ORDER BY assignment, notebook",
+            f" ORDER BY assignment, notebook, {_NOT_ENTERED}",
             student,
         ):
             found = _decoded(checks, dict[str, bytes], msgspec.msgpack.decode)
@@ -185,6 +196,9 @@ class ClassStore:
                         entered.course,
                         entered.shown,
                     ),
+                )
+                book.execute(
+                    f"DELETE FROM evidence WHERE (student, assignment) = (?, ?) AND {_NOT_ENTERED}", names
                 )
 
     def note_fingerprint(self, submission: Submission, fingerprint: str) -> None:

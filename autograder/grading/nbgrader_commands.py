@@ -116,8 +116,7 @@ class _OurFeedback(_Ours, GenerateFeedback):
                 if reason := reason_against_name(submission.student):
                     problems.append(f"{name}: {reason}; rename the folder")
                     continue
-                writer.write_feedback(submission)
-                if not directory.has_pages(submission, directory.notebooks(submission.assignment)):
+                if not writer.write_feedback(submission):
                     problems.append(
                         f"{name}: its page could not be made (see {directory.state / 'nbgrader.log'})"
                     )

@@ -226,7 +226,7 @@ def _foreseen(
         of_notebook[cell.name] = replace(of_notebook.get(cell.name, CellEntry(cell.worth)), judged=row.score)
     at = entry.handed_in
     with contextlib.suppress(ValueError):  # the run itself refuses such a time
-        at = handed_in_at(work.submission.folder) or at
+        at = handed_in_at(work.submission.folder, believed=at) or at
     return replace(entry, handed_in=at, due=entry.due or due, cells=cells)
 
 

@@ -397,6 +397,16 @@ def test_a_source_that_is_no_notebook_stops_the_run(tiny: TinyClass, fake_engine
         tiny.grade()
 
 
+def test_a_source_that_nbgrader_cannot_prepare_stops_the_run(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    source = tiny.path / "source" / "lab_1_2" / "lab_1_2.ipynb"
+    source.write_text(source.read_text().replace("### END SOLUTION", ""))
+    tiny.submit("ada")
+    with pytest.raises(MasterUnusable, match="cannot be prepared as nbgrader does it"):
+        tiny.grade()
+
+
 def test_points_on_a_cell_that_is_no_exercise_stop_the_run(tiny: TinyClass, fake_engine: FakeEngine) -> None:
     source = tiny.path / "source" / "lab_1_2" / "lab_1_2.ipynb"
     source.write_text(source.read_text().replace(TALKER, "lab_9_9-talker"))

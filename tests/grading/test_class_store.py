@@ -60,7 +60,8 @@ def submission(student: str = "ada", assignment: str = "lab") -> Submission:
 
 def entered(student: str = "ada", assignment: str = "lab") -> Entered:
     rows = (Row(student, assignment, "lab.one", 2, 4, "failed"),)
-    return Entered(f"of {student}", {"lab": "key"}, {"lab": {"lab-one": 2.0}}, rows, "v1")
+    task = replace(TASK, student=student, assignment=assignment)
+    return Entered(f"of {student}", {"lab": task.key()}, {"lab": {"lab-one": 2.0}}, rows, "v1")
 
 
 def attempt(number: int = 0, assignment: str = "lab") -> Attempt:
@@ -78,6 +79,23 @@ def file_of(store: ClassStore) -> Path:
 
 
 # -- what is kept comes back
+
+
+def test_a_run_that_enters_nothing_leaves_the_evidence_of_a_grade(store: ClassStore) -> None:
+    changed = replace(TASK, course="v2")
+    store.keep(TASK, replace(DONE, evidence={"lab.one": b"first"}))
+    store.enter(submission(), attempt(), entered())
+    for number in range(2):  # two dry runs with a changed course
+        store.keep(changed, replace(DONE, evidence={"lab.one": b"%d" % number}))
+    seen = store.evidence("ada", "lab.one")
+    assert seen is not None
+    assert (seen.task, seen.checks) == (TASK.key(), {"lab.one": b"first"})
+    store.enter(submission(), attempt(), replace(entered(), tasks={"lab": changed.key()}))
+    seen = store.evidence("ada", "lab.one")
+    assert seen is not None
+    assert (seen.task, seen.checks) == (changed.key(), {"lab.one": b"1"})
+    with contextlib.closing(sqlite3.connect(file_of(store))) as book:
+        assert book.execute("SELECT count(*) FROM evidence").fetchone() == (1,)
 
 
 def test_an_unknown_class_has_an_empty_answer_to_everything_and_no_file(store: ClassStore) -> None:

@@ -7,15 +7,16 @@ course says today. So what is compared is a master then and now, and of it the c
 from __future__ import annotations
 
 import hashlib
-from pathlib import Path
 from typing import TYPE_CHECKING
 
+from autograder import course
 from autograder.grading.class_records import Origin
 from autograder.grading.errors import course_command
 from autograder.masters.master_errors import MasterError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+    from pathlib import Path
 
     from nbformat import NotebookNode
 
@@ -32,7 +33,7 @@ def note_origins(store: ClassStore, made: Mapping[str, tuple[Path, NotebookNode]
     """
     store.note_origins(
         {
-            name: Origin(str(master.absolute()), _digest([master.read_text("utf-8")]), _work(notebook))
+            name: Origin(_in_course(master), _digest([master.read_text("utf-8")]), _work(notebook))
             for name, (master, notebook) in made.items()
         }
     )
@@ -69,7 +70,7 @@ def warning(directory: ClassDirectory, assignment: str) -> str:
 
 
 def _has_moved(origin: Origin) -> bool:
-    master = Path(origin.master)
+    master = course.root() / origin.master
     try:
         if _digest([master.read_text("utf-8")]) == origin.text:
             return False
@@ -78,6 +79,12 @@ def _has_moved(origin: Origin) -> bool:
         return _work(source_notebook(master)) != origin.work
     except (OSError, UnicodeDecodeError, MasterError):
         return False  # the course is elsewhere now, or being worked on
+
+
+def _in_course(master: Path) -> str:
+    """The master's path below the course, which may have moved when it is asked for again; else the whole path."""
+    path, root = master.resolve(), course.root().resolve()
+    return str(path.relative_to(root) if path.is_relative_to(root) else path)
 
 
 def _work(notebook: NotebookNode) -> str:

@@ -173,7 +173,10 @@ def _graded_outputs(
     return [
         *([card, *_of_tests(outputs)] if check.asserts else [card]),
         nodes.output(
-            output_type="execute_result", data={"text/plain": f"{score:g}"}, metadata={}, execution_count=None
+            output_type="execute_result",
+            data={"text/plain": f"{score:.17g}"},
+            metadata={},
+            execution_count=None,
         ),
     ]
 

@@ -133,20 +133,23 @@ class Writer:
         url = self._directory.gradebook_url
         return read_entries(url, student=student, assignment=assignment)[student, assignment]
 
-    def write_feedback(self, submission: Submission) -> None:
-        """Make the HTML pages that go back to a student; ask ``ClassDirectory.has_pages`` afterwards.
+    def write_feedback(self, submission: Submission) -> bool:
+        """Make the HTML pages that go back to a student; False where one could not be made, with the reason in the log.
 
         Raises:
             OSError: There is no room on the disk.
         """
+        notebooks = self._directory.notebooks(submission.assignment)
         with quiet(self._directory.state):
             try:
-                self._pages.write(submission, self._directory.notebooks(submission.assignment))
+                self._pages.write(submission, notebooks)
                 conversion.write_companions(submission, self._folder("feedback", submission))
             except Exception as error:
                 if is_disk_full(error):
                     raise
                 logging.getLogger("traitlets").exception("no page for %s", submission.folder)
+                return False
+        return self._directory.has_pages(submission, notebooks)
 
     def _verify(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
         entry = self._entry(submission)

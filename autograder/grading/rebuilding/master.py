@@ -58,7 +58,12 @@ def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
     resources: dict[str, Any] = {}
     rubrics = _rubrics(notebook)
     for step in steps:
-        notebook, resources = _step(step)().preprocess(notebook, resources)
+        try:
+            notebook, resources = _step(step)().preprocess(notebook, resources)
+        except (
+            Exception
+        ) as error:  # each of nbgrader's steps raises what it likes, as for a missing END SOLUTION
+            raise MasterUnusable(f"{source} cannot be prepared as nbgrader does it: {error}") from error
     _check_cells(source, notebook)
     for cell in notebook.cells:
         if grade_id(cell) in rubrics:

@@ -10,6 +10,7 @@ import msgspec
 
 from autograder.grading.reporting.rows import DROPPED, LATE, NO_EXERCISE, Row, total
 from autograder.grading.running.timings import Timings
+from autograder.regular_files import name_as_text
 from autograder.verdict import State
 
 if TYPE_CHECKING:
@@ -90,9 +91,12 @@ def report_json(report: GradeReport) -> bytes:
             "exit_code": report.exit_code,
             "note": report.note,
             "submissions": _submissions(report.rows),
-            "refused": [{"path": str(refused.path), "reason": refused.reason} for refused in report.refused],
-            "problems": list(report.problems),
-            "notices": list(report.notices),
+            "refused": [
+                {"path": name_as_text(str(refused.path)), "reason": name_as_text(refused.reason)}
+                for refused in report.refused
+            ],
+            "problems": [name_as_text(text) for text in report.problems],
+            "notices": [name_as_text(text) for text in report.notices],
             "totals": {
                 "executed": report.executed,
                 "reused": report.reused,

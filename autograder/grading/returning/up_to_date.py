@@ -56,7 +56,7 @@ class UpToDate:
 
     def _keep_time(self, work: Work, entry: SubmissionEntry) -> SubmissionEntry:
         """Enter a changed time of handing in, or a changed due date, and what being late costs now."""
-        at = handed_in_at(work.submission.folder)
+        at = handed_in_at(work.submission.folder, believed=entry.handed_in)
         moved = at is not None and at != entry.handed_in
         if not (moved or entry.is_late or entry.penalty):
             return entry
@@ -77,8 +77,11 @@ class UpToDate:
         if work.shown == entry.shown() and self._directory.has_pages(submission, work.notebooks):
             return
         with self._timings.measure("feedback"):
-            self._writer().write_feedback(submission)
-        if not self._directory.has_pages(submission, work.notebooks):
-            self._problem(f"feedback for {submission.student}/{submission.assignment} could not be made")
-        else:
+            made = self._writer().write_feedback(submission)
+        if made:
             self._store.note_shown(submission, entry.shown())
+        else:
+            log = self._directory.state / "nbgrader.log"
+            self._problem(
+                f"feedback for {submission.student}/{submission.assignment} could not be made (see {log})"
+            )

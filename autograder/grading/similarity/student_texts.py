@@ -102,7 +102,8 @@ def read_answers(
         found.students.append(submission.student)
         written: dict[str, list[str]] = {}
         for cell in cells:
-            if cell.kind == CellType.CODE and (cell.grade_id in answers or cell.grade_id not in named):
+            # An answer counts whatever kind its cell has become, as it is graded.
+            if cell.grade_id in answers or (cell.kind == CellType.CODE and cell.grade_id not in named):
                 name = cell.grade_id if cell.grade_id in answers else OWN_CELLS
                 written.setdefault(name, []).append(cell.source)
         for name in (*answers, OWN_CELLS):

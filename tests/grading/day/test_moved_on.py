@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import io
 import shutil
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import pytest
 from conftest import LISTENER, MASTER, TALKER, FakeEngine, TinyClass, write_master
 from rich.console import Console
 
+from autograder.grading.classes import origins
 from autograder.grading.classes.new_class import new_class, renew
 from autograder.grading.errors import GradingError
 
@@ -52,6 +54,19 @@ def test_a_class_hears_of_a_task_that_was_changed(tiny: TinyClass, course: Path)
     for words in said(tiny):
         assert "lab_1_2: its master in the course was changed since this class got its source" in words
         assert f"./course renew-class {tiny.path} --assignment lab_1_2" in words
+
+
+def test_a_class_hears_of_a_change_in_a_course_that_has_moved(
+    course: Path, tmp_path: Path, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(origins, "course", SimpleNamespace(root=lambda: course))
+    new_class(tmp_path / "class", course)
+    tiny = TinyClass(tmp_path / "class")
+    tiny.submit("ada", 4, 7)
+    shutil.copytree(course, tmp_path / "clone")
+    change(tmp_path / "clone", "TODO: return ten.", "TODO: return twelve.")
+    monkeypatch.setattr(origins, "course", SimpleNamespace(root=lambda: tmp_path / "clone"))
+    assert "lab_1_2: its master in the course was changed" in "\n".join(said(tiny))
 
 
 def test_a_class_that_wrote_nothing_down_says_so_until_it_is_renewed(tiny: TinyClass, course: Path) -> None:

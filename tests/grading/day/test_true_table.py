@@ -12,7 +12,9 @@ from conftest import LISTENER, TALKER, FakeEngine, TinyClass
 from instructor import add_question, book, by_person, due, penalty
 from rich.console import Console
 
+from autograder.grading.classes import timestamps
 from autograder.grading.reporting.report_table import show
+from autograder.grading.returning.feedback import FeedbackPages
 
 if TYPE_CHECKING:
     from autograder.grading.reporting.report import GradeReport
@@ -114,6 +116,37 @@ def test_a_time_that_becomes_known_later_counts_for_an_unchanged_notebook(
     tiny.grade(feedback=True)
     assert nbgraders_total(tiny, "ada") == total(tiny, "ada") == 11
     assert "Score: 11.0 / 20.0" in page(tiny, "ada")
+
+
+def test_a_grade_stays_where_the_clock_goes_wrong_afterwards(
+    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tiny.submit("ada", 4, 7).with_name("timestamp.txt").write_text(LATE)
+    tiny.grade(feedback=True)
+    with monkeypatch.context() as patch:
+        patch.setattr(timestamps, "_AHEAD", timedelta(days=-36_500))  # as if it were a century ago
+        report = tiny.grade(feedback=True)
+    assert (report.executed, report.written, report.problems) == (0, 0, ())
+    assert nbgraders_total(tiny, "ada") == 11
+
+
+def test_a_page_that_cannot_be_made_anew_is_a_problem_until_it_is(
+    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tiny.submit("ada", 4, 7)
+    tiny.grade(feedback=True)
+    by_person(tiny, "ada", TALKER, 6)
+
+    def fail(*_: object) -> None:
+        raise PermissionError("the folder is root's")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(FeedbackPages, "write", fail)
+        for _ in range(2):
+            report = tiny.grade(feedback=True)
+            assert "feedback for ada/lab_1_2 could not be made" in "".join(report.problems)
+    assert tiny.grade(feedback=True).problems == ()
+    assert "Score: 13.0 / 20.0" in page(tiny, "ada")
 
 
 def test_a_due_date_that_is_moved_counts_for_an_unchanged_notebook(

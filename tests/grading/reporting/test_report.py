@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -21,6 +22,18 @@ def said(tiny: TinyClass) -> dict[str, Any]:
     result = CliRunner().invoke(cli, ["grade", str(tiny.path), "--json"])
     printed: dict[str, Any] = json.loads(result.stdout)
     return printed
+
+
+def test_names_that_are_no_text_break_no_json(
+    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sandboxing, "require", lambda _: None)
+    beside = tiny.submit("ada", 10, 4).with_name(os.fsdecode(b"old\xff.ipynb"))
+    beside.write_text("{}")
+    (tiny.path / "submitted" / os.fsdecode(b"M\xfcller") / "lab_1_2").mkdir(parents=True)
+    found = said(tiny)
+    assert [one["student"] for one in found["submissions"]] == ["ada"]
+    assert any("M?ller" in one["path"] for one in found["refused"])
 
 
 def test_it_is_one_object_with_submissions_and_totals(

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import nbformat
 import pytest
 from bs4 import BeautifulSoup
 from click.testing import CliRunner
@@ -62,6 +63,20 @@ def test_a_copy_in_a_cell_of_ones_own_is_found(class_: TinyClass) -> None:
     hand_in(class_, "eve", STUB, "import time", COPIED)
     (pair,) = found(class_).pairs
     assert (pair.one.answer.cell, pair.other.answer.cell) == ("Talker", "own cells")
+
+
+def test_a_copy_in_an_answer_that_has_become_another_kind_of_cell_is_found(class_: TinyClass) -> None:
+    """It is graded as the code cell that it was handed out as."""
+    hand_in(class_, "ada", OF_ONES_OWN)
+    hand_in(class_, "eve", COPIED)
+    path = class_.path / "submitted" / "eve" / "lab_1_2" / "lab_1_2.ipynb"
+    notebook = nbformat.read(path, as_version=4)
+    for cell in notebook.cells:
+        if cell.metadata.get("nbgrader", {}).get("grade_id") == "Talker":
+            cell.cell_type = "raw"
+            del cell["outputs"], cell["execution_count"]
+    nbformat.write(notebook, path)
+    assert students(found(class_)) == [("ada", "eve")]
 
 
 def test_a_copy_of_a_part_is_found(class_: TinyClass) -> None:
