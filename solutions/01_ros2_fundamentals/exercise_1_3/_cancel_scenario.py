@@ -244,6 +244,9 @@ def send_late_feedback(bench: Bench, server: ActionCounterpart, sequence: list[i
         # While its answer is held back, and later on: a client may ask again by the clock, or once it was refused.
         bench.wait_until(lambda seen: seen.main.first("cancel_answered") is not None, GOAL_LIMIT)
         bench.pass_time(LAB_TIME, "action_client", action)
+        if bench.pace is Pace.FAST and len(bench.seen().of("cancel")) > 1:
+            # A clock may have asked again, and does so while late feedback comes, where that has its real pace.
+            bench.doubt()
     else:
         bench.run_time(FEEDBACK_GAP[bench.pace])
     for left in reversed(range(enough - len(sequence))):

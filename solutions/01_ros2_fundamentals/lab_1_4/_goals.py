@@ -134,15 +134,15 @@ def _hurries(part: Part, share: float, numbers: Sequence[int]) -> bool:
 
 def tells_at_the_end(part: Part) -> bool:
     """True if the server works in silence, and sends all feedback at once when it is done."""
-    return all(_silence(goal(part, number)) >= LONG_SILENCE for number in (ALONE, BESIDE))
+    return all(is_told_at_the_end(goal(part, number)) for number in (ALONE, BESIDE))
 
 
-def _silence(seen: FibonacciGoal) -> float:
-    """Seconds from the answer to a goal to its feedback, where that came all at once; else 0."""
+def is_told_at_the_end(seen: FibonacciGoal) -> bool:
+    """True if all feedback of a goal was sent at once, after seconds of work."""
     if not seen.pauses or seen.answered_at is None:
-        return 0.0
+        return False
     silent = seen.sent[0] - seen.answered_at
-    return silent if sum(seen.pauses) < BURST * silent else 0.0
+    return silent >= LONG_SILENCE and sum(seen.pauses) < BURST * silent
 
 
 def paced_goals(evidence: Evidence) -> list[FibonacciGoal]:

@@ -21,6 +21,7 @@ from lab_1_4._goals import (
     FibonacciGoal,
     ended_by_a_younger,
     goal,
+    is_told_at_the_end,
 )
 
 from autograder.kit.model import Bench, Pace
@@ -131,9 +132,10 @@ def _await_feedback(bench: Bench, number: int, messages: int) -> None:
 
     def has_told(evidence: Evidence) -> bool:
         seen, others = goal(evidence.main, number), [goal(evidence.main, other) for other in PACED]
-        # A server that has left out feedback may send none now, and the goal would be over before that is known.
-        left_out = any(one.over and not _tells_all(one) for one in others)
-        return len(seen.feedback) >= messages or seen.over or (bool(seen.accepted) and left_out)
+        # A server that has left out feedback, or sent it at the end, may send none now, and the goal would be over
+        # before that is known.
+        silent = any(one.over and (not _tells_all(one) or is_told_at_the_end(one)) for one in others)
+        return len(seen.feedback) >= messages or seen.over or (bool(seen.accepted) and silent)
 
     bench.wait_until(has_told, GOAL_LIMIT, quiet=QUIET[bench.pace])
 
