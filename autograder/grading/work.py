@@ -207,8 +207,8 @@ def would_change(
         if then.is_late or entry.penalty:
             from autograder.grading.table.late_policy import penalties  # here: nbgrader takes a second
 
-            costs = penalties(directory.config, work.submission.student, then).values()
-            then = replace(then, penalty=sum(cost or 0.0 for cost in costs))
+            costs = penalties(directory.config, work.submission.student, then)
+            then = replace(then, penalties={name: cost or 0.0 for name, cost in costs.items()})
             if then.taken_off != entry.taken_off:
                 before, after = (-one.taken_off if one.taken_off else None for one in (entry, then))
                 found.append(Difference(*work.key, LATE, before, after, note=then.why_late))

@@ -42,17 +42,19 @@ _CELLS = f"""
 # A question that a person grades is two cells of one name to nbgrader: one has the points, the other the comment.
 _COMMENTS = f"""
     SELECT s.student_id AS student, a.name AS assignment, n.name AS notebook, b.name AS cell,
-        c.manual_comment AS said
+        COALESCE(c.manual_comment, c.auto_comment) AS said
     FROM {_FROM} JOIN submitted_notebook sn ON sn.assignment_id = s.id JOIN notebook n ON n.id = sn.notebook_id
         JOIN comment c ON c.notebook_id = sn.id JOIN base_cell b ON b.id = c.cell_id
-    WHERE c.manual_comment IS NOT NULL
+    WHERE COALESCE(c.manual_comment, c.auto_comment) IS NOT NULL
 """
 _SUBMISSIONS = f"""
     SELECT s.student_id AS student, a.name AS assignment, s.timestamp AS timestamp, a.duedate AS duedate,
-        s.extension AS extension, st.first_name, st.last_name,
-        (SELECT COALESCE(SUM(sn.late_submission_penalty), 0) FROM submitted_notebook sn
-            WHERE sn.assignment_id = s.id) AS penalty
+        s.extension AS extension, st.first_name, st.last_name
     FROM {_FROM} JOIN student st ON st.id = s.student_id
+"""
+_PENALTIES = f"""
+    SELECT s.student_id AS student, a.name AS assignment, n.name AS notebook, sn.late_submission_penalty AS penalty
+    FROM {SUBMITTED} WHERE sn.late_submission_penalty != 0
 """
 
 
@@ -66,7 +68,7 @@ class CellEntry:
         by_hand: Points that a person gave instead; None where nobody did.
         extra: Points that a person gave on top.
         waits: True if nbgrader says that a person has to grade the cell.
-        comment: A person's comment.
+        comment: A person's comment, or else the automatic one.
     """
 
     max_score: float
@@ -89,14 +91,14 @@ class SubmissionEntry:
     Attributes:
         handed_in: The time of handing in, in UTC; None where it is not known.
         due: Until when it was due for this student, in UTC; None without a due date.
-        penalty: Points that are taken off for being late.
+        penalties: Points that are taken off for being late, by notebook.
         cells: By notebook and grade_id.
         name: The student's name, empty where the gradebook has none.
     """
 
     handed_in: datetime | None = None
     due: datetime | None = None
-    penalty: float = 0.0
+    penalties: Mapping[str, float] = field(default_factory=dict)
     cells: Mapping[str, Mapping[str, CellEntry]] = field(default_factory=dict)
     name: str = ""
 
@@ -104,6 +106,11 @@ class SubmissionEntry:
     def is_late(self) -> bool:
         """True if it was handed in after its due date."""
         return self.handed_in is not None and self.due is not None and self.handed_in > self.due
+
+    @property
+    def penalty(self) -> float:
+        """Points that are taken off for being late."""
+        return sum(self.penalties.values())
 
     @property
     def raw(self) -> float:
@@ -136,34 +143,6 @@ class SubmissionEntry:
 
 Entries = Mapping[tuple[str, str], SubmissionEntry]
 """By student and assignment."""
-
-
-@dataclass(frozen=True)
-class CellState:
-    """The gradebook's row of one cell of a student's notebook.
-
-    Attributes:
-        score: Points, those that a person gave included; None for a cell without points.
-        max_score: Points that can be had; None like ``score``.
-        comment: A person's comment, or else the automatic one.
-    """
-
-    score: float | None = None
-    max_score: float | None = None
-    comment: str | None = None
-
-
-@dataclass(frozen=True)
-class NotebookState:
-    """The gradebook's rows of a student's notebook.
-
-    Attributes:
-        cells: By grade_id.
-        late_penalty: Points that were taken off.
-    """
-
-    cells: Mapping[str, CellState]
-    late_penalty: float = 0.0
 
 
 @contextmanager
@@ -212,44 +191,6 @@ def worth(url: str, assignment: str) -> dict[str, dict[str, float]]:
     return found
 
 
-def states(url: str, assignment: str, student: str) -> dict[str, NotebookState]:
-    """The points and comments that a feedback page shows of a submission, by notebook."""
-    names = {"assignment": assignment, "student": student}
-    of_student = "WHERE a.name = :assignment AND s.student_id = :student"
-    cells: dict[str, dict[str, CellState]] = {}
-    penalties: dict[str, float] = {}
-    with opened(url) as book:
-        for notebook, penalty in book.execute(
-            sql(f"SELECT n.name, sn.late_submission_penalty FROM {SUBMITTED} {of_student}"), names
-        ):
-            penalties[notebook] = penalty or 0.0
-        for notebook, cell, by_hand, automatic in book.execute(
-            sql(
-                f"SELECT n.name, b.name, c.manual_comment, c.auto_comment FROM {SUBMITTED}"
-                f" JOIN comment c ON c.notebook_id = sn.id JOIN base_cell b ON b.id = c.cell_id {of_student}"
-            ),
-            names,
-        ):
-            comment = by_hand if by_hand is not None else automatic
-            cells.setdefault(notebook, {})[cell] = CellState(comment=comment)
-        for notebook, cell, by_hand, automatic, extra, of_grade, of_task in book.execute(
-            sql(
-                "SELECT n.name, b.name, g.manual_score, g.auto_score, g.extra_credit, gc.max_score, tc.max_score"
-                f" FROM {SUBMITTED} JOIN grade g ON g.notebook_id = sn.id JOIN base_cell b ON b.id = g.cell_id"
-                f" LEFT JOIN grade_cells gc ON gc.id = b.id LEFT JOIN task_cells tc ON tc.id = b.id {of_student}"
-            ),
-            names,
-        ):
-            base = by_hand if by_hand is not None else automatic
-            known = cells.setdefault(notebook, {}).get(cell, CellState())
-            cells[notebook][cell] = CellState(
-                score=0.0 if base is None else base + (extra or 0.0),
-                max_score=of_grade if of_grade is not None else of_task,
-                comment=known.comment,
-            )
-    return {name: NotebookState(cells.get(name, {}), penalty) for name, penalty in penalties.items()}
-
-
 def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entries:
     """The submissions that the gradebook knows.
 
@@ -261,6 +202,7 @@ def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entrie
     names = {"student": student, "assignment": assignment}
     narrow = "(:student = '' OR s.student_id = :student) AND (:assignment = '' OR a.name = :assignment)"
     cells: dict[tuple[str, str], dict[str, dict[str, CellEntry]]] = {}
+    penalties: dict[tuple[str, str], dict[str, float]] = {}
     found: dict[tuple[str, str], SubmissionEntry] = {}
     with opened(url) as book:
         if not has_tables(book):
@@ -274,6 +216,8 @@ def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entrie
             of_notebook = cells.setdefault((row.student, row.assignment), {}).setdefault(row.notebook, {})
             known = of_notebook.get(row.cell, CellEntry(0.0))
             of_notebook[row.cell] = replace(known, comment=row.said)
+        for row in book.execute(sql(f"{_PENALTIES} AND {narrow}"), names):
+            penalties.setdefault((row.student, row.assignment), {})[row.notebook] = row.penalty
         for row in book.execute(
             sqlalchemy.text(f"{_SUBMISSIONS} WHERE {narrow}").columns(
                 timestamp=sqlalchemy.DateTime(),
@@ -286,9 +230,8 @@ def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entrie
             if due is not None and row.extension is not None:
                 due = due + row.extension
             key = (row.student, row.assignment)
-            penalty = float(row.penalty or 0.0)
             name = " ".join(part for part in (row.first_name, row.last_name) if part)
-            found[key] = SubmissionEntry(row.timestamp, due, penalty, cells.get(key, {}), name)
+            found[key] = SubmissionEntry(row.timestamp, due, penalties.get(key, {}), cells.get(key, {}), name)
     return found
 
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from nbgrader.utils import is_grade, is_solution, is_task
 
 from autograder.grading.classes.class_directory import SUFFIX
-from autograder.grading.entering import gradebook_reading
 from autograder.grading.entering.gradebook_reading import SubmissionEntry, read_entries
 from autograder.grading.rebuilding import nodes
 from autograder.grading.returning.page_exporter import PageExporter
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
-    from autograder.grading.entering.gradebook_reading import NotebookState
+    from autograder.grading.entering.gradebook_reading import CellEntry
 
 
 class FeedbackPages:
@@ -43,34 +42,31 @@ class FeedbackPages:
         Raises:
             OSError: A page could not be written.
         """
-        states = gradebook_reading.states(
-            self._directory.gradebook_url, submission.assignment, submission.student
-        )
+        student, assignment = submission.student, submission.assignment
+        entries = read_entries(self._directory.gradebook_url, student=student, assignment=assignment)
+        entry = entries.get((student, assignment), SubmissionEntry())
         graded = self._directory.path / "autograded" / submission.student / submission.assignment
         folder = self._directory.path / "feedback" / submission.student / submission.assignment
         for name in notebooks:
-            page = self._page(graded / f"{name}{SUFFIX}", submission, states[name])
+            page = self._page(graded / f"{name}{SUFFIX}", submission, entry)
             write_whole(folder / f"{name}.html", page.encode())
 
-    def _page(self, path: Path, submission: Submission, state: NotebookState) -> str:
-        notebook = nodes.read_own(path.read_bytes())
+    def _page(self, path: Path, submission: Submission, entry: SubmissionEntry) -> str:
+        notebook, cells = nodes.read_own(path.read_bytes()), entry.cells.get(path.stem, {})
         for cell in notebook.cells:
-            _fill_in(cell, state)
-        score = sum(cell.score or 0.0 for cell in state.cells.values())
-        key = submission.student, submission.assignment
-        entries = read_entries(self._directory.gradebook_url, student=key[0], assignment=key[1])
-        entry = entries.get(key, SubmissionEntry())
+            _fill_in(cell, cells)
+        penalty = entry.penalties.get(path.stem, 0.0)
         names = {
             "student": submission.student,
             "name": entry.name,
             "assignment": submission.assignment,
             "notebook": path.stem,
-            "score": score - state.late_penalty,
-            "max_score": sum(cell.max_score or 0.0 for cell in state.cells.values()),
-            "late_penalty": state.late_penalty,
+            "score": sum(cell.score for cell in cells.values()) - penalty,
+            "max_score": sum(cell.max_score for cell in cells.values()),
+            "late_penalty": penalty,
             "why_late": entry.why_late,
         }
-        mark_waiting(notebook, entry.cells.get(path.stem, {}))
+        mark_waiting(notebook, cells)
         return self._exporter.page(notebook, names)
 
     @functools.cached_property
@@ -80,10 +76,10 @@ class FeedbackPages:
         return exporter
 
 
-def _fill_in(cell: Any, state: NotebookState) -> None:
+def _fill_in(cell: Any, cells: Mapping[str, CellEntry]) -> None:
     """Put into a cell what nbgrader's GetGrades puts there for the template."""
     marks: Mapping[str, Any] = cell.metadata.get("nbgrader", {})
-    known = state.cells.get(marks.get("grade_id", ""))
+    known = cells.get(marks.get("grade_id", ""))
     if known is None:
         return
     if is_solution(cell) or is_task(cell):

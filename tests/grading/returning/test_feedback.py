@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -11,8 +12,7 @@ from tiny_class import TALKER, TinyClass
 
 from autograder.boxes.execution import CellType
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
-from autograder.grading.entering import gradebook_reading
-from autograder.grading.entering.gradebook_reading import CellState, NotebookState
+from autograder.grading.entering.gradebook_reading import CellEntry, SubmissionEntry
 from autograder.grading.rebuilding import nodes
 from autograder.grading.returning import feedback
 from autograder.grading.returning.page_exporter import POLICY, PageExporter, Remembered
@@ -108,13 +108,17 @@ CHANGES = [keep, change_source, change_output, change_card, change_count, change
 CHANGES += [change_id, drop]
 
 
+def entered(cell: CellEntry) -> SubmissionEntry:
+    return SubmissionEntry(cells={"lab_1_2": {TALKER: cell}})
+
+
 class Pages:
     """Pages of one class, of notebooks that are put into ``autograded/`` by hand."""
 
     def __init__(self, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self.directory = ClassDirectory(path)
-        self.state = NotebookState({TALKER: CellState(1.0, 2.0)})
-        monkeypatch.setattr(gradebook_reading, "states", lambda *_: {"lab_1_2": self.state})
+        self.entry = entered(CellEntry(2.0, judged=1.0))
+        monkeypatch.setattr(feedback, "read_entries", lambda *_, **__: {("ada", "lab_1_2"): self.entry})
 
     def make(self, maker: feedback.FeedbackPages, change: Callable[[Any], None], **metadata: Any) -> str:
         cells = one_of_each()
@@ -152,22 +156,22 @@ def test_no_page_has_a_part_of_another_one(pages: Pages) -> None:
 
 
 def test_points_comments_and_language_show_in_remembered_parts(pages: Pages) -> None:
-    states = [
-        NotebookState({TALKER: CellState(1.0, 2.0)}),
-        NotebookState({TALKER: CellState(1.0, 3.0)}),
-        NotebookState({TALKER: CellState(0.5, 2.0, comment="well done")}, late_penalty=0.25),
-        NotebookState({TALKER: CellState(0.5, 2.0, comment=f"well {_SCRIPT} done")}),
+    entries = [
+        entered(CellEntry(2.0, judged=1.0)),
+        entered(CellEntry(3.0, judged=1.0)),
+        replace(entered(CellEntry(2.0, judged=0.5, comment="well done")), penalties={"lab_1_2": 0.25}),
+        entered(CellEntry(2.0, judged=0.5, comment=f"well {_SCRIPT} done")),
     ]
     kinds: list[dict[str, Any]] = [{}, {"pygments_lexer": "ipython3"}, {"name": "c"}]
     maker = feedback.FeedbackPages(pages.directory)
     seen = []
     for _ in range(2):
-        for state in states:
+        for entry in entries:
             for kind in kinds:
-                pages.state = state
+                pages.entry = entry
                 seen.append(pages.make(maker, keep, **kind))
                 assert seen[-1] == pages.fresh(keep, **kind)
-    assert len(set(seen)) > len(states)
+    assert len(set(seen)) > len(entries)
     assert "well done" in seen[6]
 
 
