@@ -250,11 +250,13 @@ def _main_guard(evidence: Evidence) -> Advice | None:
     )
 
 
-_USAGE = re2.compile(r"(?i)\b(?:usage|uso|utilisation|aufruf|benutzung|verwendung|gebruik)\b")
+_USAGE = re2.compile(r"(?i)\b(?:usage|uso|utilisation|aufruf|benutzung|verwendung|gebruik)\s*:")
 
 
 def _usage_message(evidence: Evidence) -> str:
-    """The line in which it says how it is to be called, where it asks nobody for anything."""
+    """The line in which a program says how it is to be called, where it asks nobody for anything."""
+    if evidence.in_a_notebook:
+        return ""
     told = [line for part in evidence for line in part.said() if _USAGE.search(line)]
     asked = any(part.of("request") or part.of("goal") for part in evidence)
     return told[0].strip() if told and not asked else ""

@@ -274,10 +274,13 @@ def aborted_as_seen(evidence: Evidence) -> str:
         if any(words.ends_as(word, line) or words.flag(word, line) for word in (words.SUCCEEDED, _CANCELED)):
             return f"“{line}”"
     new = [line for line in _new_words(said, evidence.part(LATE)) if not _names_another(line)]
-    if named or new or on_purpose(part.traceback):
+    raised = last_line_of(part.traceback)
+    if named or new or (on_purpose(part.traceback) and not _names_another(raised)):
         return ""
     if part.first("result_request") is None:
         return "never asked for the result"
+    if raised and not said:
+        return f"“{raised}”"
     return f"“{said[-1]}”" if said else "nothing was said after the result"
 
 
@@ -292,12 +295,18 @@ def _names_unknown(line: str) -> bool:
 
 def _names_aborted(line: str) -> bool:
     plain = words.without_lists(line)
-    return re2.search(r"(?i)abort|(?:^|[^\d.])6(?:[^\d.]|$)", plain) is not None
+    return re2.search(r"(?i)abort|(?:^|[^\d.])6(?:[^\d.]|\.\D|\.?$)", plain) is not None
+
+
+_ANOTHER = re2.compile(r"(?i)cancel|\brejected\b|\bsucce|\berfolg(?:reich)?\b")
+_NO_OTHER = re2.compile(
+    r"(?i)(?:\b(?:not?|n?or|neither|never|without|nicht|kein\w*)|n't)(?:\s+\w+){0,2}\s+(?:cancel|rejected|succe|erfolg)\w*"
+)
+"""Another end than the goal's, and one that is denied: "was not successful", "neither canceled nor rejected"."""
 
 
 def _names_another(line: str) -> bool:
-    named = re2.search(r"(?i)cancel|\brejected\b|succe|erfolg", line)
-    return named is not None and "not" not in line.lower()
+    return _ANOTHER.search(_NO_OTHER.sub("", line)) is not None
 
 
 def given_up(evidence: Evidence) -> str:

@@ -16,7 +16,7 @@ def run(*lines: str) -> Part:
 
 def right(canceled: str, succeeded: str) -> bool:
     one, other = run(canceled), run(*filter(None, [succeeded]))
-    told = says_canceled(one.said(), other.said(), other.said())
+    told = says_canceled(one.said(), other.said(), other)
     return told and false_claim(one, other) is None
 
 
@@ -60,6 +60,14 @@ def right(canceled: str, succeeded: str) -> bool:
         ("canceled", "cancel requested after 3 messages, finished normally"),
         ("Canceled, status 5", "Not canceled, status 4"),
         ("canceled after 3 messages: 5", "canceled after 3 messages: 4"),
+        ("L'objectif a été annulé (CANCELED)", "L'objectif n'a pas été annulé"),
+        ("Het doel is geannuleerd (CANCELED)", "Het doel is niet geannuleerd"),
+        ("terminó como CANCELED", "no terminó como CANCELED"),
+        ("是 CANCELED", "不是 CANCELED"),
+        ("Final status: CANCELED", "Final status: other than CANCELED"),
+        ("Final status == CANCELED", "Final status != CANCELED"),
+        ("the goal ended canceled", "the goal ended uncanceled"),
+        ("it was canceled", "completed rather than canceled"),
     ],
 )
 def test_who_says_how_each_goal_ended_is_right(canceled: str, succeeded: str) -> None:
@@ -92,6 +100,21 @@ def test_who_says_how_each_goal_ended_is_right(canceled: str, succeeded: str) ->
 )
 def test_a_word_that_is_true_of_the_other_goal_only_is_wrong(canceled: str, succeeded: str) -> None:
     assert not right(canceled, succeeded)
+
+
+@pytest.mark.parametrize(
+    ("canceled", "aborted", "tells"),
+    [
+        ("Cancel accepted by the server", "Cancel accepted by the server", False),
+        ("Cancel successful", "Cancel successful", False),
+        ("Objetivo cancelado", "Objetivo cancelado", False),
+        ("Cancel accepted, status 5", "Cancel accepted, status 6", True),
+        ("das Ziel wurde abgebrochen", "das Ziel wurde abgebrochen", True),
+        ("the cancellation worked", "the cancellation did not work", True),
+    ],
+)
+def test_the_answer_to_the_request_is_no_status(canceled: str, aborted: str, tells: bool) -> None:
+    assert says_canceled([canceled], ["status 4"], run("status 4"), run(aborted)) is tells
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from autograder.kit.crashes import on_purpose
 from autograder.kit.goal_reports import REFUSED, asked_for, left_at_once
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ def after_result(part: Part) -> list[str]:
 def says_nothing_of_its_success(part: Part) -> bool:
     """True if the goal of a run came to its end and nothing was said of that, nor shown by an exception."""
     ended = part.first("result") is not None
-    return ended and not part.traceback and not any(map(str.strip, after_result(part)))
+    return ended and not on_purpose(part.traceback) and not any(map(str.strip, after_result(part)))
 
 
 def aborted_run(evidence: Evidence) -> Part | None:

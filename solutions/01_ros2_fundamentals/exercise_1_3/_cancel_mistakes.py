@@ -176,7 +176,7 @@ def status_not_reported(evidence: Evidence) -> Advice | None:
     part, refused = evidence.part(HONOURED), evidence.part(CANCEL_REFUSED)
     if part.first("cancel") is None:
         return None
-    if says_canceled(after_result(part), refused.said()):
+    if says_canceled(after_result(part), refused.said(), refused, aborted_run(evidence)):
         if not says_nothing_of_its_success(refused):
             return None
         return Advice(
@@ -191,7 +191,8 @@ def status_not_reported(evidence: Evidence) -> Advice | None:
             "Call goal_handle.get_result_async() once the goal is accepted, and read result.status when it is done.",
         )
     return Advice(
-        "The goal ended with the status CANCELED (5), but your client did not say so after it got the result.",
+        "The goal ended with the status CANCELED (5), but your client said neither its name nor its number after it "
+        "got the result.",
         "When the result is there, log its status: future.result().status, by name or by number.",
     )
 

@@ -32,20 +32,33 @@ _NUMBER = re2.compile(r"\d+(?:\.\d+)*")
 WAS_CANCELED, WAS_ABORTED = "was canceled", "was aborted, though the server had agreed to cancel it"
 HAS_SUCCEEDED = "succeeded in spite of the cancel request"
 """The ends of the goals."""
+_OF_EITHER = "abgebrochen|annul"
+"""Words that stand for both a canceled and an aborted goal in some languages."""
 _ENGLISH = "cancel+ed"
 """Words that nobody may say of a goal that was aborted. In other languages one word may stand for both."""
 
 
-def says_canceled(lines: Sequence[str], elsewhere: Sequence[str] = (), otherwise: Sequence[str] = ()) -> bool:
+def says_canceled(
+    lines: Sequence[str],
+    elsewhere: Sequence[str] = (),
+    refused: Part | None = None,
+    aborted: Part | None = None,
+) -> bool:
     """True if a line names the status CANCELED, by its name or by its number 5 (action_msgs/msg/GoalStatus).
 
     Args:
         lines: What was said.
         elsewhere: What was said in the run with a goal that was not canceled: a 5 in the same place of a line there is
             no status.
-        otherwise: What was said there of how the goal ended: a name that is in the same line there tells nothing.
+        refused: That run, where what it says of its end counts: a name that is in the same line there tells nothing.
+        aborted: The same of the run in which the goal was aborted.
     """
-    ends = {_shape(line) for line in otherwise}
+    ends = {_shape(line) for line in (after_result(refused) if refused else ())}
+    ends |= {
+        _shape(line)
+        for line in (after_result(aborted) if aborted else ())
+        if not re2.search(f"(?i){_OF_EITHER}", line)
+    }
     return any(
         (names_canceled(line) and _shape(line) not in ends) or _has_the_number(line, elsewhere)
         for line in lines
@@ -103,29 +116,36 @@ def false_claim(honoured: Part, refused: Part, aborted: Part | None = None) -> t
         false = next(filter(is_false, said), None)
         if false is not None:
             return false, ended
-    if claimed := _claimed(refused, f"{SUCCESS}|4"):
+    if claimed := _claimed(refused, honoured, f"{SUCCESS}|4"):
         return claimed, HAS_SUCCEEDED
-    if aborted and (claimed := _claimed(aborted, "abort|6", _ENGLISH)):
+    if aborted and (claimed := _claimed(aborted, honoured, "abort|6", _ENGLISH)):
         return claimed, WAS_ABORTED
     return None
 
 
-def _claimed(part: Part, truth: str, word: str = CANCELED) -> str | None:
-    """A line that amounts to "the goal was canceled" where it was not, without a word of doubt.
+def _claimed(part: Part, honoured: Part, truth: str, word: str = CANCELED) -> str | None:
+    """A line that amounts to "the goal was canceled" where it was not: it is said of the canceled goal, too.
 
     Args:
         part: The run.
-        truth: The words and the number for how its goal ended.
+        honoured: The run in which the goal was canceled. Whose words differ there has told the two ends apart.
+        truth: The words and the number for how the goal of ``part`` ended.
         word: The words that claim it.
     """
-    # An exception that ends the program says something, too.
-    raised = [line for line in part.traceback.splitlines() if line.strip()][-1:]
-    said = [*after_result(part), *raised] or (part.said() if part.first("result_request") else [])
+    said, of_canceled = _told(part), {_shape(line) for line in _told(honoured)}
     claims = [
         line
         for line in said
-        if re2.search(f"(?i){word}", without_lists(line)) and flag(CANCELED, line) is not False
+        if re2.search(f"(?i){word}", without_lists(line))
+        and flag(CANCELED, line) is not False
+        and _shape(line) in of_canceled
     ]
     if not claims or any(re2.search(f"(?i){DOUBTFUL}|{truth}", without_lists(line)) for line in said):
         return None
     return claims[-1]
+
+
+def _told(part: Part) -> list[str]:
+    """What was said of how a goal ended; an exception that ends the program says something, too."""
+    raised = [line for line in part.traceback.splitlines() if line.strip()][-1:]
+    return [*after_result(part), *raised] or (part.said() if part.first("result_request") else [])

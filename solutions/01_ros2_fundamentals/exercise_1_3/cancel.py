@@ -118,7 +118,7 @@ def reports_the_status(evidence: Evidence) -> Finding:
     if asked > MANY_REQUESTS:
         return Finding(False, expected, f"asked for the result {asked} times")
     said = after_result(part)
-    if not says_canceled(said, refused.said(), after_result(refused)):
+    if not says_canceled(said, refused.said(), refused, aborted_run(evidence)):
         if asked == 0:
             return Finding(False, expected, "never asked for the result")
         return Finding(False, expected, f"“{said[-1]}”" if said else "nothing was said after the result")
