@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+ALONE = "--alone"
+"""The first argument of a start of one program in place of a launch; what follows is as ``ros2 run`` takes it."""
+
 
 @dataclass(frozen=True)
 class RunsProgram:
@@ -46,7 +49,10 @@ class ServesInterface:
 
 @dataclass(frozen=True)
 class Launches:
-    """The launch file is launched, with what it needs of the workspace around it."""
+    """The launch file is launched, with what it needs of the workspace around it.
+
+    A start whose arguments begin with :data:`ALONE` is one of a program, where the launch would find it.
+    """
 
 
 Runner = RunsProgram | RunsPrograms | ServesInterface | Launches

@@ -22,7 +22,7 @@ from autograder.kit.runners import Launches, RunsPrograms
 from autograder.process_trees import die_with_parent
 from autograder.workspaces.own_builds import OwnBuilds
 from autograder.workspaces.packages import workspace_of
-from autograder.workspaces.plans import plan_for, ros2
+from autograder.workspaces.plans import alone, plan_for, ros2
 from autograder.workspaces.preparing import Preparation
 from autograder.workspaces.processes import tell, watched
 
@@ -35,7 +35,8 @@ if TYPE_CHECKING:
 def main(arguments: Sequence[str]) -> int:
     """``python -m autograder.workspaces EXERCISE PATH``, or ``EXERCISE -- COMMAND`` for a launch command.
 
-    Where an exercise is about several programs, the path is followed by the name of one.
+    Where an exercise is about several programs, the path is followed by the name of one; a launch, by ``--alone`` and
+    a program that is run in its place.
     """
     exercise = exercises.get(arguments[0])
     die_with_parent(number=signal.SIGTERM)
@@ -54,21 +55,21 @@ def main(arguments: Sequence[str]) -> int:
 def _launch(rest: Sequence[str]) -> int:
     here = Preparation(OwnBuilds(), tell)
     if rest[0] == "--":
-        prepared = here.launch(rest[1:], None, None)
+        prepared = here.launch(alone(rest) or rest[1:], None, None)
     elif not (file := Path(rest[0])).is_file():
         print(f"there is no launch file {file}", file=sys.stderr)
         return 1
     else:
         workspace = workspace_of(file, (file.resolve().parent, Path.cwd()))
-        prepared = here.launch([ros2(), "launch", rest[0]], file, workspace)
+        prepared = here.launch(alone(rest) or [ros2(), "launch", rest[0]], file, workspace)
     return _run(prepared) if prepared else 1
 
 
 def _run(launch: Prepared) -> int:
     """Run a launch to its end, and report how it starts its processes; its exit code.
 
-    A topic that is renamed in the code and one that is remapped by the launch file look the same on the wire. What
-    tells them apart is the command line of the process: that is how every launch hands a remapping to a node.
+    A topic that is renamed in the code and one that is remapped by the launch file look the same on the wire. The
+    command line of the process is how every launch hands a remapping to a node.
     """
     # Ctrl-C reaches the whole process group: the launch ends its nodes and then itself, and this waits for it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder import course
-from autograder.kit.runners import RunsProgram, RunsPrograms, ServesInterface
+from autograder.kit.runners import ALONE, RunsProgram, RunsPrograms, ServesInterface
 from autograder.kit.workspace_report import AMENT_PACKAGE
 from autograder.workspaces.install_folder import files_of_interfaces, has_service, is_indexed
 from autograder.workspaces.packages import WORKSPACE
@@ -118,6 +118,12 @@ def launch_targets(file: Path) -> Callable[[Build], Iterable[str]]:
         return [package.name for package in found.packages if words is None or package.name in words]
 
     return targets
+
+
+def alone(arguments: Sequence[str]) -> Sequence[str]:
+    """The command for the program that arguments name in place of a launch; empty where they name none."""
+    words = list(arguments)
+    return [ros2(), "run", *words[words.index(ALONE) + 1 :]] if ALONE in words else []
 
 
 def lacks_programs(file: Path, made: Build, course_build: Build) -> bool:

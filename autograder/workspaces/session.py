@@ -13,7 +13,7 @@ from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, NotUnderstood
 from autograder.workspaces.jobs import ProgramJob, output_lines
 from autograder.workspaces.packages import workspace_of
-from autograder.workspaces.plans import course_interfaces, plan_for, ros2
+from autograder.workspaces.plans import alone, course_interfaces, plan_for, ros2
 from autograder.workspaces.preparing import Preparation
 from autograder.workspaces.processes import watched
 from autograder.workspaces.reporting import no_sources_line
@@ -185,7 +185,8 @@ class _Run:
         if workspace is not None and not workspace.is_relative_to(tree):
             workspace = None
         seen = self._jobs.tree(tree) / file.relative_to(tree)
-        self._follow(self._prepare.launch([ros2(), "launch", str(seen)], file, workspace), watch=True)
+        command = alone(self._arguments) or [ros2(), "launch", str(seen)]
+        self._follow(self._prepare.launch(command, file, workspace), watch=True)
 
     def _hidden(self) -> Sequence[Path]:
         """The course's own interfaces that a task is to make, hidden so that they cannot be copied."""

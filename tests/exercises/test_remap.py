@@ -7,6 +7,7 @@ import pytest
 from autograder import exercises
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.launch_report import Process, process_line
+from autograder.kit.recipes.launch_file import Launched
 
 STRING = "std_msgs/msg/String"
 NEW, OLD = "/robot/status_updates", "/chatter"
@@ -82,3 +83,91 @@ def test_who_was_not_moved_is_certain_once_all_programs_are_there(
     ]
     assert told
     assert told[0].certain is certain
+
+
+PATH = "/home/student/ros2_ws/install/my_robot_pkg/lib/my_robot_pkg"
+
+
+@pytest.mark.parametrize(
+    ("argv", "alone"),
+    [
+        (("python3", f"{PATH}/talker", *RULES), ("my_robot_pkg", "talker", "--ros-args")),
+        ((f"{PATH}/talker", "7", *RULES), ("my_robot_pkg", "talker", "7", "--ros-args")),
+        (
+            (
+                "python3",
+                f"{PATH}/talker",
+                "--ros-args",
+                "-r",
+                "__node:=a",
+                "-r",
+                "a:/chatter:=/robot/status_updates",
+            ),
+            ("my_robot_pkg", "talker", "--ros-args", "-r", "__node:=a"),
+        ),
+        (
+            ("python3", f"{PATH}/talker", *RULES, "--remap", "mood:=chatter", "--remap", f"~/chatter:={NEW}"),
+            ("my_robot_pkg", "talker", "--ros-args", "--remap", "mood:=chatter"),
+        ),
+    ],
+)
+def test_a_program_without_its_rules_keeps_its_other_arguments(
+    argv: tuple[str, ...], alone: tuple[str, ...]
+) -> None:
+    assert _launched(argv).without_rules == [alone]
+
+
+@pytest.mark.parametrize(
+    "argv",
+    [
+        ("python3", "talker.py", *RULES),
+        ("python3", "-m", f"{PATH}/talker", *RULES),
+        ("python3", f"{PATH}/--prefix", *RULES),
+        ("python3", f"{PATH}/talker", "--ros-args"),
+    ],
+)
+def test_what_is_no_packages_program_or_has_no_rule_is_not_started_again(argv: tuple[str, ...]) -> None:
+    assert _launched(argv).without_rules == []
+
+
+@pytest.mark.parametrize(
+    ("names", "not_moved"),
+    [
+        ((OLD, OLD), []),
+        ((NEW, OLD), ["talker"]),
+        ((OLD, NEW), ["listener"]),
+        ((NEW, NEW), ["talker", "listener"]),
+    ],
+)
+def test_who_is_there_without_a_rule_was_not_moved(names: tuple[str, str], not_moved: list[str]) -> None:
+    launching = _evidence(11, 12, talkers={11: NEW}, listener=12)
+    alone = [
+        Part(
+            f"{program} without its rule",
+            {"program": program},
+            [Event(1.0, "interface", "", {role: {name: STRING}})],
+        )
+        for program, role, name in zip(
+            ("talker", "listener"), ("publisher", "subscription"), names, strict=True
+        )
+    ]
+    seen = Evidence([*launching, *alone], REFERENCE)
+    assert Launched(seen, "my_robot_pkg", "chatter").not_moved == not_moved
+    exercise = exercises.get("exercise_1_1.remap")
+    held = {criterion.name: criterion.judge(seen).passed for criterion in exercise.criteria}
+    assert held["launch"] is (not not_moved)
+    told = [
+        (mistake.certain, advice.next_step)
+        for mistake in exercise.mistakes
+        if mistake.key == "renamed_in_code" and (advice := mistake.recognise(seen))
+    ]
+    assert [certain for certain, _ in told] == [True] * bool(not_moved)
+    assert all(" and ".join(not_moved) in step for _, step in told)
+
+
+def _launched(argv: tuple[str, ...]) -> Launched:
+    """The one program of a launch, which publishes under the new name."""
+    started = Event(0.0, "output", "report", {"text": process_line(Process(11, 1, argv))})
+    ends = {"publisher": {NEW: STRING}, "subscription": {}, "ends": [["publisher", NEW, 11]]}
+    seen = Evidence([Part("launching", {}, [started, Event(1.0, "interface", "", ends)])], REFERENCE)
+    return Launched(seen, "my_robot_pkg", "chatter")

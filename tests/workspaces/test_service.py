@@ -17,6 +17,7 @@ import msgspec
 import pytest
 
 from autograder.kit.evidence import REPORTS
+from autograder.kit.runners import ALONE
 from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, Lines
 from autograder.workspaces import colcon_stand_in, own_builds, service, session, sources
@@ -390,6 +391,26 @@ def test_ctrl_c_ends_the_program_that_the_judge_has_named(
     judge.lines.say(messages.Interrupt(1))
     assert judge.hear() == {"say": "output", "run": 1, "text": "bye"}
     assert judge.hear() == {"say": "exited", "run": 1, "code": 4}
+
+
+def test_in_place_of_a_launch_the_program_is_run_that_the_judge_has_named(
+    sockets: ServiceSockets, jobs: FakeJobs, tmp_path: Path
+) -> None:
+    file = tmp_path / "remap.launch.py"
+    file.write_text("")
+    path, sent = sources.collect_launch(file, None)
+    judge = FakeJudge(sockets)
+    judge.lines.say(messages.Check("exercise_1_1.remap", 7, path, len(sent)))
+    for source in sent:
+        judge.lines.say(source)
+    judge.lines.hear(messages.Ready)
+    for run, words in enumerate(((), (ALONE, "my_robot_pkg", "talker", "--ros-args")), 1):
+        judge.lines.say(messages.Start(run, words))
+        while judge.hear()["say"] != "exited":
+            pass
+    launched, alone = jobs.commands
+    assert launched[-2:] == ["launch", "/home/student/notebook/remap.launch.py"]
+    assert alone == [launched[0], "run", "my_robot_pkg", "talker", "--ros-args"]
 
 
 def test_a_program_that_was_not_built_is_named_and_the_other_one_runs(

@@ -1,11 +1,14 @@
 """A launch file that starts two programs, one that publishes and one that says what it hears, and moves their topic.
 
 The judge hears the one and talks to the other under the new name. The programs stay as they are: what the launch tells
-of its processes shows whether it was the launch file that moved them.
+of its processes shows which of them were given a rule. Each of these is then started once more without it, as a program
+in whose code the topic has the new name is there all the same.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import re2
@@ -13,12 +16,16 @@ import re2
 from autograder.kit import common_mistakes as common
 from autograder.kit import workspace_mistakes as workspace
 from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.evidence import Evidence
 from autograder.kit.launch_report import Process, processes, remappings
 from autograder.kit.model import Advice, Bench, Mistake, Pace
+from autograder.kit.runners import ALONE
 from autograder.kit.workspace_report import BUILDING
 
 if TYPE_CHECKING:
-    from autograder.kit.evidence import Evidence, Part
+    from collections.abc import Sequence
+
+    from autograder.kit.evidence import Part
 
 NODES = 2
 """Programs that are to be started, each with a rule."""
@@ -33,6 +40,10 @@ PAUSE = {Pace.FAST: 3.0, Pace.REAL_TIME: 10.0}
 LATE = 3.0
 """Seconds of wall time, of six periods, in which the publisher must have spoken."""
 PART = "launching"
+MOST = 4
+"""Programs that are started without their rules, of a launch file that starts more of them."""
+_OF_A_PACKAGE = re2.compile(r"/lib/(\w[\w-]{0,60})/(\w[\w.-]{0,60})$")
+"""The end of the path of a package's program."""
 
 
 class Launched:
@@ -51,6 +62,7 @@ class Launched:
 
     def __init__(self, evidence: Evidence, package: str, old_name: str) -> None:
         self._part, self._package, self._old_name = evidence.main, package, old_name
+        self._alone = [replace(evidence, parts=[part]) for part in list(evidence)[1:]]
         self.topic, kind = evidence.reference.only("publisher")
         self.publishers, self.subscriptions = (
             {name for name, type_name in self._part.endpoints(role).items() if type_name == kind}
@@ -73,6 +85,32 @@ class Launched:
     def elsewhere(self) -> list[str]:
         """The other names under which something is."""
         return sorted((self.publishers | self.subscriptions) - {self.topic})
+
+    @property
+    def old_names(self) -> list[str]:
+        """Those of them that are the name in the code, in whatever namespace."""
+        return [name for name in self.elsewhere if name.rpartition("/")[2] == self._old_name]
+
+    @property
+    def is_there(self) -> bool:
+        """True if something is under the old or the new name."""
+        return bool(self.old_names) or self.topic in self.publishers | self.subscriptions
+
+    @property
+    def not_moved(self) -> list[str]:
+        """The programs that are under the new name without their rules, too."""
+        seen = [(one.main, Launched(one, self._package, self._old_name)) for one in self._alone]
+        return [
+            str(part.inputs["program"]) for part, it in seen if it.topic in it.publishers | it.subscriptions
+        ]
+
+    @property
+    def without_rules(self) -> list[tuple[str, ...]]:
+        """The programs under the new name that were given a rule, without it: package, program and arguments."""
+        ends = self._sides[0] | self._sides[1]
+        given = [process for process in processes(self._part) if self._has_a_rule(process.argv)]
+        there = [self._without_rule(process.argv) for process in given if {0, _lower(process.pid)} & ends]
+        return list({words[:2]: words for words in there if words}.values())[:MOST]
 
     @property
     def talkers(self) -> int:
@@ -150,7 +188,16 @@ class Launched:
             if any(self._package in word for word in process.argv) and not _is_a_tool(process.argv)
         }
 
-    def _has_a_rule(self, argv: tuple[str, ...]) -> bool:
+    def _without_rule(self, argv: Sequence[str]) -> tuple[str, ...]:
+        """A command line as ``ros2 run`` takes it, without its rules for the name; empty for no package's program."""
+        for place, word in enumerate(argv[:2], 1):
+            if found := _OF_A_PACKAGE.search(word):
+                rules = {at for at, pair in enumerate(pairwise(argv)) if self._has_a_rule(pair)}
+                rest = [one for at, one in enumerate(argv) if at >= place and not {at, at - 1} & rules]
+                return (found[1], found[2], *rest)
+        return ()
+
+    def _has_a_rule(self, argv: Sequence[str]) -> bool:
         return any(self._begins(old) and _leads_to(self.topic, new) for old, new in remappings(argv))
 
     def _begins(self, name: str) -> bool:
@@ -215,6 +262,16 @@ class LaunchFile:
         if talks and listens:
             # The launch's processes are reported beside the wire, and a third one may still be on its way to the graph.
             bench.watch_graph(lambda evidence: self.seen(evidence).is_settled, PAUSE[bench.pace])
+        seen = self.seen(Evidence([bench.seen()], bench.reference))
+        bench.stop()
+        for words in seen.without_rules if seen.moved_by_rules else ():
+            self._run_alone(bench, words)
+
+    def _run_alone(self, bench: Bench, words: Sequence[str]) -> None:
+        """Start a program without its rules, until it is on the topic, under whichever name."""
+        bench.part(f"{words[1]} without its rule", program=words[1])
+        bench.start(ALONE, *words)
+        bench.watch_graph(lambda evidence: self.seen(evidence).is_there, BEGINNING[bench.pace])
         bench.stop()
 
     def _launch_error(self, evidence: Evidence) -> Advice | None:

@@ -46,7 +46,7 @@ def listener(seen: Launched, _: Launched) -> Finding:
 def nothing_left(seen: Launched, _: Launched) -> Finding:
     """No node of the subject's uses the old name, in whatever namespace; other topics are free."""
     there = names(seen.publishers | seen.subscriptions) or "nothing"
-    old = [name for name in seen.elsewhere if name.rpartition("/")[2] == OLD_NAME]
+    old = seen.old_names
     right = not old and bool(seen.publishers) and bool(seen.subscriptions)
     return Finding(
         right, f"both nodes, and none on {OLD_NAME}", f"{', '.join(old)} as well" if old else there
@@ -55,12 +55,15 @@ def nothing_left(seen: Launched, _: Launched) -> Finding:
 
 @remap.criterion("launch", 2, "The launch file does it")
 def by_the_launch(seen: Launched, _: Launched) -> Finding:
-    """Both programs were given a rule for the name, and there is one talker; their code was left as it is."""
+    """Both programs were given a rule for the name that moves them, and there is one talker."""
     if seen.moved_by_rules and seen.talkers > 1:
         return Finding(False, "one talker", f"{seen.talkers} talkers on {seen.topic}")
     count = seen.given_a_rule
     some = f"{count} of the programs on {seen.topic} were given a rule"
     expected = f"each program is given a remapping of {OLD_NAME} by the launch file"
+    if seen.not_moved:
+        moved = f"each program is on {seen.topic} because of its rule"
+        return Finding(False, moved, f"there without a rule, too: {', '.join(seen.not_moved)}")
     return Finding(
         seen.moved_by_rules,
         expected,
@@ -109,6 +112,20 @@ remap.knows(
     "Start the talker once. A listener hears every talker of its topic, and cannot tell them apart.",
     certain=True,
 )
+
+
+@remap.mistake("renamed_in_code", certain=True)
+def renamed_beside_a_rule(seen: Launched, _: Launched) -> Advice | None:
+    """A program is on the topic without its rule, too."""
+    if not seen.not_moved:
+        return None
+    programs = " and ".join(seen.not_moved)
+    return Advice(
+        f"Without the rule of the launch file, {seen.topic} was still the topic of your {programs}: the new name is in "
+        "the code, so the rule moves nothing.",
+        f"Put the old name, {OLD_NAME}, back into the code of your {programs}, and build. The rule in the launch file "
+        "then moves it.",
+    )
 
 
 @remap.mistake(
@@ -164,6 +181,7 @@ EXERCISE = remap.exercise(
     text={
         "Write a launch file that starts both programs": "talker listener",
         "let both use `/robot/status_updates` instead of `chatter`": "talker listener nothing_left",
+        "Leave the programs as they are, with `chatter` in their code.": "launch",
         "It also checks that the launch file starts one talker, and gives both programs the rule.": "launch",
     },
 )
