@@ -93,6 +93,7 @@ PATH = "/home/student/ros2_ws/install/my_robot_pkg/lib/my_robot_pkg"
     [
         (("python3", f"{PATH}/talker", *RULES), ("my_robot_pkg", "talker", "--ros-args")),
         ((f"{PATH}/talker", "7", *RULES), ("my_robot_pkg", "talker", "7", "--ros-args")),
+        ((f"{PATH}/talker", *RULES, "--params-file", "/tmp/p"), ("my_robot_pkg", "talker", "--ros-args")),
         (
             (
                 "python3",

@@ -189,11 +189,15 @@ class Launched:
         }
 
     def _without_rule(self, argv: Sequence[str]) -> tuple[str, ...]:
-        """A command line as ``ros2 run`` takes it, without its rules for the name; empty for no package's program."""
+        """A command line as ``ros2 run`` takes it, without its rules for the name; empty for no package's program.
+
+        Nor has it a file of parameters: a launch writes one for itself, and takes it away at its end.
+        """
         for place, word in enumerate(argv[:2], 1):
             if found := _OF_A_PACKAGE.search(word):
-                rules = {at for at, pair in enumerate(pairwise(argv)) if self._has_a_rule(pair)}
-                rest = [one for at, one in enumerate(argv) if at >= place and not {at, at - 1} & rules]
+                pairs = enumerate(pairwise(argv))
+                gone = {at for at, pair in pairs if pair[0] == "--params-file" or self._has_a_rule(pair)}
+                rest = [one for at, one in enumerate(argv) if at >= place and not {at, at - 1} & gone]
                 return (found[1], found[2], *rest)
         return ()
 
