@@ -139,10 +139,18 @@ class Launched:
         return bool(((self._sides[0] | self._sides[1]) & self._own) - self._given)
 
     @property
-    def has_a_talker_of_the_package(self) -> bool:
+    def has_a_talker(self) -> bool:
         """True if a program of the package publishes under the new name, or one that does not tell whose it is."""
-        talk, _ = self._sides
-        return bool(talk & self._own) or 0 in talk
+        return self._has_one_of_its_own(self._sides[0])
+
+    @property
+    def has_a_listener(self) -> bool:
+        """True if such a program subscribes there."""
+        return self._has_one_of_its_own(self._sides[1])
+
+    def _has_one_of_its_own(self, side: set[int]) -> bool:
+        # A package may have another name than the course's: then the rule tells its programs from tools.
+        return bool(side & (self._own | self._given)) or 0 in side
 
     @property
     def is_settled(self) -> bool:

@@ -27,19 +27,24 @@ def names(endpoints: set[str]) -> str:
 def talker(seen: Launched, _: Launched) -> Finding:
     """The talker's messages come under the new name."""
     found = f"a publisher on {names(seen.publishers)}" if seen.publishers else "no publisher"
-    heard = seen.heard
-    return Finding(bool(heard), f"the talker's messages on {seen.topic}", f"“{heard[0]}”" if heard else found)
+    expected, heard = f"the talker's messages on {seen.topic}", seen.heard
+    if heard and not _is_there(seen, seen.has_a_talker):
+        return Finding(False, expected, f"“{heard[0]}” from something else")
+    return Finding(bool(heard), expected, f"“{heard[0]}”" if heard else found)
 
 
 @remap.criterion("listener", 4, "The listener hears under the new name")
 def listener(seen: Launched, _: Launched) -> Finding:
     """A text that is sent under the new name is said by the listener."""
     found = f"it listens on {names(seen.subscriptions)}" if seen.subscriptions else "no subscription"
-    if seen.says_what_it_hears:
+    said, expected = seen.says_what_it_hears, f"the listener says what is sent on {seen.topic}"
+    if said and not _is_there(seen, seen.has_a_listener):
+        return Finding(False, expected, "something else says it")
+    if said:
         found = "it says it"
     elif seen.topic in seen.subscriptions:
         found = f"it listens on {seen.topic}, but does not say what it hears"
-    return Finding(seen.says_what_it_hears, f"the listener says what is sent on {seen.topic}", found)
+    return Finding(said, expected, found)
 
 
 @remap.criterion("nothing_left", 1, "No node uses the old name")
@@ -137,7 +142,7 @@ def renamed_beside_a_rule(seen: Launched, _: Launched) -> Advice | None:
 def renamed_in_code(seen: Launched, expected: Launched) -> bool:
     """Everything is on the topic, and no rule brought it there."""
     arrived = bool(seen.heard) and seen.says_what_it_hears
-    return arrived and not by_the_launch(seen, expected).passed and not _speaks_in_its_place(seen)
+    return arrived and not by_the_launch(seen, expected).passed and not _missing(seen)
 
 
 @remap.mistake("someone_stayed", certain=True)
@@ -151,18 +156,26 @@ def someone_stayed(seen: Launched, _: Launched) -> Advice | None:
     )
 
 
-def _speaks_in_its_place(seen: Launched) -> bool:
-    """True if what speaks under the new name is no program of the package, and none of those has been renamed."""
-    return bool(seen.heard) and not seen.has_a_talker_of_the_package and not seen.own_without_a_rule
+def _is_there(seen: Launched, has_one: bool) -> bool:
+    """True if a program of the package is on its side of the topic, or perhaps one that was renamed."""
+    return has_one or seen.own_without_a_rule
+
+
+def _missing(seen: Launched) -> str:
+    """The program of the package in whose place something else is, such as a command; empty where there is none."""
+    if seen.heard and not _is_there(seen, seen.has_a_talker):
+        return "talker"
+    return "listener" if seen.says_what_it_hears and not _is_there(seen, seen.has_a_listener) else ""
 
 
 @remap.mistake("one_node_only", late=True)
 def one_node_only(seen: Launched, _: Launched) -> Advice | None:
     """Only one of the two programs runs, perhaps with something else in the place of the other."""
-    if _speaks_in_its_place(seen):
+    if missing := _missing(seen):
+        does = "speaks" if missing == "talker" else "listens"
         return Advice(
-            f"The talker of your package was not started: something else speaks on {seen.topic}.",
-            "Start the program talker of my_robot_pkg in the launch file, with the remapping.",
+            f"The {missing} of your package was not started: something else {does} on {seen.topic}.",
+            f"Start the program {missing} of my_robot_pkg in the launch file, with the remapping.",
         )
     if bool(seen.publishers) == bool(seen.subscriptions):
         return None
