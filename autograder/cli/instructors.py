@@ -231,7 +231,9 @@ def grade(
 @_only_assignments
 @_only_sections
 @click.option(
-    "--into", type=click.Path(path_type=Path), help="Fill in this list, as Moodle or Canvas has exported it."
+    "--into",
+    type=click.Path(path_type=Path),
+    help="Fill in this list, as the system of --to has exported it.",
 )
 @click.option(
     "--column",

@@ -166,7 +166,7 @@ def _filled(
         data = read_bytes(into)
     except UnreadableSubmission as error:
         raise GradingError(f"{into} cannot be read: {error}") from error
-    filled, strangers, doubtful = lms_gradebooks.filled_in(data, table, assignments, columns)
+    filled, strangers, doubtful = lms_gradebooks.filled_in(data, to, table, assignments, columns)
     if strangers:
         notices.append(f"nobody in the class is called {', '.join(strangers)}: their lines stay as they were")
     if doubtful:

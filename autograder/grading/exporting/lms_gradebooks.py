@@ -118,13 +118,28 @@ def moodle_worksheet(table: ClassTable, records: CollectedRecords, assignment: s
     return ("" if is_empty else csv_text(rows)), unknown
 
 
+class _List(NamedTuple):
+    """A list of an LMS's own: the columns by which it is known, and those that name a student, the surest first."""
+
+    has: frozenset[str]
+    names: tuple[str, ...]
+
+
+_LISTS = {
+    "moodle": _List(frozenset({"Identifier", "Grade"}), ("Email address", "ID number", "Full name")),
+    "canvas": _List(frozenset({"Student", "ID", "Section"}), ("ID", "SIS Login ID", "Student")),
+    "gradescope": _List(frozenset({"SID", "Email"}), ("SID", "Email")),
+}
+
+
 def filled_in(
-    data: bytes, table: ClassTable, assignments: Sequence[str], columns: Mapping[str, str]
+    data: bytes, lms: str, table: ClassTable, assignments: Sequence[str], columns: Mapping[str, str]
 ) -> tuple[bytes, list[str], list[str]]:
     """A list of the LMS's own with the points filled in; everything else in it stays as it is.
 
     Args:
         data: Moodle's grading worksheet, or a gradebook that Canvas or Gradescope has exported.
+        lms: The system that the instructor says it is of.
         table: The class.
         assignments: The assignments to fill in; for a worksheet, one.
         columns: The name of an assignment's column there, where that is not the assignment's name.
@@ -134,7 +149,7 @@ def filled_in(
         line names as well or better: in an LMS, people name themselves.
 
     Raises:
-        GradingError: It is neither, or it has no column for an assignment.
+        GradingError: It is none of these or of another system, or it has no column for an assignment.
     """
     try:
         text = data.decode("utf-8-sig")
@@ -144,20 +159,20 @@ def filled_in(
         ) from error
     rows = list(csv.reader(io.StringIO(text)))
     header = [name.strip() for name in rows[0]] if rows else []
-    names: tuple[str, ...]
-    if {"Identifier", "Grade"} <= set(header):
-        lms, names = "moodle", ("Email address", "ID number", "Full name")
-        places = {name: header.index("Grade") for name in assignments}
-    elif {"Student", "ID", "Section"} <= set(header):
-        lms, names = "canvas", ("ID", "SIS Login ID", "Student")
-        places = {name: _column(header, columns.get(name, name)) for name in assignments}
-    elif {"SID", "Email"} <= set(header):
-        lms, names = "gradescope", ("SID", "Email")
-        places = {name: _column(header, columns.get(name, name)) for name in assignments}
-    else:
+    found_lms = next((name for name, one in _LISTS.items() if one.has <= set(header)), None)
+    if found_lms is None:
         raise GradingError(
             "The list is neither Moodle's grading worksheet nor a gradebook that Canvas or Gradescope has exported."
         )
+    if found_lms != lms:
+        raise GradingError(
+            f"The list is {found_lms.capitalize()}'s, and not for --to {lms}: type --to {found_lms}"
+        )
+    if lms == "moodle":
+        places = {name: header.index("Grade") for name in assignments}
+    else:
+        places = {name: _column(header, columns.get(name, name)) for name in assignments}
+    names = _LISTS[lms].names
     strangers = []
     meant: dict[str, list[_Meant]] = {}
     for row in rows[1:]:
