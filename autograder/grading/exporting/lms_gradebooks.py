@@ -137,6 +137,8 @@ def filled_in(
 ) -> tuple[bytes, list[str], list[str]]:
     """A list of the LMS's own with the points filled in; everything else in it stays as it is.
 
+    So do points that somebody has given there, where the class has none.
+
     Args:
         data: Moodle's grading worksheet, or a gradebook that Canvas or Gradescope has exported.
         lms: The system that the instructor says it is of.
@@ -189,8 +191,10 @@ def filled_in(
     certain, doubtful = _told_apart(meant)
     for student_id, row in certain.items():
         for name, place in places.items():
-            score = table.score(student_id, name)
-            row[place] = _EXCUSED.get(lms, "") if table.is_excused(student_id, name) else _written(score)
+            if table.is_excused(student_id, name):
+                row[place] = _EXCUSED.get(lms, "")
+            elif (score := table.score(student_id, name)) is not None:
+                row[place] = f"{score:g}"
     out = io.StringIO(newline="")
     csv.writer(out, lineterminator="\n").writerows(rows)
     mark = "\ufeff" if data.startswith("\ufeff".encode()) else ""
@@ -221,10 +225,6 @@ def _told_apart(meant: Mapping[str, Sequence[_Meant]]) -> tuple[dict[str, list[s
 
 _EXCUSED = {"canvas": "EX"}
 """The word that an LMS reads as excused."""
-
-
-def _written(score: float | None) -> str:
-    return "" if score is None else f"{score:g}"
 
 
 def _column(header: Sequence[str], called: str) -> int:

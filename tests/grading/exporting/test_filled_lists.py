@@ -7,11 +7,13 @@ import io
 from typing import TYPE_CHECKING
 
 import pytest
+import tiny_class
 from click.testing import CliRunner
 from downloads import ROSTER
 
 from autograder.cli import cli
 from autograder.grading.exporting.export_files import export
+from autograder.verdict import not_checked
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -53,3 +55,43 @@ def test_a_list_of_another_system_than_the_named_one_is_refused(
         assert (said.exit_code, f"--to {lms}" in said.output) == (2, True), said.output
     assert not (klass.path / "export").exists()
     export(klass.path, lms, into=into)
+
+
+@pytest.mark.parametrize(
+    ("text", "to"), [(WORKSHEET, "moodle"), (CANVAS, "canvas"), (GRADESCOPE, "gradescope")]
+)
+@pytest.mark.parametrize("work", ["none", "not checked"])
+def test_points_that_somebody_gave_in_the_lms_stay_where_the_class_has_none(
+    klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str, to: str, work: str
+) -> None:
+    """Ada has points there of an oral exam, and here no work, or work that could not be checked."""
+    if work == "not checked":
+        monkeypatch.setattr(
+            tiny_class,
+            "zero_points",
+            lambda check, *_: not_checked(check.exercise, "", check.points, "It hung."),
+        )
+        klass.submit("ada", "1/0", "1/0")
+        assert {row.state for row in klass.grade().rows if row.student == "ada"} == {"not_checked"}
+    into = tmp_path / "list.csv"
+    into.write_text(text)
+    export(klass.path, to, into=into)
+    assert rows(klass.path / "export" / "list.csv") == rows(into)
+    if work == "none":
+        export(klass.path, to, into=into, absent_zero=True)
+        place = rows(into)[0].index("Grade" if to == "moodle" else "lab_1_2")
+        assert rows(klass.path / "export" / "list.csv")[1][place] == "0"
+
+
+@pytest.mark.parametrize(("to", "excused"), [("canvas", "EX"), ("moodle", "")])
+def test_who_is_excused_has_the_systems_word_for_it(
+    klass: TinyClass, tmp_path: Path, to: str, excused: str
+) -> None:
+    (klass.path / "students.csv").write_text(
+        "id,email,excused,canvas\nada,ada.love@uni.example,lab_1_2,101\n"
+    )
+    into = tmp_path / "list.csv"
+    into.write_text({"canvas": CANVAS, "moodle": WORKSHEET}[to])
+    export(klass.path, to, into=into)
+    place = rows(into)[0].index("Grade" if to == "moodle" else "lab_1_2")
+    assert rows(klass.path / "export" / "list.csv")[1][place] == excused
