@@ -170,9 +170,10 @@ def _filled(
     if strangers:
         notices.append(f"nobody in the class is called {', '.join(strangers)}: their lines stay as they were")
     if doubtful:
+        sure = " or ".join(lms_gradebooks.LISTS[to].sure)
         notices.append(
-            f"{', '.join(doubtful)}: another line may be the same student's, so these stay as they were. Write the "
-            f"number, login or address that {to.capitalize()} has for each into the column {to} of students.csv"
+            f"{', '.join(doubtful)}: another line may be the same student's, so these stay as they were. Write what "
+            f"the list has under {sure} for each into the column {to} of students.csv"
         )
     yield (
         into.name,

@@ -45,18 +45,17 @@ def feedback_zip(
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
         for student in table.students:
             pages = sorted((directory.path / "feedback" / student / assignment).glob("*.html"))
-            there = known_there(records, assignment, student, lms)
-            number = there.number if there else table.roster.students[student].lms.get(lms, "")
             if not pages:
                 continue
-            if not number or (lms == "canvas" and there is None):
+            there = known_there(records, assignment, student, lms)
+            if there is None:
                 unknown.append(student)
                 continue
             for page in pages:
-                if lms == "canvas" and there is not None:
+                if lms == "canvas":
                     called = f"{_canvas(there.file)}.html"
                 else:
-                    called = _moodle(table.roster.students[student].name or student, number, page.name)
+                    called = _moodle(table.roster.students[student].name or student, there.number, page.name)
                 # The same class gives the same zip: no time of this machine is in it.
                 archive.writestr(zipfile.ZipInfo(called, _MADE), page.read_bytes(), zipfile.ZIP_DEFLATED)
     return (data.getvalue() if archive.namelist() else b""), unknown

@@ -98,38 +98,45 @@ def gradescope(table: ClassTable, assignments: Sequence[str]) -> str:
 def moodle_worksheet(table: ClassTable, records: CollectedRecords, assignment: str) -> tuple[str, list[str]]:
     """The grading worksheet of one assignment, and the students whose number there is not known.
 
-    The worksheet is empty where it would give points to nobody.
+    The worksheet is empty where it would give points to nobody. A participant's number is Moodle's for one student and
+    one assignment, so that only work that was collected from there says it.
     """
     rows: list[list[str | float]] = [list(MOODLE_WORKSHEET)]
     unknown = []
     is_empty = True
     for student in map(table.roster.students.__getitem__, table.students):
         there = known_there(records, assignment, student.id, "moodle")
-        number = there.number if there else student.lms.get("moodle", "")
-        if not number:
+        if there is None:
             unknown.append(student.id)
             continue
-        submitted = "Submitted for grading" if there else "No submission"
         score = table.score(student.id, assignment)
         is_empty = is_empty and score is None
         points = [blank(score), table.max_score(assignment)]
-        who = [f"Participant {number}", student.name or student.id, student.email]
-        rows.append([*who, submitted, *points, "Yes", "", "", ""])
+        who = [f"Participant {there.number}", student.name or student.id, student.email]
+        rows.append([*who, "Submitted for grading", *points, "Yes", "", "", ""])
     return ("" if is_empty else csv_text(rows)), unknown
 
 
 class _List(NamedTuple):
-    """A list of an LMS's own: the columns by which it is known, and those that name a student, the surest first."""
+    """A list of an LMS's own.
+
+    Attributes:
+        has: The columns by which it is known.
+        sure: Those that name one student, the surest first.
+        called: Those in which people name themselves.
+    """
 
     has: frozenset[str]
-    names: tuple[str, ...]
+    sure: tuple[str, ...]
+    called: tuple[str, ...] = ()
 
 
-_LISTS = {
-    "moodle": _List(frozenset({"Identifier", "Grade"}), ("Email address", "ID number", "Full name")),
-    "canvas": _List(frozenset({"Student", "ID", "Section"}), ("ID", "SIS Login ID", "Student")),
+LISTS = {
+    "moodle": _List(frozenset({"Identifier", "Grade"}), ("Email address", "ID number"), ("Full name",)),
+    "canvas": _List(frozenset({"Student", "ID", "Section"}), ("ID", "SIS Login ID"), ("Student",)),
     "gradescope": _List(frozenset({"SID", "Email"}), ("SID", "Email")),
 }
+"""The lists that can be filled in, by the system that exports them."""
 
 
 def filled_in(
@@ -161,7 +168,7 @@ def filled_in(
         ) from error
     rows = list(csv.reader(io.StringIO(text)))
     header = [name.strip() for name in rows[0]] if rows else []
-    found_lms = next((name for name, one in _LISTS.items() if one.has <= set(header)), None)
+    found_lms = next((name for name, one in LISTS.items() if one.has <= set(header)), None)
     if found_lms is None:
         raise GradingError(
             "The list is neither Moodle's grading worksheet nor a gradebook that Canvas or Gradescope has exported."
@@ -174,7 +181,7 @@ def filled_in(
         places = {name: header.index("Grade") for name in assignments}
     else:
         places = {name: _column(header, columns.get(name, name)) for name in assignments}
-    names = _LISTS[lms].names
+    names = (*LISTS[lms].sure, *LISTS[lms].called)
     strangers = []
     meant: dict[str, list[_Meant]] = {}
     for row in rows[1:]:

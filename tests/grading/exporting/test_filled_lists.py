@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import csv
 import io
+import shutil
+import zipfile
 from typing import TYPE_CHECKING
 
 import pytest
 import tiny_class
 from click.testing import CliRunner
-from downloads import ROSTER
+from downloads import ROSTER, write_zip
 
 from autograder.cli import cli
+from autograder.grading.collecting.collect import collect
 from autograder.grading.exporting.export_files import export
 from autograder.verdict import not_checked
 
@@ -95,3 +98,36 @@ def test_who_is_excused_has_the_systems_word_for_it(
     export(klass.path, to, into=into)
     place = rows(into)[0].index("Grade" if to == "moodle" else "lab_1_2")
     assert rows(klass.path / "export" / "list.csv")[1][place] == excused
+
+
+def test_only_moodle_says_who_a_participant_is(klass: TinyClass, tmp_path: Path) -> None:
+    """A participant's number is Moodle's for one student and one assignment: no list of students has it."""
+    (klass.path / "students.csv").write_text(ROSTER.replace(",canvas,", ",moodle,"), encoding="utf-8")
+    of_eve = {"Eve O'Neill_555_assignsubmission_file/lab_1_2.ipynb": klass.submit("x", 4, 4).read_text()}
+    shutil.rmtree(klass.path / "submitted" / "x")
+    collect(klass.path, [write_zip(tmp_path / "m.zip", of_eve)])
+    klass.grade(feedback=True)
+    done = export(klass.path, "moodle")
+    folder = klass.path / "export"
+    assert [row[0] for row in rows(folder / "moodle-lab_1_2.csv")[1:]] == ["Participant 555"]
+    with zipfile.ZipFile(folder / "feedback-moodle-lab_1_2.zip") as pages:
+        assert pages.namelist() == ["Eve O'Neill_555_assignsubmission_file/lab_1_2.html"]
+    worksheet, feedback = done.notices
+    assert "ada, ben, jose, zoe: they are in moodle.csv only" in worksheet
+    assert "no feedback on lab_1_2 in the zip for ben:" in feedback
+
+
+def test_a_doubtful_line_is_settled_by_what_the_list_has_in_it(klass: TinyClass, tmp_path: Path) -> None:
+    """The advice names columns of the list; what stands there tells the two lines apart, and the number would not."""
+    (klass.path / "students.csv").write_text("id,first_name,last_name,moodle\nben,Ben,Bär,\n")
+    into = tmp_path / "list.csv"
+    into.write_text(
+        "Identifier,Full name,Email address,Grade\n"
+        "Participant 31,Ben Bär,one@uni.example,\nParticipant 32,BEN BÄR,two@uni.example,\n",
+        encoding="utf-8",
+    )
+    (said,) = export(klass.path, "moodle", into=into).notices
+    assert "Email address or ID number" in said
+    (klass.path / "students.csv").write_text("id,first_name,last_name,moodle\nben,Ben,Bär,two@uni.example\n")
+    export(klass.path, "moodle", into=into)
+    assert [row[-1] for row in rows(klass.path / "export" / "list.csv")[1:]] == ["", "17"]
