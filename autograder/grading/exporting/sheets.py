@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import xlsxwriter
 
-from autograder.grading.reporting.rows import COLUMNS, DROPPED, LATE, csv_cells, total
+from autograder.grading.reporting.rows import COLUMNS, DROPPED, LATE, csv_cells
 from autograder.grading.reporting.spreadsheet import blank, csv_text
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def student_rows(table: ClassTable, assignments: Sequence[str]) -> list[Cells]:
                 student.last_name,
                 student.email,
                 *(blank(table.score(student.id, name)) for name in assignments),
-                blank(table.absent if total(own) is None else total(own)),
+                blank(table.points(own)),
                 sum(row.max_score for row in own),
                 -sum(row.score for row in own if row.exercise == LATE),
                 sum(row.waits for row in own),

@@ -70,7 +70,10 @@ class ClassTable:
 
     def score(self, student: str, assignment: str = "") -> float | None:
         """A student's points as the gradebook has them, less what being late costs; None where there are none."""
-        rows = self.of(student, assignment)
+        return self.points(self.of(student, assignment))
+
+    def points(self, rows: Sequence[Row]) -> float | None:
+        """The points of some of a student's rows together, by the same rule."""
         is_absent = any(row.state == NOT_SUBMITTED for row in rows) and all(row.is_blank for row in rows)
         return self.absent if is_absent else total(rows)
 

@@ -1,0 +1,53 @@
+"""Who has points, who has none and who needs none: the same in every table, and said where a line is not as meant."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import TYPE_CHECKING
+
+import pytest
+import tiny_class
+from downloads import ROSTER
+
+from autograder.grading.exporting.export_files import export
+from autograder.verdict import not_checked
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import FakeEngine, TinyClass
+
+
+@pytest.fixture
+def klass(tiny: TinyClass, fake_engine: FakeEngine) -> TinyClass:
+    """Ben's work was graded; the others have handed in nothing."""
+    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
+    tiny.submit("ben", 7, 10)
+    tiny.grade()
+    return tiny
+
+
+def students(klass: TinyClass) -> dict[str, dict[str, str]]:
+    """The lines of the table of students, by their ids."""
+    text = (klass.path / "export" / "students.csv").read_text("utf-8-sig")
+    return {line["student"]: line for line in csv.DictReader(io.StringIO(text))}
+
+
+def test_zero_for_the_absent_is_for_nobody_else(klass: TinyClass, monkeypatch: pytest.MonkeyPatch) -> None:
+    roster = ROSTER.replace("email,", "email,excused,").replace("@uni.example,", "@uni.example,,")
+    (klass.path / "students.csv").write_text(roster.replace("zoe@uni.example,", "zoe@uni.example,lab_1_2"))
+    monkeypatch.setattr(
+        tiny_class, "zero_points", lambda check, *_: not_checked(check.exercise, "", check.points, "It hung.")
+    )
+    klass.submit("eve", "1/0", "1/0")
+    klass.grade()
+    export(klass.path, "csv", absent_zero=True)
+    shown = {name: (line["lab_1_2"], line["total"]) for name, line in students(klass).items()}
+    assert shown == {
+        "ada": ("0", "0"),
+        "ben": ("17", "17"),
+        "eve": ("", ""),
+        "jose": ("0", "0"),
+        "zoe": ("", ""),
+    }
