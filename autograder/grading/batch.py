@@ -194,6 +194,9 @@ class _Batch:
         )
         self._works, self._others, self._refused = found.works, found.others, found.refused
         self._notices += found.notices
+        self._notices += self._roster.excused_from_nothing(
+            self._directory.assignments(), self._roster.students
+        )
 
     def plan(self, again: bool) -> None:
         """Find the submissions whose grades are in the gradebook already; the others are graded."""

@@ -80,6 +80,7 @@ def export(
         f"{one.reason}"
         for one in table.unplaced
     ]
+    notices += table.notices
     if table.waiting:
         waiting = counted(len(table.waiting), "result")
         notices.append(f"{waiting} still to be graded by a person, exported with the points of now")

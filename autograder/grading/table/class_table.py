@@ -31,6 +31,7 @@ class ClassTable:
         entries: The entries of the gradebook, by student and assignment.
         stale: Submissions that were handed in or changed after they were graded last, as student/assignment.
         unplaced: Files that were collected and have no place.
+        notices: Sentences on what is not as the instructor will have meant it, with students' ids.
         absent: The points of students who have handed in nothing: None, or zero where the instructor says so.
     """
 
@@ -39,6 +40,7 @@ class ClassTable:
     entries: Entries
     stale: tuple[str, ...] = ()
     unplaced: tuple[Waiting, ...] = ()
+    notices: tuple[str, ...] = ()
     absent: float | None = None
 
     @property
@@ -127,7 +129,8 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
     others = [Student(row.student) for row in rows if row.student not in roster.students]
     whole = Roster([*roster.students.values(), *others])
     table = ClassTable(tuple(rows), whole, entries, tuple(stale), unplaced)
-    return table.only(roster.of_sections(sections)) if sections else table
+    shown = table.only(roster.of_sections(sections)) if sections else table
+    return replace(shown, notices=tuple(whole.excused_from_nothing(directory.assignments(), shown.students)))
 
 
 def by_exercise(rows: list[Row]) -> dict[tuple[str, str], Row]:

@@ -14,7 +14,7 @@ from autograder.grading.errors import GradingError
 from autograder.grading.reporting.spreadsheet import csv_rows
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
 NAME = "students.csv"
 LMS = ("canvas", "moodle", "blackboard", "brightspace", "google", "github", "gradescope")
@@ -48,6 +48,7 @@ _EXPORTED = (
         },
     ),
 )
+_MOST_NAMED = 5
 _NOBODY = ("points possible", "student, test")
 
 
@@ -122,6 +123,24 @@ class Roster:
     def excused(self) -> set[tuple[str, str]]:
         """The students who need not do an assignment, by assignment."""
         return {(one.id, assignment) for one in self.students.values() for assignment in one.excused}
+
+    def excused_from_nothing(self, assignments: Sequence[str], students: Iterable[str]) -> list[str]:
+        """A sentence on each name in the column excused that is no assignment's.
+
+        Args:
+            assignments: The names of all assignments of the class.
+            students: The ids of the students whose lines are looked at.
+        """
+        found: dict[str, list[str]] = {}
+        for one in map(self.students.__getitem__, students):
+            for name in one.excused:
+                if name not in assignments:
+                    found.setdefault(name, []).append(one.id)
+        return [
+            f"{NAME} excuses {', '.join(ids[:_MOST_NAMED])}{' …' if ids[_MOST_NAMED:] else ''} from {name}, "
+            f"and there is no such assignment: nobody is excused by that. There is: {', '.join(assignments)}"
+            for name, ids in found.items()
+        ]
 
     def of_sections(self, sections: Iterable[str]) -> list[str]:
         """The ids of the students in these sections.

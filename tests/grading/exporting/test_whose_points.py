@@ -11,11 +11,10 @@ import tiny_class
 from downloads import ROSTER
 
 from autograder.grading.exporting.export_files import export
+from autograder.grading.report_page.page import write_report
 from autograder.verdict import not_checked
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from conftest import FakeEngine, TinyClass
 
 
@@ -51,3 +50,21 @@ def test_zero_for_the_absent_is_for_nobody_else(klass: TinyClass, monkeypatch: p
         "jose": ("0", "0"),
         "zoe": ("", ""),
     }
+
+
+def test_who_is_excused_from_what_there_is_not_is_named(klass: TinyClass) -> None:
+    """A slip in the name would cost Ada the points that she need not earn."""
+    (klass.path / "students.csv").write_text(
+        "id,section,excused\nada,A,lab_1_2 lab_12\nben,B,\neve,B,lab_12\njose,A,\nzoe,A,\n"
+    )
+    said = (
+        "students.csv excuses {} from lab_12, and there is no such assignment: nobody is excused by that. "
+        "There is: lab_1_2"
+    )
+    assert said.format("ada, eve") in export(klass.path, "csv").notices
+    assert said.format("ada") in export(klass.path, "csv", sections=["A"]).notices
+    assert said.format("ada, eve") in klass.grade().notices
+    assert said.format("ada, eve") in write_report(klass.path).read_text()
+    assert "lab_12" not in write_report(klass.path, names=False).read_text()
+    (klass.path / "students.csv").write_text("id,excused\nada,lab_1_2\n")
+    assert not export(klass.path, "csv").notices
