@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -43,19 +44,26 @@ class ClassTable:
     notices: tuple[str, ...] = ()
     absent: float | None = None
 
-    @property
+    @functools.cached_property
+    def _of_student(self) -> dict[str, list[Row]]:
+        found: dict[str, list[Row]] = {}
+        for row in self.rows:
+            found.setdefault(row.student, []).append(row)
+        return found
+
+    @functools.cached_property
     def students(self) -> list[str]:
         """The ids of all students in the table."""
-        return list(dict.fromkeys(row.student for row in self.rows))
+        return list(self._of_student)
 
-    @property
+    @functools.cached_property
     def assignments(self) -> list[str]:
         """The assignments that somebody has handed in."""
         return list(dict.fromkeys(row.assignment for row in self.rows))
 
     def of(self, student: str, assignment: str = "") -> list[Row]:
         """A student's rows of all assignments, or of one, which has its points also where the total leaves it out."""
-        own = [row for row in self.rows if row.student == student]
+        own = self._of_student.get(student, [])
         return [
             row for row in own if not assignment or (row.assignment == assignment and row.exercise != DROPPED)
         ]
@@ -85,9 +93,17 @@ class ClassTable:
 
     def max_score(self, assignment: str = "") -> float:
         """Points that can be had."""
-        return max(
-            (sum(row.max_score for row in self.of(one, assignment)) for one in self.students), default=0.0
-        )
+        return self._max_scores.get(assignment, 0.0)
+
+    @functools.cached_property
+    def _max_scores(self) -> dict[str, float]:
+        """The points that can be had of each assignment, and under no name of all together."""
+        return {
+            name: max(
+                (sum(row.max_score for row in self.of(one, name)) for one in self.students), default=0.0
+            )
+            for name in ("", *self.assignments)
+        }
 
     @property
     def waiting(self) -> list[Row]:

@@ -1,0 +1,73 @@
+"""The table of a large class costs as much as its rows, not as its rows times its students."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.grading.exporting import lms_gradebooks, sheets
+from autograder.grading.report_page import statistics as figures
+from autograder.grading.reporting.rows import Row
+from autograder.grading.table.class_table import ClassTable
+from autograder.grading.table.roster import Roster, Student
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+ASSIGNMENTS = ("lab_1", "lab_2")
+CLASS = [f"s{number}" for number in range(60)]
+
+
+class Counted(tuple[Row, ...]):
+    """Rows that know how often somebody has gone through all of them."""
+
+    read = 0
+
+    def __iter__(self) -> Iterator[Row]:
+        Counted.read += 1
+        return super().__iter__()
+
+
+def table() -> ClassTable:
+    rows = [
+        Row(student, assignment, f"{assignment}.a", 5, 10, "failed")
+        for student in CLASS
+        for assignment in ASSIGNMENTS
+    ]
+    return ClassTable(Counted(rows), Roster(map(Student, CLASS)), {})
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda table: lms_gradebooks.gradescope(table, ASSIGNMENTS),
+        lambda table: lms_gradebooks.moodle_gradebook(table, ASSIGNMENTS),
+        lambda table: sheets.as_csv(table, ASSIGNMENTS),
+        lambda table: [table.max_score(one) for _ in CLASS for one in ("", *ASSIGNMENTS)],
+        lambda table: [table.assignments and table.students for _ in CLASS],
+        figures.bands,
+        figures.totals,
+    ],
+    ids=["gradescope", "moodle", "sheet", "max_score", "names", "bands", "totals"],
+)
+def test_all_rows_are_read_a_few_times_however_many_students_there_are(
+    use: Callable[[ClassTable], object],
+) -> None:
+    Counted.read = 0
+    use(table())
+    assert Counted.read < 10
+
+
+def test_the_points_that_can_be_had_are_those_of_who_can_have_most() -> None:
+    rows = (
+        Row("ada", "lab_1", "lab_1.a", 0, 0, "excused"),
+        Row("ada", "lab_2", "lab_2.a", 5, 10, "failed"),
+        Row("ben", "lab_1", "lab_1.a", 5, 10, "failed"),
+        Row("ben", "lab_2", "lab_2.a", 5, 10, "failed"),
+        Row("ben", "lab_2", "dropped", -5, -10, "dropped"),
+    )
+    both = ClassTable(rows, Roster([Student("ada"), Student("ben")]), {})
+    assert [both.max_score(name) for name in ("lab_1", "lab_2", "", "lab_9")] == [10, 10, 10, 0]
+    assert [both.only([one]).max_score("lab_1") for one in ("ada", "ben")] == [0, 10]
+    assert ClassTable((), Roster([]), {}).max_score() == 0
