@@ -147,12 +147,12 @@ def progress(student: str, attempts: Iterable[Attempt]) -> list[Progress]:
 
 
 def bands(table: ClassTable) -> list[Band]:
-    """The spread of the students over the points, without those who have none yet."""
-    most = table.max_score()
+    """The spread of the students over the share of the points that each can have, without those who have none yet."""
     found: dict[int, list[str]] = defaultdict(list)
     for student in handed_in(table):
         if (points := table.score(student)) is None:
             continue
+        most = sum(row.max_score for row in table.of(student))
         share = points / most if most else 0.0
         found[max(0, min(BANDS - 1, int(share * BANDS + 1e-9)))].append(student)
     width = 100 // BANDS

@@ -71,3 +71,20 @@ def test_the_points_that_can_be_had_are_those_of_who_can_have_most() -> None:
     assert [both.max_score(name) for name in ("lab_1", "lab_2", "", "lab_9")] == [10, 10, 10, 0]
     assert [both.only([one]).max_score("lab_1") for one in ("ada", "ben")] == [0, 10]
     assert ClassTable((), Roster([]), {}).max_score() == 0
+
+
+def test_who_is_excused_from_half_is_where_their_share_is() -> None:
+    """Ada has all that she can have, Ben half of it."""
+    rows = (
+        Row("ada", "lab_1", "lab_1.a", 0, 0, "excused"),
+        Row("ada", "lab_2", "lab_2.a", 10, 10, "passed"),
+        Row("ben", "lab_1", "lab_1.a", 0, 10, "failed"),
+        Row("ben", "lab_2", "lab_2.a", 10, 10, "passed"),
+        Row("cleo", "lab_1", "lab_1.a", 0, 0, "by_hand"),
+    )
+    bands = figures.bands(ClassTable(rows, Roster(map(Student, ("ada", "ben", "cleo"))), {}))
+    assert {band.low: band.students for band in bands if band.students} == {
+        90: ("ada",),
+        50: ("ben",),
+        0: ("cleo",),
+    }
