@@ -9,7 +9,7 @@ from autograder import exercises
 from autograder.appeals.appeal_file import Appeal, Cell, dump
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.errors import GradingError, clear_disk_errors, course_command
+from autograder.grading.errors import GradingError, clear_disk_errors, clear_place_errors, course_command
 from autograder.judge.verdicts import reference
 from autograder.judge.verdicts.keeping import NoEvidence, unpack
 from autograder.regular_files import write_whole
@@ -44,10 +44,8 @@ def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = N
     with clear_disk_errors(directory.path), ClassStore(directory) as store:
         content = dump(_appeal(directory, store, student, exercise_id, task))
         to = (to or directory.path / FOLDER / f"{student}-{exercise_id}.json").absolute()
-        try:
+        with clear_place_errors(to, "-o"):
             write_whole(to, content)
-        except (IsADirectoryError, NotADirectoryError, FileExistsError) as error:
-            raise GradingError(f"{to} cannot be written: {error.strerror}. Name a file with -o.") from error
     return to
 
 

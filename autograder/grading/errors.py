@@ -190,6 +190,32 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
         raise
 
 
+@contextlib.contextmanager
+def clear_place_errors(path: Path, option: str) -> Iterator[None]:
+    """Say in an instructor's words why a file that was asked for cannot be at its place.
+
+    Args:
+        path: The file that is written.
+        option: The option that names another place.
+
+    Raises:
+        GradingError: A folder or a file stands in its way, or there can be no file of that name.
+        OSError: It is the disk's trouble, for which :func:`clear_disk_errors` has words.
+    """
+    try:
+        yield
+    except OSError as error:
+        if is_disk_full(error) or isinstance(error, PermissionError):
+            raise
+        reason = f"{path} cannot be written: {error.strerror}"
+        if isinstance(error, IsADirectoryError):
+            reason = f"{path} is a folder, and a file is to be written there"
+        elif isinstance(error, FileExistsError | NotADirectoryError):
+            in_the_way = [one for one in path.parents if one.exists() and not one.is_dir()]
+            reason = f"{in_the_way[0]} is no folder" if in_the_way else reason
+        raise GradingError(f"{reason}. Name another place: {option}") from error
+
+
 def said_by_database(error: BaseException | None) -> str:
     """The words of the database at the bottom of ``error``; empty where there is none."""
     while error is not None:

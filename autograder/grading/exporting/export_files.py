@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
-from autograder.grading.errors import GradingError, check_known, course_command
+from autograder.grading.errors import GradingError, check_known, clear_place_errors, course_command
 from autograder.grading.exporting import feedback_zips, lms_gradebooks, sheets
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.grading.table.class_table import ClassTable, read_table
@@ -73,7 +73,8 @@ def export(
             else _files(directory, table, to, wanted, notices)
         )
         for name, data, purpose in parts:
-            write_whole(folder / name, data)
+            with clear_place_errors(folder / name, "--output"):
+                write_whole(folder / name, data)
             written.append((folder / name, purpose))
     notices += [
         f"{one.label}{f' of {one.student}' if one.student else ''} has no place, so no points come from it: "

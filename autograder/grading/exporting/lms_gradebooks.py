@@ -158,15 +158,14 @@ def filled_in(
         line names as well or better: in an LMS, people name themselves.
 
     Raises:
-        GradingError: It is none of these or of another system, or it has no column for an assignment.
+        GradingError: It cannot be read, is none of these or of another system, or has no column for an assignment.
     """
     try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
+        rows = list(csv.reader(io.StringIO(data.decode("utf-8-sig"))))
+    except (UnicodeDecodeError, csv.Error) as error:
         raise GradingError(
-            "The list is not UTF-8. Download it from the LMS again and leave it as it is."
+            f"The list is no CSV in UTF-8 ({error}). Download it from the LMS again and leave it as it is."
         ) from error
-    rows = list(csv.reader(io.StringIO(text)))
     header = [name.strip() for name in rows[0]] if rows else []
     found_lms = next((name for name, one in LISTS.items() if one.has <= set(header)), None)
     if found_lms is None:

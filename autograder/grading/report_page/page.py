@@ -12,7 +12,7 @@ from autograder.cards.readable import one_line, printable
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
-from autograder.grading.errors import GradingError, clear_disk_errors
+from autograder.grading.errors import GradingError, clear_disk_errors, clear_place_errors
 from autograder.grading.report_page import statistics as figures
 from autograder.grading.reporting.rows import DROPPED, EXCUSED, columns
 from autograder.grading.returning.page_exporter import POLICY
@@ -65,7 +65,9 @@ def write_report(
         table = read_table(directory, sections)
         if not figures.handed_in(table):
             raise GradingError("Nothing was handed in yet, so there is nothing to report.")
-        write_whole(to, _page(directory, store, table, names=names, folder=to.parent).encode())
+        page = _page(directory, store, table, names=names, folder=to.parent)
+        with clear_place_errors(to, "--output"):
+            write_whole(to, page.encode())
     return to
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from autograder.cards.page_templates import page_templates
 from autograder.cards.readable import one_line
+from autograder.grading.errors import clear_place_errors
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.similarity.pairs import HINT, LEAST_SHARE, SHORTEST, nothing_found
 from autograder.regular_files import write_whole
@@ -68,10 +69,12 @@ def write_page(found: Similar, to: Path | None = None) -> Path:
         The absolute path of the file.
 
     Raises:
-        OSError: It could not be written.
+        GradingError: Something stands in its way.
+        OSError: It could not be written for another reason.
     """
     to = (to or found.path / _NAME).absolute()
-    write_whole(to, page(found).encode())
+    with clear_place_errors(to, "--output"):
+        write_whole(to, page(found).encode())
     return to
 
 

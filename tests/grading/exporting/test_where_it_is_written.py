@@ -1,0 +1,58 @@
+"""What stands in the way of a file that was asked for, or cannot be read, is said in a line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from click.testing import CliRunner
+
+from autograder.cli import cli
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import FakeEngine, TinyClass
+
+
+@pytest.mark.parametrize(
+    ("command", "output", "said"),
+    [
+        (("export", "--to", "csv"), "file", "file is no folder"),
+        (("export", "--to", "csv"), "file/below", "file is no folder"),
+        (("export", "--to", "csv"), "with", "with/students.csv is a folder"),
+        (("report",), "folder", "folder is a folder"),
+        (("report",), "file/report.html", "file is no folder"),
+        (("similar",), "folder", "folder is a folder"),
+        (("similar",), "file/similar.html", "file is no folder"),
+        (("similar",), "x" * 300, "cannot be written"),
+    ],
+)
+def test_what_stands_in_the_way_is_named(
+    tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path, command: tuple[str, ...], output: str, said: str
+) -> None:
+    for student in ("ada", "ben"):
+        tiny.submit(student)
+    tiny.grade()
+    (tmp_path / "file").write_text("mine")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "with" / "students.csv").mkdir(parents=True)
+    name, *options = command
+    result = CliRunner().invoke(cli, [name, str(tiny.path), *options, "--output", str(tmp_path / output)])
+    assert result.exit_code == 2, result.output
+    assert str(tmp_path) in result.output
+    assert said in result.output
+    assert "--output" in result.output
+    assert (tmp_path / "file").read_text() == "mine"
+    assert not list((tmp_path / "folder").iterdir())
+
+
+def test_a_list_that_is_no_csv_is_refused(tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path) -> None:
+    """Old programs on a Mac end lines with a carriage return alone."""
+    tiny.submit("ada")
+    tiny.grade()
+    into = tmp_path / "list.csv"
+    into.write_bytes(b"Student,ID,Section,lab_1_2\rada,1,A,\r")
+    result = CliRunner().invoke(cli, ["export", str(tiny.path), "--to", "canvas", "--into", str(into)])
+    assert result.exit_code == 2, result.output
+    assert "Download it from the LMS again" in result.output
