@@ -81,6 +81,9 @@ def export(
         f"{one.reason}"
         for one in table.unplaced
     ]
+    notices += [
+        f"{name} is left out of everybody's points: {reason}" for name, reason in table.unusable.items()
+    ]
     notices += table.notices
     if table.waiting:
         waiting = counted(len(table.waiting), "result")
@@ -96,6 +99,7 @@ def export(
 
 
 def _assignments(table: ClassTable, wanted: Sequence[str]) -> list[str]:
+    table.check_usable(wanted)
     if not table.assignments:
         raise GradingError("Nothing was handed in yet, so there is nothing to export.")
     for name in wanted:

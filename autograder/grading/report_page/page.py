@@ -63,6 +63,7 @@ def write_report(
     to = (to or directory.path / NAME).absolute()
     with clear_disk_errors(directory.path), ClassStore(directory) as store:
         table = read_table(directory, sections)
+        table.check_usable()
         if not figures.handed_in(table):
             raise GradingError("Nothing was handed in yet, so there is nothing to report.")
         page = _page(directory, store, table, names=names, folder=to.parent)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from autograder.grading.class_store import ClassStore
 from autograder.grading.collecting.outcomes import Waiting, WaitingList
 from autograder.grading.entering.gradebook_reading import Entries, read_entries
+from autograder.grading.errors import MasterUnusable
 from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import read_released
 from autograder.grading.reporting.rows import DROPPED, EXCUSED, NO_EXERCISE, NOT_SUBMITTED, Row, total
@@ -17,7 +18,7 @@ from autograder.grading.table.true_rows import true_rows
 from autograder.grading.table.what_counts import read_what_counts
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from autograder.grading.classes.class_directory import ClassDirectory
 
@@ -32,6 +33,7 @@ class ClassTable:
         entries: The entries of the gradebook, by student and assignment.
         stale: Submissions that were handed in or changed after they were graded last, as student/assignment.
         unplaced: Files that were collected and have no place.
+        unusable: Assignments that are in no row of anybody, as their source cannot be used, with the reason.
         notices: Sentences on what is not as the instructor will have meant it, with students' ids.
         absent: The points of students who have handed in nothing: None, or zero where the instructor says so.
     """
@@ -41,6 +43,7 @@ class ClassTable:
     entries: Entries
     stale: tuple[str, ...] = ()
     unplaced: tuple[Waiting, ...] = ()
+    unusable: Mapping[str, str] = field(default_factory=dict)
     notices: tuple[str, ...] = ()
     absent: float | None = None
 
@@ -60,6 +63,16 @@ class ClassTable:
     def assignments(self) -> list[str]:
         """The assignments that somebody has handed in."""
         return list(dict.fromkeys(row.assignment for row in self.rows))
+
+    def check_usable(self, wanted: Collection[str] = ()) -> None:
+        """See that nothing is missing that was asked for by name, or all that there was, for want of a source.
+
+        Raises:
+            MasterUnusable: It is; the message says what is wrong with the source.
+        """
+        for name, reason in self.unusable.items():
+            if name in wanted or not self.assignments:
+                raise MasterUnusable(reason)
 
     def of(self, student: str, assignment: str = "") -> list[Row]:
         """A student's rows of all assignments, or of one, which has its points also where the total leaves it out."""
@@ -119,12 +132,13 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
         sections: Only the students of these; all where empty.
 
     Raises:
-        GradingError: The class, its sources or its list of students cannot be used, or nobody is in such a section.
+        GradingError: The class or its list of students cannot be used, or nobody is in such a section.
     """
     fingerprints = Fingerprints(directory)
     with ClassStore(directory) as store:
         entered = store.entered()
-        cells = read_released(directory, store, fingerprints).cells
+        released = read_released(directory, store, fingerprints)
+    cells = released.cells
     entries = read_entries(directory.gradebook_url)
     found = {(one.student, one.assignment): one for one in directory.submissions()[0]}
     judged: dict[tuple[str, str], tuple[Row, ...]] = {}
@@ -144,7 +158,7 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
     unplaced = tuple(WaitingList(directory).read())
     others = [Student(row.student) for row in rows if row.student not in roster.students]
     whole = Roster([*roster.students.values(), *others])
-    table = ClassTable(tuple(rows), whole, entries, tuple(stale), unplaced)
+    table = ClassTable(tuple(rows), whole, entries, tuple(stale), unplaced, released.unusable)
     shown = table.only(roster.of_sections(sections)) if sections else table
     return replace(shown, notices=tuple(whole.excused_from_nothing(directory.assignments(), shown.students)))
 

@@ -8,10 +8,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 import tiny_class
+from bs4 import BeautifulSoup
 from downloads import ROSTER
+from own_assignment import EngineWithAsserts, hand_in, write_assignment
 
+from autograder.grading.errors import GradingError
 from autograder.grading.exporting.export_files import export
 from autograder.grading.report_page.page import write_report
+from autograder.grading.running import engine
 from autograder.verdict import not_checked
 
 if TYPE_CHECKING:
@@ -68,3 +72,29 @@ def test_who_is_excused_from_what_there_is_not_is_named(klass: TinyClass) -> Non
     assert "lab_12" not in write_report(klass.path, names=False).read_text()
     (klass.path / "students.csv").write_text("id,excused\nada,lab_1_2\n")
     assert not export(klass.path, "csv").notices
+
+
+def test_an_assignment_whose_source_is_damaged_is_named_and_not_left_out_in_silence(
+    klass: TinyClass, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(engine, "execute_all", EngineWithAsserts().execute_all)
+    write_assignment(klass)
+    hand_in(klass, "ben", "def add(a, b):\n    return a + b")
+    klass.grade()
+    source = klass.path / "source" / "own" / "own.ipynb"
+    source.write_text("{")
+    said = f"own is left out of everybody's points: {source} is not a notebook"
+    assert any(notice.startswith(said) for notice in export(klass.path, "csv").notices)
+    assert said in BeautifulSoup(write_report(klass.path).read_text(), "html.parser").get_text()
+    without_names = BeautifulSoup(write_report(klass.path, names=False).read_text(), "html.parser").get_text()
+    assert "own is left out of everybody's points" in without_names
+    assert str(klass.path) not in without_names
+    with pytest.raises(GradingError, match=r"own\.ipynb is not a notebook"):
+        export(klass.path, "csv", assignments=["own"])
+    with pytest.raises(GradingError, match="Nobody has handed in lab_9"):
+        export(klass.path, "csv", assignments=["lab_9"])
+    (klass.path / "source" / "lab_1_2" / "lab_1_2.ipynb").write_text("{")
+    with pytest.raises(GradingError, match="is not a notebook"):
+        export(klass.path, "csv")
+    with pytest.raises(GradingError, match="is not a notebook"):
+        write_report(klass.path)
