@@ -11,7 +11,7 @@ import msgspec
 from autograder.boxes.execution import Cell, Check, Execution
 from autograder.boxes.limits import Limits
 from autograder.boxes.verdicts_without_judge import grader_trouble, zero_points
-from autograder.verdict import Verdict  # noqa: TC001
+from autograder.verdict import State, Verdict
 
 UNREADABLE = "unreadable"
 """The diagnosis of what was handed in and is no notebook."""
@@ -90,4 +90,13 @@ def scores_of(task: Task, execution: Execution) -> dict[str, float]:
         cell.name: points(cell.check, execution.verdicts[index])
         for index, cell in enumerate(task.cells)
         if cell.check is not None
+    }
+
+
+def unchecked(task: Task, execution: Execution) -> set[str]:
+    """The check cells of a task that could not be checked, by grade_id."""
+    return {
+        cell.name
+        for index, cell in enumerate(task.cells)
+        if cell.check is not None and execution.verdicts[index].state == State.NOT_CHECKED
     }

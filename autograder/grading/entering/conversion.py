@@ -6,6 +6,7 @@ every notebook twice and opens the gradebook a dozen times.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -23,7 +24,7 @@ from autograder.grading.rebuilding.demonstrations import LEFT_OUT
 from autograder.grading.rebuilding.task_making import rebuilt_notebook, task_of
 from autograder.grading.returning.sanitize import harmless_output, make_harmless
 from autograder.grading.running import sandboxing
-from autograder.grading.task import points
+from autograder.grading.task import points, unchecked
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
@@ -73,7 +74,7 @@ def convert(
     for task, execution in results:
         notebook = _graded(directory, submission, task, execution)
         LimitOutput(config=directory.config).preprocess(notebook, {})
-        entries[task.notebook] = _entry(notebook)
+        entries[task.notebook] = replace(_entry(notebook), unchecked=unchecked(task, execution))
         _write(folder / f"{task.notebook}{SUFFIX}", _text(notebook))
     return entries
 

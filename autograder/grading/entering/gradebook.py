@@ -13,7 +13,7 @@ import sqlalchemy
 from autograder.grading.entering.gradebook_reading import SUBMITTED, has_tables, opened, sql
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Collection, Iterable
     from datetime import datetime
 
     from sqlalchemy import Connection
@@ -38,10 +38,12 @@ class NotebookEntry:
     Attributes:
         scores: Automatic points of each graded cell, by grade_id; None where a person has to give them.
         comments: Automatic comment on each cell that can have one, by grade_id.
+        unchecked: The graded cells that could not be checked: their zero says nothing, as after :func:`reset`.
     """
 
     scores: Scores
     comments: Mapping[str, str | None]
+    unchecked: Collection[str] = ()
 
 
 def reset(url: str, submissions: Iterable[tuple[str, str]]) -> None:
@@ -214,11 +216,12 @@ def _enter_notebook(book: Connection, submission: str, cells: _Cells, entry: Not
     book.execute(
         sql("UPDATE submitted_notebook SET late_submission_penalty = NULL WHERE id = :id"), {"id": notebook}
     )
-    _enter_scores(book, notebook, cells, entry.scores)
+    _enter_scores(book, notebook, cells, entry)
     _enter_comments(book, notebook, cells, entry.comments)
 
 
-def _enter_scores(book: Connection, notebook: str, cells: _Cells, scores: Scores) -> None:
+def _enter_scores(book: Connection, notebook: str, cells: _Cells, entry: NotebookEntry) -> None:
+    scores = entry.scores
     rows = book.execute(
         sql("SELECT cell_id, manual_score FROM grade WHERE notebook_id = :n"), {"n": notebook}
     ).all()
@@ -230,7 +233,7 @@ def _enter_scores(book: Connection, notebook: str, cells: _Cells, scores: Scores
             "cell": cell,
             "score": scores.get(name, 0.0),
             # As nbgrader's SaveAutoGrades has it: a person looks where a person was, or has to be.
-            "look": by_hand.get(cell) is not None or scores.get(name, 0.0) is None,
+            "look": by_hand.get(cell) is not None or scores.get(name, 0.0) is None or name in entry.unchecked,
         }
         for cell, name in cells.graded
     ]

@@ -98,3 +98,23 @@ def test_an_assignment_whose_source_is_damaged_is_named_and_not_left_out_in_sile
         export(klass.path, "csv")
     with pytest.raises(GradingError, match="is not a notebook"):
         write_report(klass.path)
+
+
+def test_what_could_not_be_checked_is_blank_until_it_could(klass: TinyClass) -> None:
+    """The judge of Eve's work died: that is nobody's zero, neither here nor in a later run that is not about her."""
+    klass.submit("eve", "'die'", "'die'")
+    klass.grade()
+    for grade in (lambda: None, lambda: klass.grade(students=["ben"], again=True)):
+        grade()
+        export(klass.path, "csv", absent_zero=True)
+        assert (students(klass)["eve"]["lab_1_2"], students(klass)["eve"]["total"]) == ("", "")
+    text = (klass.path / "grades.csv").read_text("utf-8-sig")
+    of_eve = [row for row in csv.DictReader(io.StringIO(text)) if row["student"] == "eve"]
+    assert {(row["score"], row["state"], row["waits_for_a_person"]) for row in of_eve} == {
+        ("", "not_graded", "")
+    }
+    klass.submit("eve", 4, 10)
+    klass.grade()
+    export(klass.path, "csv")
+    assert students(klass)["eve"]["total"] == "14"
+    assert students(klass)["eve"]["waits_for_a_person"] == "0"
