@@ -67,7 +67,8 @@ class StudentOf:
             sure = tuple(student for names in known.members if (student := self._first(names)))
             if sure and len(sure) == len(known.members):
                 return tuple((student,) for student in sure)
-        found = self._roster.find(identity)
+        # What students.csv has of Moodle is another number: this one is one student's in one assignment.
+        found = self._roster.find(replace(identity, number="") if identity.lms == "moodle" else identity)
         called = identity.login or identity.name
         if not found and not self._roster.students and identity.lms and called:
             found = (Student(called),)
@@ -95,9 +96,11 @@ class StudentOf:
         number = identity.number or identity.login
         known = self._by_number.get((identity.lms, number))
         called = " and ".join(str(names[-1]) for names in known.members if names) if known else str(identity)
+        nobody = f"nobody in the class is called {called or number}: add a line to students.csv, or"
+        if identity.lms == "moodle":
+            return f"{nobody} {_with_worksheet(number)}"
         return (
-            f"nobody in the class is called {called or number}: add a line to students.csv, or the id that "
-            f"{identity.lms.capitalize()} uses ({number}) to the column {identity.lms}"
+            f"{nobody} the id that {identity.lms.capitalize()} uses ({number}) to the column {identity.lms}"
         )
 
     def time(self, identity: Identity, student: str, assignment: str) -> datetime | None:
@@ -135,8 +138,12 @@ class StudentOf:
 def _of_several(identity: Identity, students: Iterable[Student]) -> str:
     names = ", ".join(student.id for student in students)
     if identity.lms == "moodle":
-        return (
-            f"{identity} may be {names}: collect it together with the grading worksheet (Grades-….csv), which says "
-            f"by their addresses who number {identity.number} is"
-        )
+        return f"{identity} may be {names}: {_with_worksheet(identity.number)}"
     return f"{identity} may be {names}: put the LMS's id of each into students.csv"
+
+
+def _with_worksheet(number: str) -> str:
+    return (
+        "collect it together with the grading worksheet (Grades-….csv), which says by their addresses who number "
+        f"{number} is"
+    )

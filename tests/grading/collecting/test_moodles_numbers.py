@@ -1,0 +1,43 @@
+"""The number in the name of a file of Moodle's is one student's in one assignment, and no list of students has it."""
+
+from __future__ import annotations
+
+import shutil
+from typing import TYPE_CHECKING
+
+from downloads import write_zip
+
+from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.outcomes import State
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import TinyClass
+
+WORKSHEET = "Identifier,Full name,Email address,Grade\nParticipant 556,Guest,jose@uni.example,\n"
+
+
+def test_whose_number_on_moodles_site_is_the_same_by_chance_gets_nobodys_work(
+    tiny: TinyClass, tmp_path: Path
+) -> None:
+    (tiny.path / "students.csv").write_text(
+        "id,first_name,last_name,email,moodle\neve,Eve,O'Neill,,\njose,José,Núñez,jose@uni.example,555\n",
+        encoding="utf-8",
+    )
+    work = tiny.submit("x").read_text()
+    shutil.rmtree(tiny.path / "submitted" / "x")
+    names = (
+        "Eve O'Neill_555_assignsubmission_file_lab_1_2.ipynb",
+        "Guest_556_assignsubmission_file_lab_1_2.ipynb",
+    )
+    download = write_zip(tmp_path / "m.zip", dict.fromkeys(names, work))
+    report = collect(tiny.path, [download])
+    assert [one.student for one in report.having(State.PLACED)] == ["eve"]
+    (guest,) = report.having(State.NOT_PLACED)
+    assert "grading worksheet" in guest.reason
+    assert "556" in guest.reason
+    worksheet = tmp_path / "Grades-lab.csv"
+    worksheet.write_text(WORKSHEET)
+    placed = {one.student for one in collect(tiny.path, [download, worksheet]).having(State.PLACED)}
+    assert placed == {"jose"}
