@@ -198,7 +198,8 @@ def never_spun(role: str) -> Mistake:
             return None
         return Advice(
             "The node is on the graph, but none of its callbacks is ever called: nothing spins it.",
-            "Call rclpy.spin(node) at the end of main(). In a notebook, `with spinning(node):` does it.",
+            "In a program, call rclpy.spin(your_node) at the end of main(). In a notebook, `with spinning(your_node):` "
+            "does it.",
         )
 
     return Mistake("never_spun", recognise)
@@ -284,7 +285,7 @@ def ended_too_early(evidence: Evidence) -> Advice | None:
     code = ending.data.get("code")
     exited = f"ended by itself, with exit code {code}," if code else "ended by itself"
     how = {"exited": exited, "returned": "returned"}.get(ending.name, "ended")
-    keep = "Keep it alive while it has work to do, for example with rclpy.spin(node), above anything that ends it."
+    keep = "Keep it alive while it has work to do, for example with rclpy.spin(your_node), above anything that ends it."
     if any(part.said() or any(map(part.of, _WORK)) for part in evidence):
         return Advice(f"The program {how} before its work was done.", keep)
     return Advice(

@@ -11,6 +11,7 @@ from autograder.kit.evidence import is_cut_off
 from autograder.kit.known_crashes import KNOWN
 from autograder.kit.model import Advice, Mistake
 from autograder.kit.python_errors import meaning
+from autograder.kit.quoted_names import FRAME_WITH_CODE, Name, is_a_library, names
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence
@@ -44,7 +45,8 @@ def _recogniser(crash: Crash) -> Mistake:
         found = compiled.search(traceback)
         if found is None:
             return None
-        words = meaning(traceback)._asdict() | {name: said or "" for name, said in found.groupdict().items()}
+        said = {name: Name(text or "") for name, text in found.groupdict().items()}
+        words = meaning(traceback)._asdict() | names(traceback) | said
         return Advice(crash.text.format(**words).rstrip(), crash.next_step.format(**words), traceback)
 
     return Mistake(crash.key, recognise, certain=True)
@@ -55,7 +57,7 @@ def what_and_where(traceback: str) -> str:
     # pybind11 says below its error what the function was called with.
     told = (line for line in traceback.splitlines() if not line.startswith("Invoked with: "))
     last = [line for line in told if line[:1].strip()][-1:]
-    frames = [found for found in _FRAME.finditer(traceback) if not _is_a_library(found["file"])]
+    frames = [found for found in _FRAME.finditer(traceback) if not is_a_library(found["file"])]
     where = f" (line {frames[-1]['line']}, in {frames[-1]['function']})" if frames else ""
     if not last or last[0].startswith("Traceback"):
         return f"another of its threads ended it before it had said which{where}"
@@ -74,11 +76,6 @@ def raised(how: str, traceback: str) -> Advice:
 
 
 _FRAME = re2.compile(r'(?m)^ +File "(?P<file>[^"\n]*)", line (?P<line>\d+), in (?P<function>[^\n]*)$')
-_LIBRARY = re2.compile(r"/python3(?:\.\d+)?/(?P<below>[^/]*)|/rclpy/|^<frozen")
-
-
-def _is_a_library(file: str) -> bool:
-    return any(found["below"] not in ("site-packages", "dist-packages") for found in _LIBRARY.finditer(file))
 
 
 def _crashed(evidence: Evidence) -> Advice | None:
@@ -148,7 +145,6 @@ OTHER_SLIPS = tuple(map(_only_slips, OTHER_CRASHES))
 
 SLIPS = ("AttributeError", "TypeError", "NameError", "UnboundLocalError", "KeyError", "IndexError")
 """Exceptions that nobody raises in order to say something."""
-_FRAME_WITH_CODE = re2.compile(r'(?m)^ {2}File "(?P<file>[^"]*)", line \d+.*\n {4,}(?P<code>\S.*)$')
 _INSTALLED = re2.compile(r"/(site|dist)-packages/|/lib/python3\.\d+/|/opt/ros/")
 
 
@@ -165,7 +161,7 @@ def on_purpose(traceback: str) -> bool:
 
 def meant(traceback: str) -> bool:
     """True if the innermost line of a traceback is one of the program's own that says ``raise`` or ``assert``."""
-    frames = list(_FRAME_WITH_CODE.finditer(traceback))
+    frames = list(FRAME_WITH_CODE.finditer(traceback))
     if not frames or _INSTALLED.search(frames[-1]["file"]):
         return False
     return re2.search(r"(?:^|[:;] *)(?:raise|assert)\b", frames[-1]["code"]) is not None

@@ -244,7 +244,7 @@ def patience_not_kept(absent: str) -> Mistake:
         "patience_not_kept",
         lambda evidence: broken_patience(evidence.part(absent)),
         "When there is no server, your function {}.",
-        f"Use {PATIENCE} as the limit, once: `if not client.wait_for_service(timeout_sec={PATIENCE}):` (or "
+        f"Use {PATIENCE} as the limit, once: `if not your_client.wait_for_service(timeout_sec={PATIENCE}):` (or "
         f"`wait_for_server`), and below it say so and end: `raise TimeoutError(...)`. Without `raise` or `return` it "
         f"goes on to its next wait. A loop has to end {PATIENCE} seconds after it began.",
     )
@@ -307,8 +307,8 @@ def not_forgotten(
         lambda evidence: _gives_up_where_served(served(evidence), evidence.part(absent), role, asked),
         f"Your client says “{{}}” where the {noun} is there, and does not say it where there is none: the condition is "
         "the wrong way round.",
-        f"{wait} returns True when the {noun} is there. Write `if not client.{wait}(timeout_sec=5.0):` above what your "
-        f"client does without a {noun}.",
+        f"{wait} returns True when the {noun} is there. Write `if not your_{role}.{wait}(timeout_sec=5.0):` above what "
+        f"your client does without a {noun}.",
         certain=True,
     )
 

@@ -48,7 +48,8 @@ WAITS_FOR_NOBODY = mistake(
     "waits_forever",
     lambda evidence: given_up(evidence) if given_up(evidence).startswith("still waiting") else "",
     "When there is no action server, your client is {}.",
-    "Give the wait a limit of a few seconds: `if not client.wait_for_server(timeout_sec=5.0):` say so and stop.",
+    "Give the wait a limit of a few seconds: `if not your_action_client.wait_for_server(timeout_sec=5.0):` say so and "
+    "stop.",
     certain=True,
 )
 WAITS_FOREVER = mistake(
@@ -59,8 +60,8 @@ WAITS_FOREVER = mistake(
         and not asked_for(_successful_run(evidence))
     ),
     "The server was there, but your client never sent a goal and never ended.",
-    "Wait with a limit, `client.wait_for_server(timeout_sec=5.0)`, and send the goal as soon as it is True. A loop "
-    "that waits begins with `while not`.",
+    "Wait with a limit, `your_action_client.wait_for_server(timeout_sec=5.0)`, and send the goal as soon as it is "
+    "True. A loop that waits begins with `while not`.",
 )
 WAITS_THE_WRONG_WAY_ROUND = not_forgotten(
     ABSENT,
@@ -88,7 +89,7 @@ ORDER_NEVER_FILLED = mistake(
     "field_typo",
     _order_never_filled,
     "The goal asks for order 0: its field was never filled.",
-    "Set goal.order (or Fibonacci.Goal(order=...)). A misspelt keyword is ignored silently.",
+    "Set the field order of your goal, as in Fibonacci.Goal(order=...). A misspelt keyword is ignored silently.",
     certain=True,
 )
 
@@ -103,7 +104,7 @@ WRONG_ORDER = mistake(
     _wrong_order,
     "The judge got {}.",
     "Send one goal, once, with the order that your function or program was given (sys.argv[1] on a command line). "
-    "If a timer sends the goal, switch the timer off after that: timer.cancel().",
+    "If a timer sends the goal, switch the timer off after that, with its cancel().",
     certain=True,
 )
 CANCELED_UNASKED = mistake(
@@ -121,8 +122,8 @@ NEVER_SPUN = mistake(
         and not _successful_run(evidence).first("result_request")
     ),
     "Your client sent its goal, but it receives no answer: none of its callbacks is called any more.",
-    "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future, timeout_sec=5.0), in one "
-    "place.",
+    "Spin it while it waits: rclpy.spin(your_node) or rclpy.spin_until_future_complete(your_node, your_future, "
+    "timeout_sec=5.0), in one place.",
 )
 
 
@@ -145,8 +146,8 @@ ENDED_TOO_EARLY = mistake(
     "ended_too_early",
     _ended_before,
     "Your client sent its goal, and ended before {}. An answer may take half a second and more.",
-    "Spin until the answer is there: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), or "
-    "rclpy.spin(node) where callbacks take the answers. A single spin_once takes in one thing only.",
+    "Spin until the answer is there: rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0), or "
+    "rclpy.spin(your_node) where callbacks take the answers. A single spin_once takes in one thing only.",
 )
 
 # --- a goal that is refused ---------------------------------------------------------------------------------------
@@ -156,7 +157,7 @@ RESULT_OF_REJECTED_GOAL = mistake(
     lambda evidence: evidence.part(REFUSED).first("result_request"),
     "The goal was rejected, and your client asked for its result all the same: there is none, and the status that "
     "comes back is 0, UNKNOWN.",
-    "Look at goal_handle.accepted first. Where it is False, say so and stop.",
+    "Look at `accepted` of the goal handle first. Where it is False, say so and stop.",
 )
 
 
@@ -168,8 +169,8 @@ def crashed_by_refusal(evidence: Evidence) -> Advice | None:
     return Advice(
         "The goal was rejected, and your client went on as if it had been accepted, until an exception stopped it: "
         f"{what_and_where(crashed[0].traceback)}",
-        "Look at goal_handle.accepted as soon as the answer to the goal is there. Where it is False, say so, as the "
-        "task asks, and stop: there is no result to wait for.",
+        "Look at `accepted` of the goal handle as soon as the answer to the goal is there. Where it is False, say so, "
+        "as the task asks, and stop: there is no result to wait for.",
         crashed[0].traceback,
     )
 
@@ -179,14 +180,14 @@ GOES_ON_AFTER_REFUSAL = mistake(
     "refused_goal_used",
     called_accepted,
     "The goal was rejected, and your client said “{}”: it went on as if the goal had been accepted.",
-    "Stop where `goal_handle.accepted` is False: below the line that says so, end with `return`.",
+    "Stop where `accepted` of the goal handle is False: below the line that says so, end with `return`.",
 )
 STAYS_AFTER_REFUSAL = mistake(
     "never_ended",
     lambda evidence: refused_as_seen(evidence) == "said so, and did not end",
     "Your client says that the goal was rejected, and then waits for ever for a result that will not come.",
-    "End there, too. In a notebook, raise an error or return where `goal_handle.accepted` is False. In a program, say "
-    "so there, call rclpy.shutdown() and return.",
+    "End there, too. In a notebook, raise an error or return where `accepted` of the goal handle is False. In a "
+    "program, say so there, call rclpy.shutdown() and return.",
 )
 
 
@@ -207,7 +208,7 @@ REFUSAL_NOT_REPORTED = mistake(
     "refusal_not_reported",
     _says_nothing_of_refusal,
     "The goal was rejected, and your client did not say so{}",
-    "Look at goal_handle.accepted when the answer to the goal is there, and log an error where it is False.",
+    "Look at `accepted` of the goal handle when the answer to the goal is there, and log an error where it is False.",
 )
 REFUSAL_RETURNED = mistake(
     "result_not_returned",
@@ -230,7 +231,8 @@ FEEDBACK_NOT_SHOWN = mistake(
     "feedback_not_shown",
     _feedback_not_shown,
     "{0[0]} feedback messages were sent, and your client showed {0[1]} of them.",
-    "Give send_goal_async a feedback_callback, and log message.feedback.partial_sequence in it, each time.",
+    "Give send_goal_async a feedback_callback, and log in it, each time, the feedback.partial_sequence of the message "
+    "that it is given.",
 )
 RESULT_NOT_REQUESTED = mistake(
     "result_not_reported",
@@ -238,7 +240,7 @@ RESULT_NOT_REQUESTED = mistake(
         asked_for(_successful_run(evidence)) and not _successful_run(evidence).first("result_request")
     ),
     "Your client sent its goal and never asked for the result.",
-    "Call goal_handle.get_result_async() once the goal is accepted, and wait for that future.",
+    "Call get_result_async() of the goal handle once the goal is accepted, and wait for the future that it returns.",
 )
 
 
@@ -252,7 +254,7 @@ RESULT_REPEATED = mistake(
     _asks_again_and_again,
     "Your client asked for the result of one goal {} times.",
     "Ask once, when the goal is accepted, and wait for the future that you get. If a timer checks whether the result "
-    "is there, switch the timer off when it is: timer.cancel().",
+    "is there, switch the timer off when it is, with its cancel().",
     certain=True,
 )
 
@@ -269,7 +271,7 @@ WRONG_RESULT_REPORTED = mistake(
     "wrong_result_reported",
     _feedback_for_result,
     "Your client reported the last feedback as if it were the result; the result was another sequence.",
-    "Take the sequence from the result: future.result().result.sequence.",
+    "Take the sequence from what the future of get_result_async() holds: its result().result.sequence.",
 )
 
 
@@ -284,7 +286,8 @@ RESULT_NOT_RETURNED = mistake(
     "result_not_returned",
     _returns_another,
     "Your function logged the sequence of the result, and returned {}.",
-    "End it with `return list(answer.result.sequence)`: whoever calls it wants the numbers.",
+    "End it with `return list(...)`, with the sequence of the result between the parentheses: whoever calls it wants "
+    "the numbers.",
 )
 STATUS_MISREPORTED = mistake(
     "status_misreported",
@@ -310,11 +313,12 @@ def _result_not_reported(evidence: Evidence) -> Advice | None:
         )
         return Advice(
             f"The result has {len(numbers)} numbers. Your client said most of them, but not all as they came: {seen}.",
-            "Say the whole sequence, as the server sent it: list(future.result().result.sequence).",
+            "Say the whole sequence, as the server sent it: list(...) of the result().result.sequence of the future.",
         )
     return Advice(
         "The result came, but your client did not say its sequence.",
-        "When the result is there, log future.result().result.sequence. In a notebook, return it, too.",
+        "When the future of get_result_async() is done, log its result().result.sequence. In a notebook, return it, "
+        "too.",
     )
 
 

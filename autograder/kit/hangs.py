@@ -118,19 +118,21 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
         "nested_spin",
         lambda found: any(map(_spins_in_callback, found)),
         "A callback of yours spins, and waits inside that spin for ever: the executor that called it cannot go on.",
-        "Leave the spin out of the callback: send the request there, and go on in future.add_done_callback(...).",
+        "Leave the spin out of the callback: send the request there, and go on in a function that you give to the "
+        "add_done_callback(...) of the future.",
     ),
     (
         "call_in_same_group",
         lambda found: any(_blocks(stack) and _in_callback(stack) for stack in found),
         "A callback of yours makes a blocking call and waits for ever: the answer would have to come through the same "
         "callback group, which is busy with this very callback.",
-        "Use the asynchronous call, whose name ends in _async, and go on in future.add_done_callback(...).",
+        "Use the asynchronous call, whose name ends in _async, and go on in a function that you give to the "
+        "add_done_callback(...) of the future that it returns.",
     ),
     (
         "rate_never_spun",
         lambda found: any(map(_sleeps_on_rate, found)),
-        "rate.sleep() waits for ever: a rate is a timer, and no thread is free to let it fire.",
+        "The sleep() of your rate waits for ever: a rate is a timer, and no thread is free to let it fire.",
         "Use create_timer and rclpy.spin in place of the loop. Where the loop has to stay, spin the node in a second "
         "thread; where it is inside a callback, with a MultiThreadedExecutor.",
     ),
@@ -164,17 +166,17 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
         lambda found: any(map(_blocks, found)),
         "A blocking call waits for ever: the answer has come, but nothing spins the node, so the node "
         "does not take it.",
-        "Use the call whose name ends in _async (call_async, send_goal_async, get_result_async) and wait for its "
-        "future with rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), or spin the node in a background "
-        "executor while you use call().",
+        "Use the call whose name ends in _async (call_async, send_goal_async, get_result_async) and wait for the "
+        "future that it returns with rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0), or "
+        "spin the node in a background executor while you use call().",
     ),
     (
         "never_spun",
         lambda found: bool(found) and not any(frame.rclpy for stack in found for frame in stack),
         "Your program is busy with code of its own and nothing spins the node, so none of its callbacks is "
         "ever called.",
-        "Write rclpy.spin(node) in place of the loop that waits (rclpy.spin_until_future_complete(node, future) where "
-        "you wait for an answer), or spin in a second thread beside your loop.",
+        "Write rclpy.spin(your_node) in place of the loop that waits (rclpy.spin_until_future_complete(your_node, "
+        "your_future) where you wait for an answer), or spin in a second thread beside your loop.",
     ),
 )
 

@@ -111,9 +111,10 @@ KNOWN = (
     ),
     Crash(
         "builtin_callback",
-        r"no signature found for builtin",
+        r"(?:create_subscription\([^,\n]*,[^,\n]*, *(?:callback *= *)?(?P<called>[\w.]+)(?:.*\n)+)?"
+        r".*no signature found for builtin",
         "A builtin such as list.append or deque.append was given as a callback; rclpy cannot look at its arguments.",
-        "Wrap it: lambda msg: my_list.append(msg).",
+        "Wrap it: lambda message: {called:your_list.append}(message).",
     ),
     Crash(
         "callback_signature",
@@ -191,14 +192,14 @@ KNOWN = (
         "raw_value_published",
         r"TypeError: Expected <class '[\w.]+'>, got <class '[\w.]+\.Metaclass_(?P<type>\w+)'>",
         "What your code published is the type {type} itself; a message of this type is expected.",
-        "Write parentheses after the type: msg = {type}(). In a notebook, then choose Kernel, Restart Kernel and Run "
-        "All Cells: a field that was set on the type itself stays there.",
+        "Write parentheses after the type where you make the message: message = {type}(). In a notebook, then choose "
+        "Kernel, Restart Kernel and Run All Cells: a field that was set on the type itself stays there.",
     ),
     Crash(
         "raw_value_published",
         r"TypeError: Expected <class '[\w.]+\.msg\.\w+\.(?P<type>\w+)'>, got <class '(?:\w+\.)*(?P<got>\w+)'>",
         "What your code published is of the type {got}; a message of the type {type} is expected.",
-        "Make the message first, msg = {type}(), fill its field and publish that: publish(msg).",
+        "Make a message first, message = {type}(), fill its field and publish that: publish(message).",
     ),
     Crash(
         "raw_value_published",
@@ -233,10 +234,11 @@ KNOWN = (
     ),
     Crash(
         "field_type",
-        r"field must be a sub message of type 'Vector3'"
+        r"(?:^ +(?P<part>(?:\w+\.)+(?:linear|angular)) *=[^=].*\n(?:.*\n)*)?"
+        r".*field must be a sub message of type 'Vector3'"
         r"|publish\(msg\)\n(?:[ ~^]*\n)?AttributeError: '(?:float|int)' object has no attribute 'x'",
         "A part of a message that has three numbers got a single one.",
-        "Name the number that you mean: x, y or z, as in command.linear.x = 0.5.",
+        "Name the number that you mean: x, y or z, as in {part:command.linear}.x = 0.5.",
     ),
     Crash(
         "field_type",
@@ -258,39 +260,42 @@ KNOWN = (
         "field_typo",
         r"^NameError: name '(?P<name>linear|angular)' is not defined",
         "{name} is a part of your message, and Python knows it only together with this message.",
-        "Write the message before it, with a dot: command.{name}, as in command.linear.x = 0.5.",
+        "Write your message before it, with a dot, as in command.linear.x = 0.5.",
     ),
     Crash(
         "field_typo",
         r"AttributeError: 'Twist' object has no attribute '(?P<name>\w+)'",
         "A Twist has no field called {name}: it has two parts, linear and angular, and each has the numbers x, y "
         "and z.",
-        "Name the part, too: command.linear.x is the speed straight ahead, command.angular.z the turn to the left.",
+        "Name the part, too: {owner:command}.linear.x is the speed straight ahead, {owner:command}.angular.z the turn "
+        "to the left.",
     ),
     Crash(
         "field_typo",
         r"AttributeError: '\w+_FeedbackMessage' object has no attribute '(?P<name>\w+)'",
         "The message has no field called {name}.",
-        "In an action's feedback callback the fields are one level down: msg.feedback.partial_sequence.",
+        "In an action's feedback callback the fields are one level down: {owner:message}.feedback.partial_sequence.",
     ),
     Crash(
         "field_typo",
         r"AttributeError: '\w+_Goal' object has no attribute 'request'",
         "Your goal_callback is given the goal itself; only a goal handle has the goal in its attribute request.",
-        "Write goal.order there, and goal_handle.request.order in the execute_callback.",
+        "Write {owner:goal}.order there; in the execute_callback the order is in .request.order of the goal handle.",
     ),
     Crash(
         "field_typo",
         r"AttributeError: '\w+_GetResult_Response' object has no attribute '(?P<name>\w+)'",
         "The answer to get_result_async() has two parts, result and status, and no {name}.",
-        "The fields of the result are one level down: answer.result.sequence. The number of the status is "
-        "answer.status.",
+        "The fields of the result are one level down: {owner:answer}.result.sequence. The number of the status is "
+        "{owner:answer}.status.",
     ),
     Crash(
         "field_typo",
+        r"(?:(?P<answer>[A-Za-z_][\w.]*(?:\(\))?)\.result\.status\b.*\n(?:[ ~^]*\n)?)?"
         r"AttributeError: '\w+_Result' object has no attribute 'status'",
         "The status is not in the result: it comes beside it.",
-        "Take it from what the wait gave you: answer.status, and answer.result.sequence for the numbers.",
+        "Take it from what the wait gave you: {answer:answer}.status, and {answer:answer}.result.sequence for the "
+        "numbers.",
     ),
     Crash(
         "field_type",
@@ -306,8 +311,8 @@ KNOWN = (
         r"AttributeError: '(?P<type>\w+)' object attribute '(?P<field>\w+)' is read-only",
         "The field {field} was set on the type {type} itself, by this code or by an older version of it. Now no "
         "message of this type can be filled any more.",
-        "Write parentheses after each {type} that makes a message: msg = {type}(). Then choose Kernel, Restart Kernel "
-        "and Run All Cells: only this makes the type whole again.",
+        "Write parentheses after each {type} that makes a message: {owner:message} = {type}(). Then choose Kernel, "
+        "Restart Kernel and Run All Cells: only this makes the type whole again.",
     ),
     Crash(
         "field_typo",
@@ -328,21 +333,23 @@ KNOWN = (
         "callback_returned_none",
         r"(?:send_response|service_send_response)(?:.*\n)+TypeError",
         "A service callback returned no response: nothing at all, a field of it, or a type without parentheses.",
-        "End the callback with `return response`, the whole response that it was given.",
+        "End the callback with `return` and the whole response that it was given, such as `return response`.",
     ),
     Crash(
         "executor_not_kept",
         r"'NoneType' object has no attribute '(?:spin\w*|add_node|create_task)'",
-        "node.executor is None: a node has an executor only while one spins it, and does not keep it.",
-        "Write rclpy.spin(node), or rclpy.spin_until_future_complete(node, future) where you wait for an answer. With "
-        "an executor of your own: executor = SingleThreadedExecutor(), executor.add_node(node), executor.spin().",
+        "{owner:The executor of the node} is None: a node has an executor only while one spins it, and does not keep "
+        "it.",
+        "Write rclpy.spin(your_node), or rclpy.spin_until_future_complete(your_node, your_future) where you wait for "
+        "an answer. With an executor of your own: executor = SingleThreadedExecutor(), executor.add_node(your_node), "
+        "executor.spin().",
     ),
     Crash(
         "result_read_too_early",
         r"AttributeError: '(?:Future|Task)' object has no attribute '(?P<name>\w+)'",
-        "{name} is read from the future, which is the promise of an answer and not the answer.",
-        "Wait until it is done, with spin_until_future_complete(node, future, timeout_sec=5.0), and read "
-        "future.result().{name}.",
+        "{name} is read from {owner:a future}, which is the promise of an answer and not the answer.",
+        "Wait until it is done, with rclpy.spin_until_future_complete(your_node, {owner:your_future}, "
+        "timeout_sec=5.0), and read {owner:your_future}.result().{name}.",
     ),
     Crash(
         "callback_signature",
@@ -352,21 +359,23 @@ KNOWN = (
     ),
     Crash(
         "result_read_too_early",
-        r"^ +(?:.*[^\w.])?(?P<what>(?:\w+\.)*goal_handle)\.\w+.*\n(?:[ ~^]*\n)?AttributeError: 'NoneType' object has "
-        r"no attribute '(?:accepted|cancel_goal_async|get_result_async)'",
+        r"^ +(?:.*[^\w.)])?(?P<what>[A-Za-z_][\w.]*)\.(?:accepted|cancel_goal_async|get_result_async)\b.*\n"
+        r"(?:[ ~^]*\n)?AttributeError: 'NoneType' object has no attribute '(?:accepted|cancel_goal_async"
+        r"|get_result_async)'",
         "{what} is None: nothing has kept the handle of the goal there, or it was kept before the answer had arrived, "
         "or the function that should give it returns nothing.",
         "Wait until the future of send_goal_async is done, then keep its result in {what}. Where another function "
-        "keeps the handle in an attribute, such as client.goal_handle, call that one first and read the handle there.",
+        "keeps the handle, such as the send_goal of a lab, call that one first, and read the handle where it keeps it.",
     ),
     Crash(
         "result_read_too_early",
         r"'NoneType' object has no attribute '(?:sum|result|accepted|status|sequence|cancel_goal_async|"
         r"get_result_async|goals_canceling)'",
-        "The answer was read before it was there: future.result() is None until the future is done.",
-        "Wait first: rclpy.spin_until_future_complete(node, future), or go on in future.add_done_callback(...). If "
-        "your code does wait, no answer came in time: the wait is too short, or the other end is not there yet, and "
-        "wait_for_service (or wait_for_server) has to come first. Look at future.done() before you read.",
+        "The answer was read before it was there: {owner:the result of a future} is None until the future is done.",
+        "Wait first: rclpy.spin_until_future_complete(your_node, {future:your_future}), or go on in a function that "
+        "you give to {future:your_future}.add_done_callback(...). If your code does wait, no answer came in time: the "
+        "wait is too short, or the other end is not there yet, and wait_for_service (or wait_for_server) has to come "
+        "first. Look at {future:your_future}.done() before you read.",
     ),
     Crash(
         "module_not_found",
@@ -385,7 +394,8 @@ KNOWN = (
         "nested_spin",
         r"[Ee]xecutor is already spinning|generator already executing",
         "A callback spins although its own executor is spinning already.",
-        "Never call spin or spin_until_future_complete inside a callback; go on in future.add_done_callback(...).",
+        "Never call spin or spin_until_future_complete inside a callback: give the future that call_async returned a "
+        "function to go on in, with its add_done_callback(...).",
     ),
     Crash(
         "not_written",

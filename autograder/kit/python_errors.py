@@ -12,6 +12,7 @@ import re2
 
 from autograder.kit.python_names import MARKS, NAMES
 from autograder.kit.python_syntax import READING
+from autograder.kit.quoted_names import Name, names
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -36,8 +37,8 @@ RUNNING: Sequence[Row] = (
     (
         r'^TypeError: can only concatenate str \(not "(?P<type>[A-Z]\w*)"\)',
         "A string and a whole {type} are joined with +.",
-        "The string of a message is in its field: write message.data in place of message, with the name that your "
-        "method has for it.",
+        "The string of a message is in its field data: write that field, with a dot, after the name that your method "
+        "has for the message, as in message.data.",
     ),
     (
         r"^TypeError: (?:can only concatenate str|unsupported operand type\(s\) for \+=?: '(?:int|float|str)' and "
@@ -60,23 +61,24 @@ RUNNING: Sequence[Row] = (
     (
         r"^TypeError: 'NoneType' object is not (?:iterable|subscriptable)",
         "A list is needed here, and the value is None.",
-        "append changes the list and returns None: write numbers.append(...) alone, without numbers = before it. If "
-        "the value comes from a function of yours, look for a missing return.",
+        "append changes the list and returns None: write it alone, as in numbers.append(...), without numbers = before "
+        "it. If the value comes from a function of yours, look for a missing return.",
     ),
     (
-        r"^TypeError: unhashable type: '(?P<kind>\w+)'",
+        rf"(?:\b(?P<table>[A-Za-z_][\w.]*)\[(?P<what>[\w.()]+)\].*{MARKS})?"
+        r"TypeError: unhashable type: '(?P<kind>\w+)'",
         "A value of the type {kind} cannot be looked up in a dictionary.",
-        "Look up one of its fields, with a dot: STATUS_NAMES[answer.status].",
+        "Look up one of its fields, with a dot, as in {table:STATUS_NAMES}[{what:answer}.status].",
     ),
     (
-        r"^TypeError: list\.append\(\) takes exactly one argument",
+        rf"(?:\b(?P<list>[A-Za-z_][\w.]*)\.append\(.*{MARKS})?TypeError: list\.append\(\) takes exactly one argument",
         "append puts a single value at the end of a list.",
-        "Give it one value: numbers.append(numbers[-2] + numbers[-1]).",
+        "Give it one value, as in {list:numbers}.append({list:numbers}[-2] + {list:numbers}[-1]).",
     ),
     (
         r"^TypeError: can only concatenate list",
         "A list and something that is no list are joined with +.",
-        "To put one more value at the end of a list, write numbers.append(value).",
+        "To put one more value at the end of a list, append it, as in numbers.append(value).",
     ),
     (
         r"^TypeError: '(?P<kind>method|function|builtin_function_or_method)' object is not (?:subscriptable|iterable)",
@@ -86,7 +88,7 @@ RUNNING: Sequence[Row] = (
     (
         r"^TypeError: '(?P<kind>[A-Z]\w*_?\w*)' object is not (?:subscriptable|iterable)",
         "An object of the type {kind} is no list and no dictionary.",
-        "Take its field, with a dot: message.data, request.a, answer.result.sequence.",
+        "Take its field, with a dot, as in message.data, request.a or answer.result.sequence.",
     ),
     (
         r"^TypeError: '(?P<kind>int|float|bool)' object is not (?:subscriptable|iterable)",
@@ -96,7 +98,7 @@ RUNNING: Sequence[Row] = (
     (
         r"^TypeError: '[<>]=?' not supported between instances of (?:'list' and|'\w+' and 'list')",
         "A whole list is compared with a single value.",
-        "Compare its length, len(numbers), or one of its elements, numbers[-1].",
+        "Compare its length, as in len(numbers), or one of its elements, as in numbers[-1].",
     ),
     (
         r"^TypeError: '[<>]=?' not supported between instances of '\w+' and '\w+'",
@@ -104,14 +106,15 @@ RUNNING: Sequence[Row] = (
         "Turn the string into a number first: int(...) or float(...).",
     ),
     (
-        r"^TypeError: float\(\) argument must be a string or a real number, not '(?:method|function)'",
+        r"(?:create_timer\((?P<called>[A-Za-z_][\w.]*), *(?P<seconds>[\d.]+)\)(?:.*\n)+?)?"
+        r"TypeError: float\(\) argument must be a string or a real number, not '(?:method|function)'",
         "The timer got the method where the period belongs.",
-        "First the seconds, then the method: create_timer(0.5, self.say_hello).",
+        "First the seconds, then the method: create_timer({seconds:0.5}, {called:self.your_method}).",
     ),
     (
         r"timer period must be non-negative",
         "The period of a timer is less than 0.",
-        "Give it in seconds: create_timer(0.5, self.say_hello).",
+        "Give it in seconds, as in create_timer(0.5, self.your_method).",
     ),
     (
         r"^TypeError: '(?P<kind>int|float|str|bool|list|dict|array|String|Publisher|Timer|Client|Service)' object "
@@ -123,7 +126,7 @@ RUNNING: Sequence[Row] = (
     (
         r"^TypeError: '(?P<kind>\w+_(?:Request|Response|Goal|Result|Feedback))' object is not callable",
         "An object of the type {kind} is called as if it were a function.",
-        "Leave out the parentheses after it, and name its field with a dot: response.sum = ..., or "
+        "Leave out the parentheses after it, and name its field with a dot, as in response.sum = ..., or "
         "answer.result.sequence.",
     ),
     (
@@ -134,18 +137,18 @@ RUNNING: Sequence[Row] = (
     (
         r"^TypeError: (?:\w+\.)?(?P<level>debug|info|warning|warn|error|fatal)\(\) takes 2 positional arguments but",
         "{level} takes a single string: it does not join several values, as print does.",
-        "Put the values into one f-string, in braces: {level}(f'I heard: {{message.data}}').",
+        "Put the values into one f-string, in braces, as in {level}(f'I heard: {{message.data}}').",
     ),
     (
         r"^TypeError: rclpy_logging_rcutils_log\(\): incompatible function arguments",
         "A log line is a string, and the logger got something else, such as a number or a whole message.",
-        "Put the value into an f-string, in braces: info(f'{{response.sum}}'). Of a message take the field: "
-        "info(f'{{message.data}}').",
+        "Put the value into an f-string, in braces, as in info(f'{{response.sum}}'). Of a message take the field, as "
+        "in info(f'{{message.data}}').",
     ),
     (
         r"^TypeError: (?:\w+\.)?publish\(\) missing",
         "publish was called without a message.",
-        "Write the message between its parentheses: publish(msg).",
+        "Write your message between its parentheses.",
     ),
     (
         r"^TypeError: (?:String|Twist|Vector3|U?Int\d+|Float\d+|Bool"
@@ -180,20 +183,21 @@ RUNNING: Sequence[Row] = (
         "create_timer(seconds, method), create_service(type, name, method), create_client(type, name).",
     ),
     (
-        r"^TypeError: (?:\w+\.)*(?P<what>wait_for_(?:service|server)|spin_once|spin_until_future_complete|call)\(\) "
-        r"got an unexpected keyword argument '(?P<name>\w*(?:time|sec|patience|limit)\w*)'",
+        rf"(?:\w*(?:time|sec|patience|limit)\w*=(?P<limit>[\w.]+)\).*{MARKS})?TypeError: (?:\w+\.)*(?P<what>"
+        r"wait_for_(?:service|server)|spin_once|spin_until_future_complete|call)\(\) got an unexpected keyword "
+        r"argument '(?P<name>\w*(?:time|sec|patience|limit)\w*)'",
         "{what} takes its limit under the name timeout_sec, and not under {name}.",
-        "Left of the = write timeout_sec, as in {what}(..., timeout_sec=patience_sec).",
+        "Left of the = write timeout_sec, as in {what}(..., timeout_sec={limit:5.0}).",
     ),
     (
         r"^TypeError: (?:Client\.)?call(?:_async)?\(\) (?:takes .*positional argument|got an unexpected keyword)",
         "A call takes one thing, the request.",
-        "Put the numbers into the request first: client.call_async(AddTwoInts.Request(a=a, b=b)).",
+        "Put the numbers into the request first, as in call_async(AddTwoInts.Request(a=2, b=3)).",
     ),
     (
         r"^TypeError: (?:ActionClient\.)?send_goal(?:_async)?\(\) got an unexpected keyword argument '(?:order|x|y)'",
         "send_goal_async takes a goal, and what your code gives it is a field of one.",
-        "Put the field into a goal first: send_goal_async(Fibonacci.Goal(order=order), feedback_callback=...).",
+        "Put the field into a goal first, as in send_goal_async(Fibonacci.Goal(order=10), feedback_callback=...).",
     ),
     (
         r"^TypeError: ActionServer\.__init__\(\) takes .* positional arguments? but",
@@ -209,18 +213,18 @@ RUNNING: Sequence[Row] = (
     (
         r"^TypeError: (?P<what>AddTwoInts|SetBool|Trigger|Fibonacci|WalkTo)\.__init__\(\) got an unexpected keyword",
         "{what} itself only holds its parts together: the fields are in a part.",
-        "Make the part that you need, such as AddTwoInts.Request(a=a, b=b) or Fibonacci.Goal(order=order).",
+        "Make the part that you need, such as AddTwoInts.Request(a=2, b=3) or Fibonacci.Goal(order=10).",
     ),
     (
         r"^TypeError: spin\(\) missing 1 required positional argument: 'node'",
         "rclpy.spin has to know which node it spins.",
-        "Write rclpy.spin(node).",
+        "Write your node between its parentheses: rclpy.spin(your_node).",
     ),
     (
         r"^TypeError: __init__\(\): incompatible constructor arguments",
         "One of the arguments in this line has the wrong type.",
-        "First the type, then the name in quotation marks, then the method without parentheses: "
-        "create_service(AddTwoInts, 'add_two_ints', self.add).",
+        "First the type, then the name in quotation marks, then the method without parentheses, as in "
+        "create_service(AddTwoInts, 'add_two_ints', self.your_method).",
     ),
     (
         r"^TypeError: (?P<what>ActionServer|ActionClient)\.__init__\(\) missing \d+ required positional arguments?: "
@@ -284,7 +288,7 @@ RUNNING: Sequence[Row] = (
         r"^KeyError: (?P<key>.+)",
         "The dictionary has no entry {key}.",
         "Compare it with the entries of the dictionary. A name in quotation marks is a string; to look up the value of "
-        "a variable, leave them out: STATUS_NAMES[answer.status].",
+        "a variable, leave them out, as in STATUS_NAMES[answer.status].",
     ),
     (
         r"^OverflowError: .*(?:greater than|less than|too (?:large|small|big))",
@@ -299,9 +303,11 @@ RUNNING: Sequence[Row] = (
         "with succeed().",
     ),
     (
+        r"(?:^ +(?P<handle>[A-Za-z_][\w.]*)\.canceled\((?:.*\n)+?)?.*"
         r"attempted invalid transition from state \w+ with event CANCELED",
         "canceled() was called for a goal that no client has asked to cancel.",
-        "Call canceled() only where goal_handle.is_cancel_requested is True, and succeed() where it is not.",
+        "Call canceled() only where {handle:your_goal_handle}.is_cancel_requested is True, and succeed() where it is "
+        "not.",
     ),
     (
         r"^ZeroDivisionError",
@@ -316,7 +322,7 @@ RUNNING: Sequence[Row] = (
     (
         r"^TypeError: (?:\w+\.)?(?P<what>publish\w*)\(\) got an unexpected keyword argument '(?P<name>\w+)'",
         "{what} takes a message, and {name} is a field of one.",
-        "Put the field into a message: publish(String(data='hello')), or "
+        "Put the field into a message, as in publish(String(data='hello')), or "
         "publish_feedback(Fibonacci.Feedback(partial_sequence=numbers)).",
     ),
     (
@@ -339,7 +345,7 @@ def meaning(traceback: str) -> Meaning:
     for pattern, why, next_step in (*READING, *RUNNING):
         found = _compiled(pattern).search(traceback)
         if found is not None:
-            words = {name: value or "" for name, value in found.groupdict().items()}
+            words = names(traceback) | {name: Name(said or "") for name, said in found.groupdict().items()}
             return Meaning(why.format(**words), next_step.format(**words))
     raise AssertionError("the last row fits everything")
 

@@ -49,65 +49,70 @@ NAMES: Sequence[Row] = (
         "Write a single one: self.{name} = ...",
     ),
     (
-        r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute 'publish'",
+        r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute 'publish'"
+        r"(?:\. Did you mean: '(?P<kept>publisher(?:_\w*)?)')?",
         "A node cannot publish by itself: its publisher does.",
-        "Keep what create_publisher returns, self.publisher = self.create_publisher(...), and call "
-        "self.publisher.publish(msg).",
+        "Keep what create_publisher returns in an attribute of the node, and call publish(...) of that, as in "
+        "{owner:self}.{kept:publisher}.publish(...).",
     ),
     (
         r"AttributeError: 'NoneType' object has no attribute '(?P<name>append)'",
-        "The list before .{name} is None.",
-        "append changes the list and returns None: write numbers.append(...) alone, without numbers = before it.",
+        "{owner:The list before .append} is None.",
+        "append changes the list and returns None: write it alone, as in {owner:numbers}.append(...), without "
+        "{owner:numbers} = before it.",
     ),
     (
         r"AttributeError: 'NoneType' object has no attribute '(?P<name>\w+)'",
-        "The value before .{name} is None: it was not set yet, or the function that should give it has no return.",
+        "{owner:The value before .{name}} is None: it was not set yet, or the function that should give it has no "
+        "return.",
         "Look where it gets its value, and whether that line has run before this one.",
     ),
     (
         r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>log|logger|info|print)'",
         "A node has no {name}: its logger writes the log.",
-        "Write self.get_logger().info(...), with a string between the second parentheses.",
+        "Write {owner:self}.get_logger().info(...), with a string between the second parentheses.",
     ),
     (
         r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>spin|spin_once|spin_until_future_complete)'",
         "A node has no {name}: it is a function of rclpy.",
-        "Write rclpy before it, and give it the node first: rclpy.{name}(node, ...).",
+        "Write rclpy before it, and give it the node first: rclpy.{name}({owner:your_node}, ...).",
     ),
     (
         r"AttributeError: 'ClientGoalHandle' object has no attribute 'result'",
-        "This value is the handle of the goal already, and no future.",
+        "{owner:This value} is the handle of the goal already, and no future.",
         "If you want the handle, leave .result() out. The result of the goal comes later: wait for the future of "
-        "goal_handle.get_result_async().",
+        "{owner:your_goal_handle}.get_result_async().",
     ),
     (
         r"AttributeError: '(?:function|method)' object has no attribute 'add_done_callback'",
         "A method is waited for here, and not the future that it returns.",
-        "Write parentheses after the method where you hand it over: wait_for(client, goal_handle.get_result_async(), "
-        "...).",
+        "Write parentheses after the method where you hand it over, as in get_result_async().",
     ),
     (
         r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute 'add_done_callback'",
         "A future is needed here, and the value is of the type {class}.",
         "A future is what a call with _async at its end returns. A spin takes first the node, then the future: "
-        "rclpy.spin_until_future_complete(node, future, timeout_sec=5.0).",
+        "rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0).",
     ),
     (
         r"AttributeError: '(?:float|int)' object has no attribute 'add_node'",
         "A spin takes an executor in this place, and a number of seconds only under its name.",
-        "Write timeout_sec= before the number: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0).",
+        "Write timeout_sec= before the number: rclpy.spin_until_future_complete(your_node, your_future, "
+        "timeout_sec=5.0).",
     ),
     (
         r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute '(?P<name>cancel_goal_async|get_result_async"
         r"|accepted|publish_feedback|is_cancel_requested|succeed|canceled|abort)'",
-        "What is before .{name} is of the type {class}; the handle of a goal has {name}.",
-        "Write the goal handle before it: goal_handle.{name}. Where a node keeps it, name both: "
-        "self.goal_handle.{name}, or client.goal_handle.{name} in a function.",
+        "{owner:What is before .{name}} is of the type {class}; the handle of a goal has {name}.",
+        "Write your goal handle before it. Where a node keeps the handle, name both: if its attribute is called "
+        "goal_handle, write self.goal_handle.{name} in a method, or client.goal_handle.{name} where the node is "
+        "called client.",
     ),
     (
         r"AttributeError: '(?P<class>int|float|str)' object has no attribute '(?P<name>sum|result|data|a|b|order"
         r"|status)'",
-        "The value before .{name} is of the type {class}: it is a single value already, and has no field {name}.",
+        "{owner:The value before .{name}} is of the type {class}: it is a single value already, and has no field "
+        "{name}.",
         "If it is the value that you want, leave .{name} out. If not, look at the line that sets it.",
     ),
     (
@@ -119,18 +124,18 @@ NAMES: Sequence[Row] = (
         r"^ +.*\bspin\w*\((?P<what>\w+)[,)].*\n(?:.*\n)*AttributeError: '(?P<class>Client|ActionClient|Publisher"
         r"|Service|Timer|Future)' object has no attribute",
         "Only a node can be spun, and {what} is of the type {class} here.",
-        "Give the spin your node: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0). A function that "
-        "spins for you needs the node, too: wait_for(client, future, 5.0).",
+        "Give the spin your node: rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0). A "
+        "function that spins for you, such as wait_for of a lab, needs the node, too.",
     ),
     (
         r"AttributeError: 'ServerGoalHandle' object has no attribute 'order'",
         "The goal handle has the goal in its attribute request.",
-        "Write goal_handle.request.order.",
+        "Write {owner:your_goal_handle}.request.order.",
     ),
     (
         r"AttributeError: '(?P<class>list|dict|tuple|set|str|bytes|bool|int|float|\w+GoalHandle|Publisher|Subscription"
         r"|Timer|Client|Service|ActionClient|ActionServer|RcutilsLogger)' object has no attribute '(?P<name>\w+)'",
-        "The value before .{name} is of the type {class} here, which has nothing called {name}.",
+        "{owner:The value before .{name}} is of the type {class} here, which has nothing called {name}.",
         "Look at the line that sets it: it may be another value than you mean. If it is the right one, compare the "
         "name, letter by letter.",
     ),
@@ -155,8 +160,8 @@ NAMES: Sequence[Row] = (
         r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>wait_for_(?:service|server)|call_async"
         r"|send_goal_async)'",
         "A node has no method {name}: its client has.",
-        "Call it on what create_client(...) or ActionClient(...) gave you, as in client.wait_for_service(...). Where a "
-        "node keeps its client in an attribute, name both: client.actions.wait_for_server(...).",
+        "Call it on what create_client(...) or ActionClient(...) gave you. Where a node keeps that in an attribute, "
+        "name both: if the attribute is called actions, write {owner:client}.actions.{name}(...).",
     ),
     (
         rf"^{_OWN}",
@@ -168,13 +173,14 @@ NAMES: Sequence[Row] = (
     (
         rf"^ +.*\.result\.\w+.*{MARKS}AttributeError: '(?:function|method)' object has no attribute '(?P<name>\w+)'",
         "What is before .result is a future, and its result is a method, which was not called.",
-        "Write parentheses: result().{name}, once the future is done. If nothing has waited for it, wait first, with "
-        "rclpy.spin_until_future_complete(node, future, timeout_sec=5.0) or a function that does it for you.",
+        "Write parentheses: {owner:result}().{name}, once the future is done. If nothing has waited for it, wait "
+        "first, with rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0) or a function that does "
+        "it for you.",
     ),
     (
         r"AttributeError: '(?:builtin_function_or_method|function|method)' object has no attribute '(?P<name>\w+)'",
-        "What is before .{name} is a method without its parentheses, so it was not called.",
-        "Write the parentheses after the method's name, as in self.get_logger().info(...).",
+        "{owner:What is before .{name}} is a method without its parentheses, so it was not called.",
+        "Write the parentheses after the method's name: {owner:self.get_logger}().{name}.",
     ),
     (
         r"^AttributeError: (?:type object '\w+' has no attribute ')?(?P<name>\w+)'?(?:\.|$)",
@@ -198,22 +204,23 @@ NAMES: Sequence[Row] = (
         "If it is a value of the node, write self.{name}, here and in all other lines that use it.",
     ),
     (
-        rf"^ +.*\bcreate_\w+\(.*\w\(.*\b(?:request|response|message|msg|goal_handle|future)\b.*\).*{MARKS}"
+        rf"^ +.*\bcreate_\w+\(.*[ ,=(](?P<called>[A-Za-z_][\w.]*)\(.*\b(?:request|response|message|msg|goal_handle"
+        rf"|future)\b.*\).*{MARKS}"
         r"NameError: name '(?P<name>request|response|message|msg|goal_handle|future)' is not defined",
         "Your code calls the method in this line, but only ROS can give it {name}, when it calls the method later.",
-        "Write only the name of the method, without parentheses and arguments, as in self.on_message.",
+        "Write only {called}, without parentheses and arguments.",
     ),
     (
         rf"^ +.*\bself\.(?P<name>publish_feedback|is_cancel_requested|succeed|canceled|abort|request)\b.*{MARKS}"
         r"NameError: name 'self' is not defined",
         "{name} belongs to the handle of the goal, and a function has no self.",
-        "Write the goal handle in place of self: goal_handle.{name}.",
+        "Write your goal handle in place of self: if it is called goal_handle, goal_handle.{name}.",
     ),
     (
         r"^NameError: name '(?P<name>publish_feedback|is_cancel_requested|succeed|canceled|abort|accepted"
         r"|get_result_async|cancel_goal_async)' is not defined",
         "{name} belongs to the handle of the goal.",
-        "Write the goal handle before it, with a dot: goal_handle.{name}.",
+        "Write your goal handle before it, with a dot: if it is called goal_handle, goal_handle.{name}.",
     ),
     (
         r"^NameError: name '(?P<name>spin|spin_once|spin_until_future_complete|create_node|try_shutdown)' is not "
@@ -229,8 +236,8 @@ NAMES: Sequence[Row] = (
     (
         r"^NameError: name 'self' is not defined",
         "Python knows self only inside a method whose first argument is self.",
-        "In a method write self first between its parentheses, def say_hello(self), and indent its lines by eight "
-        "spaces. In a function there is no self: write the name that the node has there, such as node or client.",
+        "In a method write self first between its parentheses, as in def say_hello(self), and indent its lines by "
+        "eight spaces. In a function there is no self: write the name that the node has there, such as node or client.",
     ),
     (
         r"^NameError: name '(?P<name>ACCEPT|REJECT)' is not defined",
@@ -252,13 +259,14 @@ NAMES: Sequence[Row] = (
         r"^NameError: name '(?P<name>request|response|message|msg)' is not defined",
         "There is no {name} here: ROS hands it to a callback, under the name in the callback's first line.",
         "Look between the parentheses after def, and use the name that is there, or write {name} there. In an action "
-        "the request is a part of the goal handle: goal_handle.request.",
+        "the request is a part of the goal handle, as in goal_handle.request.",
     ),
     (
         r"^NameError: name 'goal_handle' is not defined",
         "There is no variable goal_handle here.",
         "If ROS hands it to this function, use the name that stands between the parentheses after def. Where a node "
-        "keeps it, write the node before it: self.goal_handle, or client.goal_handle in a function.",
+        "keeps it, write the node before it: self.goal_handle in a method, or client.goal_handle where the node is "
+        "called client.",
     ),
     (
         rf"^ +.*(?:\bcreate_(?:publisher|subscription|service|client)\([\w.]+, *|\bAction(?:Server|Client)\(self, *"
@@ -270,7 +278,7 @@ NAMES: Sequence[Row] = (
     (
         r"^NameError: name '(?P<name>a|b|c|order)' is not defined",
         "Python does not know {name}.",
-        "If {name} is a field of the request or the goal, write what it belongs to before it, with a dot: "
+        "If {name} is a field of the request or the goal, write what it belongs to before it, with a dot, as in "
         "request.{name}, or goal_handle.request.{name} in an action. Otherwise give {name} a value above that line.",
     ),
     (

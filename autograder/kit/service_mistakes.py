@@ -43,8 +43,8 @@ CALL_NEVER_SPUN = mistake(
     _has_no_answer_taken,
     "The service answered, but your client never took the answer: nothing spins it while it waits. call() blocks for "
     "ever then, and so does any wait inside a callback of the same callback group.",
-    "Outside of callbacks, use call_async and rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), or spin "
-    "the node in a background executor while you use call().",
+    "Outside of callbacks, use call_async and rclpy.spin_until_future_complete(your_node, your_future, "
+    "timeout_sec=5.0), or spin the node in a background executor while you use call().",
     certain=True,
 )
 
@@ -60,7 +60,7 @@ AWAITS_IN_VAIN = mistake(
     "The service answered, and your node spins, but the code that awaits the answer is never resumed: it awaits inside "
     "a callback of the same callback group that the answer needs.",
     "Give the client a callback group of its own (ReentrantCallbackGroup or another MutuallyExclusive one), or go on "
-    "in future.add_done_callback(...).",
+    "in a function that you give to the add_done_callback(...) of the future.",
     certain=True,
 )
 
@@ -93,8 +93,8 @@ ANSWER_NOT_AWAITED = mistake(
     "result_read_too_early",
     _does_not_wait_for_answers,
     "Your client called the service and did not wait for the answer, which may take a second.",
-    "Wait for it: rclpy.spin_until_future_complete(node, future, timeout_sec=5.0), and look at future.done() before "
-    "you read the result.",
+    "Wait for the future that call_async returned, with rclpy.spin_until_future_complete(your_node, your_future, "
+    "timeout_sec=5.0), and look at its done() before you read its result().",
 )
 
 
@@ -110,8 +110,8 @@ ZERO_TAKEN_FOR_FAILURE = mistake(
     "zero_taken_for_failure",
     _dislikes_zero,
     "The service answered 0, and your client took that for no answer. 0 is a sum like any other.",
-    "`if result:` is False for 0, too. Ask `if future.done():` or `if future.result() is not None:`, which says "
-    "whether there is an answer, whatever it is.",
+    "An `if` with nothing but the sum is False for 0, too. Ask the future that call_async returned, whose done() says "
+    "whether there is an answer, or compare with `is not None`.",
     certain=True,
 )
 
@@ -152,8 +152,8 @@ WAITS_FOR_NOBODY = mistake(
     "waits_forever",
     lambda evidence: giving_up.waits_in_silence(evidence.part(ABSENT)),
     f"When the service is not there, your client is still waiting after {giving_up.GIVE_UP_LIMIT:g} s.",
-    "Give the wait a limit of a few seconds: `if not client.wait_for_service(timeout_sec=5.0):` say so and stop. A "
-    "while loop needs a count.",
+    "Give the wait a limit of a few seconds: `if not your_client.wait_for_service(timeout_sec=5.0):` say so and stop. "
+    "A while loop needs a count.",
     certain=True,
 )
 WAITS_FOREVER = mistake(
@@ -164,8 +164,8 @@ WAITS_FOREVER = mistake(
     ),
     "The service was there, but your client never called it and never ended: it goes on waiting.",
     "Wait with a limit, and call as soon as the service is there: "
-    "`if not client.wait_for_service(timeout_sec=5.0):` say so and stop. It returns True as soon as the service is "
-    "there, so a loop that waits begins with `while not`.",
+    "`if not your_client.wait_for_service(timeout_sec=5.0):` say so and stop. It returns True as soon as the service "
+    "is there, so a loop that waits begins with `while not`.",
 )
 WAITS_THE_WRONG_WAY_ROUND = giving_up.not_forgotten(
     ABSENT, "service", "client", lambda evidence: Client(evidence).served, lambda part: bool(requests(part))

@@ -47,7 +47,7 @@ SAID = {
     "TypeError: ask() takes 5 positional arguments but 6 were given": "takes 5 arguments and got 6",
     "TypeError: Publisher.publish() got an unexpected keyword argument 'data'": "publish(String(data=",
     "TypeError: Expected <class 'std_msgs.msg._string.String'>, got <class 'std_msgs.msg._string.Metaclass_String'>": (
-        "Write parentheses after the type: msg = String()"
+        "where you make the message: message = String()"
     ),
     "NameError: name 'Talker' is not defined": "import it in this file",
     "UnboundLocalError: local variable 'i' referenced before assignment": "write self.i",
@@ -61,14 +61,14 @@ SAID = {
     "ValueError: could not convert string to float: 'five'": "'five' is not a number",
     "TypeError: spin() got an unexpected keyword argument 'nod'": "spin takes no argument called nod",
     "StopIteration": "and none was left",
-    "AttributeError: 'ServerGoalHandle' object has no attribute 'order'": "Write goal_handle.request.order",
+    "AttributeError: 'ServerGoalHandle' object has no attribute 'order'": "Write your_goal_handle.request.order",
     "NameError: name 'a' is not defined": "request.a, or goal_handle.request.a",
     "TypeError: isinstance() arg 2 must be a type, a tuple of types, or a union": "Leave out the parentheses",
     "TypeError: rclpy_resolve_name(): incompatible function arguments. Supported are:": "First the type, then the name",
     "TypeError: Node.get_logger() takes 1 positional argument but 2 were given": "self.get_logger().info(...)",
     "TypeError: Node.create_service() takes 4 positional arguments but 5 were given": "create_service(type, name",
     "TypeError: call_async() takes 2 positional arguments but 3 were given": "Put the numbers into the request first",
-    "TypeError: Client.call_async() takes 2 positional arguments but 3 were given": "AddTwoInts.Request(a=a, b=b)",
+    "TypeError: Client.call_async() takes 2 positional arguments but 3 were given": "AddTwoInts.Request(a=2, b=3)",
     "TypeError: AddTwoInts.__init__() got an unexpected keyword argument 'a'": "Make the part that you need",
     "TypeError: RcutilsLogger.info() takes 2 positional arguments but 3 were given": "into one f-string",
     "TypeError: rclpy_logging_rcutils_log(): incompatible function arguments. The": "info(f'{message.data}')",
@@ -85,7 +85,7 @@ SAID = {
     "KeyError: 'status'": "STATUS_NAMES[answer.status]",
     "OverflowError: signed integer is greater than maximum": "order + 1",
     f"{TRANSITION} CANCELED with event SUCCEED, at goal_handle.c:100": "End each goal once",
-    f"{TRANSITION} EXECUTING with event CANCELED, at goal_handle.c:100": "only where goal_handle.is_cancel_requested",
+    f"{TRANSITION} EXECUTING with event CANCELED, at goal_handle.c:100": "where your_goal_handle.is_cancel_requested",
     "AttributeError: 'Listener' object has no attribute 'log'": "Write self.get_logger().info(...)",
     "AttributeError: 'Listener' object has no attribute 'logger'. Did you mean: '_logger'?": "self.get_logger()",
     "AttributeError: 'Node' object has no attribute 'spin_until_future_complete'": "rclpy.spin_until_future_complete(",
@@ -109,7 +109,7 @@ SAID = {
     "AttributeError: 'ClientGoalHandle' object has no attribute 'add_done_callback'": "a call with _async at its end",
     "AttributeError: 'Fibonacci_Result' object has no attribute 'status'": "answer.status",
     "NameError: name 'goal_handle' is not defined. Did you mean: 'self.goal_handle'?": "write self.goal_handle",
-    "NameError: name 'goal_handle' is not defined": "client.goal_handle in a function",
+    "NameError: name 'goal_handle' is not defined": "client.goal_handle where the node is called client",
     "TypeError: unhashable type: 'Fibonacci_GetResult_Response'": "STATUS_NAMES[answer.status]",
     "TypeError: ask() missing 1 required positional argument: 'patience_sec'": "Python names the last argument",
     "TypeError: list.append() takes exactly one argument (2 given)": "numbers[-2] + numbers[-1]",
@@ -220,6 +220,93 @@ def test_the_card_names_what_to_mend(last: str) -> None:
             "AttributeError: 'NoneType' object has no attribute 'goals_canceling'",
             "Write only its name between the parentheses",
         ),
+        (
+            "total = fut.result().sum",
+            "AttributeError: 'NoneType' object has no attribute 'sum'",
+            "Wait first: rclpy.spin_until_future_complete(your_node, fut)",
+        ),
+        (
+            "print(goal.get_result_async().result().status)",
+            "AttributeError: 'NoneType' object has no attribute 'status'",
+            "Look at your_future.done()",
+        ),
+        (
+            "self.publish(text)",
+            "AttributeError: 'Talker' object has no attribute 'publish'. Did you mean: 'publisher_'?",
+            "as in self.publisher_.publish(...)",
+        ),
+        (
+            "return first.sum + second.sum",
+            "AttributeError: 'NoneType' object has no attribute 'sum'",
+            "the result of a future is None until",
+        ),
+        (
+            "print(replies[0].sum)",
+            "AttributeError: 'Future' object has no attribute 'sum'",
+            "read replies[0].result().sum",
+        ),
+        (
+            "print(cli.call_async(request).sum)",
+            "AttributeError: 'Future' object has no attribute 'sum'",
+            "sum is read from a future, which",
+        ),
+        (
+            "if not self.handle.accepted:",
+            "AttributeError: 'NoneType' object has no attribute 'accepted'",
+            "keep its result in self.handle",
+        ),
+        (
+            "seq.append(1)",
+            "AttributeError: 'NoneType' object has no attribute 'append'",
+            "as in seq.append(...), without seq = before it",
+        ),
+        ("cmd.x = 0.5", "AttributeError: 'Twist' object has no attribute 'x'", "cmd.linear.x is the speed"),
+        ("m.data = 'hi'", "AttributeError: 'String' object attribute 'data' is read-only", "m = String()"),
+        (
+            "node.log('hi')",
+            "AttributeError: 'Node' object has no attribute 'log'",
+            "Write node.get_logger().info",
+        ),
+        (
+            "self.create_timer(self.tick, 0.5)",
+            "TypeError: float() argument must be a string or a real number, not 'method'",
+            "create_timer(0.5, self.tick)",
+        ),
+        (
+            "node.cli.wait_for_service(timeout=limit)",
+            "TypeError: Client.wait_for_service() got an unexpected keyword argument 'timeout'",
+            "wait_for_service(..., timeout_sec=limit)",
+        ),
+        (
+            "seq.append(1, 2)",
+            "TypeError: list.append() takes exactly one argument (2 given)",
+            "seq.append(seq[-2] + seq[-1])",
+        ),
+        (
+            "print(NAMES[reply])",
+            "TypeError: unhashable type: 'Fibonacci_GetResult_Response'",
+            "NAMES[reply.status]",
+        ),
+        (
+            "status = reply.result.status",
+            "AttributeError: 'Fibonacci_Result' object has no attribute 'status'",
+            "reply.status, and reply.result.sequence",
+        ),
+        (
+            "move.linear = 0.5",
+            "AssertionError: The 'linear' field must be a sub message of type 'Vector3'",
+            "as in move.linear.x = 0.5",
+        ),
+        (
+            "self.create_subscription(String, 'chatter', self.texts.append, 10)",
+            "ValueError: no signature found for builtin <built-in method append of list object at 0x7f>",
+            "lambda message: self.texts.append(message)",
+        ),
+        (
+            "handle.canceled()",
+            f"{TRANSITION} EXECUTING with event CANCELED, at goal_handle.c:100",
+            "only where handle.is_cancel_requested is True",
+        ),
     ],
 )
 def test_the_line_that_raised_tells_what_to_write(code: str, last: str, advice: str) -> None:
@@ -227,6 +314,16 @@ def test_the_line_that_raised_tells_what_to_write(code: str, last: str, advice: 
         f'Traceback (most recent call last):\n  File "talker.py", line 3, in __init__\n    {code}\n    ^^^^\n'
     )
     assert advice in told(f"{frames}{last}")
+
+
+def test_a_line_of_a_library_tells_no_name() -> None:
+    frame = (
+        '  File "/opt/ros/jazzy/lib/python3.12/site-packages/rclpy/client.py", line 3, in f\n    future.sum\n'
+    )
+    words = told(
+        f"Traceback (most recent call last):\n{frame}AttributeError: 'Future' object has no attribute 'sum'"
+    )
+    assert "read your_future.result().sum" in words
 
 
 def told(traceback: str) -> str:

@@ -83,7 +83,7 @@ class SendsGoals(SeenAsItIs):
         return Advice(
             "The goal ended as ABORTED (6) although the work was done: rclpy assumes so when the execute callback "
             "returns without saying how the goal ended.",
-            "Call goal_handle.succeed() before you return the result.",
+            "Call succeed() of the goal handle before you return the result.",
         )
 
     def _cancel_refused(self, evidence: Evidence) -> Advice | None:
@@ -96,7 +96,7 @@ class SendsGoals(SeenAsItIs):
             "Your server refuses to cancel: rclpy does so where the ActionServer has no cancel_callback, or one that "
             "returns anything but CancelResponse.ACCEPT.",
             "Write cancel_callback=... in the ActionServer, with a method that returns CancelResponse.ACCEPT, and look "
-            "at goal_handle.is_cancel_requested in the loop.",
+            "at is_cancel_requested of the goal handle in the loop.",
         )
 
     def _cancel_refused_on_its_way(self, evidence: Evidence) -> Advice | None:
@@ -113,8 +113,8 @@ class SendsGoals(SeenAsItIs):
         return Advice(
             "Your server works on and does not even read the cancel request: the one thread that spins the node is "
             "busy with the execute callback.",
-            "Spin the node with a MultiThreadedExecutor (executor.add_node(node), executor.spin()), so that another "
-            "thread can take the request.",
+            "Spin the node with a MultiThreadedExecutor (rclpy.spin(your_node, executor=MultiThreadedExecutor())), so "
+            "that another thread can take the request.",
         )
 
     def _cancel_ignored(self, evidence: Evidence) -> Advice | None:
@@ -125,8 +125,8 @@ class SendsGoals(SeenAsItIs):
         return Advice(
             "Your server accepted the cancel request, but the goal was not canceled "
             f"(status {status_text(long.status)}).",
-            "In each turn of the loop look at goal_handle.is_cancel_requested; where it is True call "
-            "goal_handle.canceled() and return the result so far.",
+            "In each turn of the loop look at is_cancel_requested of the goal handle; where it is True call its "
+            "canceled() and return the result so far.",
         )
 
 

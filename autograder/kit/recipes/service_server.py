@@ -213,7 +213,7 @@ def _returned_none(evidence: Evidence) -> Advice | None:
         "The service callback did not return the response: it returned nothing, a number, or a type without "
         "parentheses. rclpy cannot send that, so the client waits for an answer that never comes. A program "
         "ends with this error.",
-        "Fill in the field of the response that you get, as in `response.sum = ...`, and end the callback with "
-        "`return response`: the whole response, and also after an `if` or an `except`.",
+        "Fill in the field of the response that you get, as in `response.sum = ...`, and end the callback "
+        "with `return` and the whole response, such as `return response`, also after an `if` or an `except`.",
         traceback,
     )

@@ -316,8 +316,8 @@ def _said_again(evidence: Evidence) -> Advice | None:
     if not again and retold(evidence.main, sent):
         return Advice(
             "With each string that arrives, your program says all that came before once more.",
-            "Log message.data, the string that the callback was just given, and not the list or text in which you keep "
-            "them all.",
+            "Log the string of the message that the callback was just given, its field data, and not the list or text "
+            "in which you keep them all.",
         )
     if not again:
         return None
@@ -341,7 +341,7 @@ def _said_again(evidence: Evidence) -> Advice | None:
 
 
 _LOG_EACH = "Log every message that the callback is given, without `once`, throttling or a condition."
-_WRITE_F = "Write an f before the opening quotation mark: f'I heard: {message.data}'. Python then replaces the braces."
+_BRACES = re2.compile(r"\{[^{}]*\}?")
 
 
 def _changed_text(evidence: Evidence) -> Advice | None:
@@ -355,7 +355,7 @@ def _changed_text(evidence: Evidence) -> Advice | None:
         if made_up:
             return Advice(
                 f"When “{_text(event)}” was sent, your node said “{made_up[0]}”: that is not the string as it came.",
-                "Log message.data as it is, without strip, replace, slices or other changes.",
+                "Log the field data of the message as it is, without strip, replace, slices or other changes.",
             )
     return None
 
@@ -393,7 +393,8 @@ def _not_logged(evidence: Evidence) -> Advice | None:
     if len(part.said(after=sent[0])) == 0:
         return Advice(
             f"Your node is subscribed to {topic}, but when a string arrives it says nothing.",
-            "In the callback, log the string: self.get_logger().info(f'I heard: \"{message.data}\"').",
+            "In the callback, log the field data of the message that it is given, as in "
+            "self.get_logger().info(f'I heard: \"{message.data}\"').",
         )
     later = next((event for event in sent[1:] if is_said(_text(event), part)), None)
     if later is not None:
@@ -404,7 +405,21 @@ def _not_logged(evidence: Evidence) -> Advice | None:
     return Advice(
         f"When “{_text(sent[0])}” was sent, your node said “{part.said(after=sent[0])[0]}”: the string that arrived is "
         "not in it.",
-        _WRITE_F if "{" in part.said(after=sent[0])[0] else "Put message.data into the line that you log.",
+        _put_it_there(part.said(after=sent[0])[0]),
+    )
+
+
+def _put_it_there(line: str) -> str:
+    """The next step after a line without the string, in which there may be braces that Python did not fill in."""
+    braces = _BRACES.search(line)
+    if braces is None:
+        return "Put the field data of the message into the line that you log."
+    return _write_f(braces[0])
+
+
+def _write_f(braces: str) -> str:
+    return (
+        f"Write an f before the opening quotation mark: Python then puts the string in the place of {braces}."
     )
 
 
@@ -416,7 +431,7 @@ def _invented_text(evidence: Evidence) -> Advice | None:
     braces = re2.search(r"\{[\w.]+\}", made_up[0])
     return Advice(
         f"Your node said “{made_up[0]}”, but no node sent that.",
-        _WRITE_F
+        _write_f(braces[0])
         if braces
         else "Log only in the subscription's callback, and only the string of the message that it was given.",
     )

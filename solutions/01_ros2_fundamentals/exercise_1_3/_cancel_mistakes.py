@@ -43,7 +43,8 @@ def wrong_order(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         f"The judge got {wrong}; the task asks for one goal of order {wanted}.",
-        f"Set goal.order = {wanted} and send the goal once. Where it is rejected, say so, and send no other.",
+        f"Set the field order of your goal to {wanted}, and send the goal once. Where it is rejected, say so, and send "
+        "no other.",
     )
 
 
@@ -63,8 +64,8 @@ def not_waited_for(evidence: Evidence) -> Advice | None:
     return Advice(
         "The server was there, or came a moment after your client, and no goal of your client ever reached it.",
         "Wait for the server with a few seconds of patience, and raise or end where it does not come: "
-        "`if not client.wait_for_server(timeout_sec=5.0):`. It returns True when the server is there; a goal that is "
-        "sent before is lost.",
+        "`if not your_action_client.wait_for_server(timeout_sec=5.0):`. It returns True when the server is there; a "
+        "goal that is sent before is lost.",
     )
 
 
@@ -75,8 +76,8 @@ def never_spun(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         "Your client sent its goal, but it receives no answer: none of its callbacks is called any more.",
-        "Spin it while it waits: rclpy.spin(node) or spin_until_future_complete(node, future, timeout_sec=5.0), in one "
-        "place, and never inside a callback.",
+        "Spin it while it waits: rclpy.spin(your_node) or rclpy.spin_until_future_complete(your_node, your_future, "
+        "timeout_sec=5.0), in one place, and never inside a callback.",
     )
 
 
@@ -99,12 +100,13 @@ def ended_on_the_way(evidence: Evidence) -> Advice | None:
         return Advice(
             f"Your client sent its goal, and ended before {missing}, because it raised {raised}.",
             "Look at the condition above that line, and at the wait before it. Raise only where the goal is not "
-            "accepted (`if not client.goal_handle.accepted:`), or where an answer did not come in time.",
+            "accepted (`accepted` of its handle is False), or where an answer did not come in time.",
         )
     return Advice(
         f"Your client sent its goal, and ended before {missing}.",
-        "Keep it alive until the result is there: rclpy.spin(node), or rclpy.spin_until_future_complete(node, future, "
-        "timeout_sec=30.0). A single spin_once takes in one thing only.",
+        "Keep it alive until the result is there: rclpy.spin(your_node), or "
+        "rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=30.0). A single spin_once takes in one "
+        "thing only.",
     )
 
 
@@ -115,14 +117,14 @@ def cancel_missing(evidence: Evidence) -> Advice | None:
         return Advice(
             "The cancel request of your client has no goal's id. That asks the server to cancel all its goals, also "
             "those of other clients.",
-            "Call goal_handle.cancel_goal_async(): it asks for this one goal to be canceled.",
+            "Call cancel_goal_async() of the goal handle: it asks for this one goal to be canceled.",
         )
     if not goals(part) or part.first("cancel") is not None:
         return None
     return Advice(
         "Your client sent its goal and got its feedback, but it never asked to cancel.",
-        "Count in the feedback callback, and at the third message call goal_handle.cancel_goal_async(). Keep the "
-        "goal_handle from the goal response.",
+        "Count in the feedback callback, and at the third message call cancel_goal_async() of the goal handle. The "
+        "handle is the answer to the goal: keep it.",
     )
 
 
@@ -146,8 +148,8 @@ def cancel_too_late(evidence: Evidence) -> Advice | None:
     return Advice(
         f"Your client asked to cancel only after {count} feedback messages; the task asks for {FIRST_FEEDBACK} to "
         f"{LAST_FEEDBACK}.",
-        f"Cancel in the feedback callback, `if count == {FIRST_FEEDBACK}:`. (A timer "
-        "of a fixed length does not know how fast the server is.)",
+        f"Cancel in the feedback callback, when your count of the messages is {FIRST_FEEDBACK}. (A timer of a fixed "
+        "length does not know how fast the server is.)",
     )
 
 
@@ -166,8 +168,8 @@ def cancel_repeated(evidence: Evidence) -> Advice | None:
     return Advice(
         f"Your client asked to cancel {total} times in all; the task asks for one request. Feedback goes on "
         "arriving until the server has ended the goal.",
-        "Ask at one moment only: in the feedback callback test `count == 3` rather than `count >= 3`. Where a timer "
-        "asks, stop it with its cancel(); where a loop asks, put the request before the loop.",
+        "Ask at one moment only: in the feedback callback compare your count with `== 3` rather than `>= 3`. Where a "
+        "timer asks, stop it with its cancel(); where a loop asks, put the request before the loop.",
     )
 
 
@@ -188,12 +190,13 @@ def status_not_reported(evidence: Evidence) -> Advice | None:
     if part.first("result_request") is None:
         return Advice(
             "Your client asked to cancel, but it never asked for the result, so it cannot know how the goal ended.",
-            "Call goal_handle.get_result_async() once the goal is accepted, and read result.status when it is done.",
+            "Call get_result_async() of the goal handle once the goal is accepted, and read the status of its result() "
+            "when that future is done.",
         )
     return Advice(
         "The goal ended with the status CANCELED (5), but your client said neither its name nor its number after it "
         "got the result.",
-        "When the result is there, log its status: future.result().status, by name or by number.",
+        "When the future of get_result_async() is done, log the status of its result(), by name or by number.",
     )
 
 

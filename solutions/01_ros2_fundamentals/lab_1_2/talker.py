@@ -90,7 +90,7 @@ talker.knows(
     "field_typo",
     lambda seen, _: bool(seen.texts) and not any(seen.texts),
     "Your messages arrive, but their string is empty: the field was never set.",
-    "A String has one field, data. Write msg.data = ...; String(...) ignores a misspelt keyword silently.",
+    "A String has one field, data. Set it, as in message.data = ...; String(...) ignores a misspelt keyword silently.",
     certain=True,
 )
 talker.knows(

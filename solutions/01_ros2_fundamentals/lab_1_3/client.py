@@ -116,7 +116,7 @@ def wrong_sum_reported(seen: Client, _: Client) -> Advice | None:
         return None
     return Advice(
         f"The service answered {answers(part)[-1]}, but your program said “{told}”.",
-        "Report what the answer holds, future.result().sum, and add nothing up yourself.",
+        "Report the field sum of the answer that the service gave, and add nothing up yourself.",
     )
 
 
@@ -125,7 +125,7 @@ def wrong_sum_reported(seen: Client, _: Client) -> Advice | None:
     late=True,
     certain=Client.ended_each_time,
     says="The call is right, but the sum is never said.",
-    next_step="Log or print the sum of the answer: future.result().sum. In a notebook, return it, too.",
+    next_step="Log or print the field sum of the answer that the service gave. In a notebook, return it, too.",
 )
 def sum_not_reported(seen: Client, _: Client) -> bool | Advice:
     """The call is right, and the answer is never said."""

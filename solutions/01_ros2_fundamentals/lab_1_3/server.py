@@ -102,7 +102,8 @@ server.knows(
     "field_typo",
     lambda seen, _: bool(seen.answers) and not any(answer["sum"] for answer in seen.answers.values()),
     "Every answer is 0: the field sum of the response was never filled.",
-    "Set response.sum = request.a + request.b. A misspelt keyword in AddTwoInts.Response(...) is ignored silently.",
+    "Set the field sum of the response that you were given, as in response.sum = request.a + request.b. A misspelt "
+    "keyword in AddTwoInts.Response(...) is ignored silently.",
     certain=True,
 )
 
@@ -118,7 +119,7 @@ def wrong_sum(seen: Server, _: Server) -> Advice | None:
         return None
     return Advice(
         f"The answer is not the sum: {wrong[0]}.",
-        "Compute it from this very request: response.sum = request.a + request.b. Python's whole numbers have no "
+        "Compute it from this very request, as in response.sum = request.a + request.b. Python's whole numbers have no "
         "limit, so nothing needs to be converted.",
     )
 

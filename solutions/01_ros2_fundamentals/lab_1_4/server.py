@@ -95,8 +95,8 @@ def goal_rejected(seen: Evidence, _: Evidence) -> Advice | None:
     certain=True,
     before="cancel_not_accepted",
     says="The goals succeed, but the result is empty: its field sequence was never filled.",
-    next_step="Set result.sequence before you return the result. A misspelt keyword in Fibonacci.Result(...) is "
-    "ignored silently.",
+    next_step="Set the field sequence of your result before you return it. A misspelt keyword in Fibonacci.Result(...) "
+    "is ignored silently.",
 )
 def result_never_filled(seen: Evidence, _: Evidence) -> bool:
     """Every goal succeeds with an empty sequence."""
@@ -143,7 +143,7 @@ def goals_mixed_up(seen: Evidence, _: Evidence) -> Advice | None:
     if to_be_canceled(seen).cancel_accepted and beside.sent_after(canceled_at) <= ROUNDS_LEFT:
         return Advice(
             f"When one goal was canceled, another one did not come to its end ({wrong[0]}).",
-            "Ask the goal handle of each goal: goal_handle.is_cancel_requested is True only for the goal that is to "
+            "Ask the goal handle of each goal: its is_cancel_requested is True only for the goal that is to "
             "stop. A flag in self belongs to all goals, and stays True for later ones.",
         )
     return Advice(
@@ -178,8 +178,8 @@ def wrong_sequence(seen: Evidence, _: Evidence) -> Advice | None:
     "feedback_missing",
     before="cancel_not_accepted",
     says="The goals succeed, but no feedback comes.",
-    next_step="In the loop of the execute callback, fill a Fibonacci.Feedback() and call "
-    "goal_handle.publish_feedback(feedback).",
+    next_step="In the loop of the execute callback, fill a Fibonacci.Feedback() and send it with publish_feedback(...) "
+    "of the goal handle.",
 )
 def feedback_missing(seen: Evidence, _: Evidence) -> bool:
     """Goals succeed without feedback."""
@@ -196,8 +196,8 @@ def wrong_feedback(seen: Evidence, _: Evidence) -> Advice | None:
     if tells_at_the_end(seen.part(GOALS)):
         return Advice(
             "All feedback of a goal came at once, when its work was done: the client could not follow the work.",
-            "Call goal_handle.publish_feedback(feedback) inside the loop, in each turn, right after you have appended "
-            "the number and before you sleep.",
+            "Call publish_feedback(...) of the goal handle inside the loop, in each turn, right after you have "
+            "appended the number and before you sleep.",
         )
     wrong = [text for one in told if (text := feedback_objection(seen, one))]
     if not wrong:
@@ -232,8 +232,8 @@ def worked_on(seen: Evidence, _: Evidence) -> Advice | None:
     return Advice(
         "Your server accepted the cancel request and went on counting: the canceled goal came back with "
         f"{len(long.sequence)} numbers, and {long.told_before} had been found when the client asked to cancel it.",
-        "Look at goal_handle.is_cancel_requested in each turn of the loop, leave the loop as soon as it is True, and "
-        "append nothing after that.",
+        "Look at is_cancel_requested of the goal handle in each turn of the loop, leave the loop as soon as it is "
+        "True, and append nothing after that.",
     )
 
 
@@ -246,7 +246,7 @@ def partial_result_missing(seen: Evidence, _: Evidence) -> Advice | None:
     return Advice(
         f"The canceled goal ended with {long.sequence or 'an empty result'}, although {long.told_before} numbers had "
         "been found.",
-        "After goal_handle.canceled(), return a result whose sequence holds the numbers found so far.",
+        "After canceled(), return a result whose sequence holds the numbers found so far.",
     )
 
 
