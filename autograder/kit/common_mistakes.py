@@ -12,6 +12,7 @@ from autograder.kit.crashes import CRASHES, OTHER_CRASHES, traceback_of
 from autograder.kit.giving_up import ended_at_once
 from autograder.kit.hangs import something_spins
 from autograder.kit.model import Advice, Mistake, mistake
+from autograder.kit.workspace_report import report_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -238,16 +239,37 @@ def _worked(part: Part, role: str) -> bool:
     return role == "subscription" and sent is not None and bool(part.said(after=sent))
 
 
+_AT_ONCE = "The program ended at once, without a word and without a node:"
+_IN_MAIN = "In main(), call rclpy.init(), make your node and spin it: rclpy.spin(your_node)."
+_IN_MAIN_OF_A_CLIENT = (
+    "The main() of a client calls rclpy.init(), then what sends its request, and spins its node until the answer is "
+    "there."
+)
+_BEGIN_AT_TODO = "If your code still has its TODO, begin there."
+
+
+def _what_main_does(evidence: Evidence) -> str:
+    """The calls that belong into main(), of a server or of a client, as the task asks for one of them or both."""
+    roles = evidence.reference.interface.keys()
+    client = _IN_MAIN_OF_A_CLIENT if roles & {"client", "action_client"} else ""
+    other = _IN_MAIN if not client or roles - {"client", "action_client"} else ""
+    return f"{other} {client}".strip()
+
+
 def _main_guard(evidence: Evidence) -> Advice | None:
     ending = evidence.main.ending
     if ending is None or ending.name != "exited" or ending.data.get("code") != 0 or evidence.main.said():
         return None
     if evidence.main.had_node:
         return None
+    if report_of(evidence.main) is not None:  # by its entry point, which calls main()
+        return Advice(f"{_AT_ONCE} its main() makes none.", f"{_what_main_does(evidence)} {_BEGIN_AT_TODO}")
     return Advice(
-        "The program ended at once and said nothing: its main() was not called, or does nothing that lasts.",
-        "End the file with `if __name__ == '__main__':` (two underscores on each side) and, indented below it, "
-        "`main()`. If these two lines are there, look into main(): it has to make the node and to spin it.",
+        f"{_AT_ONCE} main() makes none, or nothing calls main().",
+        f"{_what_main_does(evidence)} Python calls main() only where the file ends with "
+        "`if __name__ == '__main__':` (two underscores on each side) and, indented below it, `main()`; `ros2 run` "
+        "calls it in any case. "
+        f"{_BEGIN_AT_TODO}",
     )
 
 
@@ -290,7 +312,7 @@ def ended_too_early(evidence: Evidence) -> Advice | None:
         return Advice(f"The program {how} before its work was done.", keep)
     return Advice(
         f"The program {how} and did nothing that the judge could see.",
-        f"If your code still has its TODO, begin there. {keep}",
+        f"{_BEGIN_AT_TODO} {keep}",
     )
 
 
@@ -353,6 +375,14 @@ def _returned_at_once(evidence: Evidence) -> Advice | None:
     return None if asked or not all(map(ended_at_once, evidence)) else _returned_silently(evidence)
 
 
+def _without_node(evidence: Evidence) -> str:
+    """The beginning of the sentence about a subject without a node; empty where there was one."""
+    if any(part.had_node or any(map(part.of, ("log", "request", "goal", "message"))) for part in evidence):
+        return ""
+    ending = evidence.main.ending
+    return "The program ended, and no" if ending is not None and ending.name == "exited" else "No"
+
+
 NEVER_CONSTRUCTED = mistake(
     "never_ended",
     lambda evidence: any(part.first("subject", "never_constructed") for part in evidence),
@@ -367,13 +397,11 @@ NOTHING_THERE = (
     Mistake("main_guard", _main_guard, certain=True),
     mistake(
         "nothing_on_the_graph",
-        lambda evidence: (
-            not any(
-                part.had_node or any(map(part.of, ("log", "request", "goal", "message"))) for part in evidence
-            )
-        ),
-        "No node of yours appeared on the graph.",
-        "Make the node (rclpy.init(), then your class or create_node) and keep the program running.",
+        _without_node,
+        "{} node of yours appeared on the graph.",
+        "In a program, call rclpy.init() in main(), then make your node (of your class, or with create_node) and spin "
+        "it, which keeps the program running. In a notebook, make the node in your function: start_ros() has started "
+        "ROS.",
         certain=True,
     ),
     Mistake("not_written", _not_written),

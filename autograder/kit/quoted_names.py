@@ -34,8 +34,8 @@ def is_a_library(file: str) -> bool:
 def names(traceback: str) -> dict[str, Name]:
     """The names that a traceback tells, for a template: ``owner`` and ``future``, empty where they are not known.
 
-    Of ``fut.result().sum``, where there is no ``sum``, the owner is ``fut.result()`` and the future ``fut``. A call names
-    no future: it would give another one each time.
+    Of ``fut.result().sum``, where there is no ``sum``, the owner is ``fut.result()`` and the future ``fut``. A call is
+    no name of a future: it would give another one each time.
     """
     owner = _owner(traceback)
     future = owner.removesuffix(_RESULT) if owner.endswith(_RESULT) else ""

@@ -6,7 +6,9 @@ import pytest
 
 from autograder import exercises
 from autograder.judge.verdicts import reference, trial
+from autograder.kit.common_mistakes import NOTHING_THERE
 from autograder.kit.evidence import Event, Evidence, Part
+from autograder.kit.workspace_report import WorkspaceReport, as_line
 
 
 @pytest.mark.parametrize("exercise_id", exercises.all_ids())
@@ -68,3 +70,32 @@ def test_a_function_as_it_was_handed_out_is_not_written_yet(exercise_id: str, se
     diagnosis, _ = trial.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
     assert diagnosis.key == "not_written"
     assert "TODO" in diagnosis.next_step
+
+
+@pytest.mark.parametrize(
+    ("exercise_id", "client", "other"),
+    [("lab_1_2.talker", False, True), ("lab_1_3.client", True, False), ("lab_1_3.programs", True, True)],
+)
+def test_a_program_that_ends_at_once_is_told_what_belongs_into_its_main(
+    exercise_id: str, client: bool, other: bool
+) -> None:
+    stored = reference.load(exercise_id)
+    exited = Event(0.4, "subject", "exited", {"code": 0})
+    evidence = Evidence([Part(part.name, part.inputs, [exited]) for part in stored.parts], stored)
+    advice = next(filter(None, (m.recognise(evidence) for m in NOTHING_THERE)))
+    assert "without a node" in advice.text
+    assert ("main() of a client" in advice.next_step, "make your node" in advice.next_step) == (client, other)
+    assert "__name__" in advice.next_step
+
+
+def test_of_a_built_program_nothing_is_said_of_the_last_lines_of_its_file() -> None:
+    stored = reference.load("lab_1_2.talker")
+    built = Event(0.1, "output", "stdout", {"text": as_line(WorkspaceReport("built", built=True))})
+    exited = Event(0.4, "subject", "exited", {"code": 0})
+    advice = next(
+        filter(
+            None, (m.recognise(Evidence([Part("it", {}, [built, exited])], stored)) for m in NOTHING_THERE)
+        )
+    )
+    assert "its main() makes none" in advice.text
+    assert "__name__" not in advice.next_step
