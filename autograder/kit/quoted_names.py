@@ -15,6 +15,9 @@ _MISSED = re2.compile(r"AttributeError: .*(?:has no attribute|object attribute) 
 _OWNER = r"(?:^|[^\w.)\]])(?P<owner>[A-Za-z_][\w.]*(?:(?:\(\)|\[[^\[\]]*\])[\w.]*)*)\.{name}\b"
 """What stands before a name and a dot: names and dots, calls without arguments, places in a list."""
 _RESULT = ".result()"
+_PACKAGES = re2.compile(r"/(?:site|dist)-packages/")
+_BUILT = "/install/"
+"""In the path of each file that a build of a student's workspace has installed."""
 
 
 class Name(str):
@@ -31,6 +34,11 @@ def is_a_library(file: str) -> bool:
     return any(found["below"] not in ("site-packages", "dist-packages") for found in _LIBRARY.finditer(file))
 
 
+def _is_installed(file: str) -> bool:
+    """True of a library, also one of another author: its names are none of the student's."""
+    return is_a_library(file) or (_PACKAGES.search(file) is not None and _BUILT not in file)
+
+
 def names(traceback: str) -> dict[str, Name]:
     """The names that a traceback tells, for a template: ``owner`` and ``future``, empty where they are not known.
 
@@ -45,7 +53,7 @@ def names(traceback: str) -> dict[str, Name]:
 def _owner(traceback: str) -> str:
     """What the student's line has before the attribute that is missing; empty where several things may be meant."""
     missed, frames = _MISSED.search(traceback), list(FRAME_WITH_CODE.finditer(traceback))
-    if missed is None or not frames or is_a_library(frames[-1]["file"]):
+    if missed is None or not frames or _is_installed(frames[-1]["file"]):
         return ""
     found = {
         one["owner"] for one in re2.finditer(_OWNER.replace("{name}", missed["name"]), frames[-1]["code"])

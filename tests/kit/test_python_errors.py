@@ -316,14 +316,18 @@ def test_the_line_that_raised_tells_what_to_write(code: str, last: str, advice: 
     assert advice in told(f"{frames}{last}")
 
 
-def test_a_line_of_a_library_tells_no_name() -> None:
-    frame = (
-        '  File "/opt/ros/jazzy/lib/python3.12/site-packages/rclpy/client.py", line 3, in f\n    future.sum\n'
-    )
-    words = told(
-        f"Traceback (most recent call last):\n{frame}AttributeError: 'Future' object has no attribute 'sum'"
-    )
-    assert "read your_future.result().sum" in words
+@pytest.mark.parametrize(
+    ("file", "future"),
+    [
+        ("/opt/ros/jazzy/lib/python3.12/site-packages/rclpy/client.py", "your_future"),
+        ("/opt/ros/jazzy/lib/python3.12/site-packages/helpers/calls.py", "your_future"),
+        ("/home/a/ros2_ws/install/my_robot_pkg/lib/python3.12/site-packages/my_robot_pkg/ask.py", "fut"),
+    ],
+)
+def test_only_a_line_of_the_students_own_tells_a_name(file: str, future: str) -> None:
+    lines = f'  File "{file}", line 3, in f\n    print(fut.sum)\n'
+    last = "AttributeError: 'Future' object has no attribute 'sum'"
+    assert f"read {future}.result().sum" in told(f"Traceback (most recent call last):\n{lines}{last}")
 
 
 def told(traceback: str) -> str:
