@@ -277,12 +277,19 @@ def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool])
         absent: The run without one.
         asked: Whether the subject asked the server for something in a run.
     """
+    if all(map(_ended_without_node, (absent, *served))):
+        return False  # it has looked for nobody
     ended = [part for part in served if part.ending and not asked(part)]
     if served[0] in ended and any(asked(part) for part in served):
         return True
     told = _parting_words(absent)
     # In each of them: a sum that the subject has added up itself may happen to be one of the run's own numbers.
     return bool(absent.ending and told and ended) and all(_same(_parting_words(part), told) for part in ended)
+
+
+def _ended_without_node(part: Part) -> bool:
+    """True of a program that was no node. A notebook's function may be gone before the graph tells of its node."""
+    return part.ending is not None and part.ending.name == "exited" and not part.had_node
 
 
 def not_forgotten(
