@@ -321,7 +321,7 @@ def test_the_line_that_raised_tells_what_to_write(code: str, last: str, advice: 
     [
         ("/opt/ros/jazzy/lib/python3.12/site-packages/rclpy/client.py", "your_future"),
         ("/opt/ros/jazzy/lib/python3.12/site-packages/helpers/calls.py", "your_future"),
-        ("/home/a/ros2_ws/install/my_robot_pkg/lib/python3.12/site-packages/my_robot_pkg/ask.py", "fut"),
+        ("/home/you/ros2_ws/install/my_robot_pkg/lib/python3.12/site-packages/my_robot_pkg/ask.py", "fut"),
     ],
 )
 def test_only_a_line_of_the_students_own_tells_a_name(file: str, future: str) -> None:
