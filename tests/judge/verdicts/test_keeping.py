@@ -60,9 +60,9 @@ def test_both_looks_come_back() -> None:
     ],
 )
 def test_whatever_is_in_an_event_comes_back(data: dict[str, Any]) -> None:
-    assert back(packed(Event(0.1, "message", "/chatter", data))).main.events == (
-        Event(0.1, "message", "/chatter", data),
-    )
+    assert list(back(packed(Event(0.1, "message", "/chatter", data))).main.events) == [
+        Event(0.1, "message", "/chatter", data)
+    ]
 
 
 def test_a_number_that_is_none_comes_back() -> None:
