@@ -75,7 +75,8 @@ def _run(launch: Prepared) -> int:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     process = subprocess.Popen(launch.command, env=launch.environment, preexec_fn=_listen_to_interrupts)
     signal.signal(signal.SIGTERM, lambda *_: process.terminate())
-    with watched(process.pid, tell):
+    # The launch may have begun a line, whose end it writes by itself: a report behind that would be none.
+    with watched(process.pid, lambda line: tell(f"\n{line}")):
         return process.wait()
 
 

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import subprocess
 import sys
 import time
 
 import pytest
 
+from autograder.kit.launch_report import MARK
 from autograder.process_trees import descendants, kill, known
 from autograder.workspaces import processes
+from autograder.workspaces.__main__ import _run
+from autograder.workspaces.preparing import Prepared
 from autograder.workspaces.processes import watched
 
 RENAMES_ITSELF = """
@@ -44,3 +49,17 @@ def test_what_renames_itself_all_the_time_fills_nobody_s_memory(
             kill(known(descendants(launch.pid)))
     assert 1 <= len(reported) <= most
     assert max(map(len, reported)) < 3_000
+
+
+def test_a_report_begins_a_line_where_the_launch_is_in_the_middle_of_one(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """`ros2 launch` writes a line and its end apart; the report between them was read by nobody, now and then."""
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        _run(Prepared(["sh", "-c", "printf 'started'; sleep 1; echo"], dict(os.environ), {}))
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    lines = capfd.readouterr().out.splitlines()
+    assert any("sleep" in line for line in lines if line.startswith(MARK))
