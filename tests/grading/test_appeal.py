@@ -120,12 +120,19 @@ def test_damaged_evidence_is_named(graded: TinyClass, fake_engine: FakeEngine) -
 
 
 def test_no_appeal_about_a_run_that_was_not_entered(graded: TinyClass) -> None:
+    graded.submit("ben", 3, 3)
+    graded.grade(dry_run=True)
+    with pytest.raises(GradingError, match=r"does not have the points .* Enter them first: .*--student ben"):
+        write_appeal(graded.path, "ben", ID)
+    graded.grade()
+    assert write_appeal(graded.path, "ben", ID).is_file()
+
+
+def test_after_a_run_that_enters_nothing_an_appeal_is_about_the_grade_that_stands(graded: TinyClass) -> None:
+    before = appeal_file.read(write_appeal(graded.path, "ada", ID))
     graded.submit("ada", 3, 3)
     graded.grade(dry_run=True)
-    with pytest.raises(GradingError, match=r"does not have the points .* Enter them first: .*--student ada"):
-        write_appeal(graded.path, "ada", ID)
-    graded.grade()
-    assert write_appeal(graded.path, "ada", ID).is_file()
+    assert appeal_file.read(write_appeal(graded.path, "ada", ID)) == before
 
 
 def test_evidence_of_a_run_before_does_not_stay_where_a_later_one_has_none(

@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 
 GRACE = 2.0
 """Seconds that a running callback has to return by itself once its nodes are to stop."""
+_RELEASE_EVERY = 0.05
+"""Seconds between two looks for calls that wait for an answer."""
 _LAST_GRACE = 1.0
 """Seconds that a callback has to end once it is broken off."""
 _ATTEMPTS = 3
@@ -178,12 +180,23 @@ class SpinThreads:
         self._ask_to_stop(Ending.STOPPED)
         if self.is_own_thread():
             return
-        # From now on nobody takes an answer from the wire: a callback that waits for one would wait for ever.
-        for node in self._nodes:
-            release_waiting_calls(node)
-        if not self._join(grace):
+        if not self._await_callbacks(grace):
             self._break_off()
         self._finish()
+
+    def _await_callbacks(self, grace: float) -> bool:
+        """Wait for the callbacks that are running; whether they returned."""
+        deadline = time.monotonic() + grace
+        while True:
+            # Nobody takes an answer from the wire any more: a callback that waits for one would wait for ever. It may
+            # make its call only now.
+            for node in self._nodes:
+                release_waiting_calls(node)
+            left = deadline - time.monotonic()
+            if self._join(min(_RELEASE_EVERY, left)):
+                return True
+            if left <= 0:
+                return False
 
     def _ask_to_stop(self, ending: Ending) -> None:
         with self._lock:

@@ -198,14 +198,15 @@ def test_an_endless_callback_is_broken_off_and_shown_where_it_was(
     assert printed.err == ""
 
 
-def in_a_call_that_nobody_answers(name: str) -> Background:
-    """A node in the background whose timer's callback has made a blocking call."""
+def in_a_call_that_nobody_answers(name: str, later: float = 0.0) -> Background:
+    """A node in the background whose timer's callback makes a blocking call, so many seconds after it has begun."""
     node = Node(name)
     client = node.create_client(AddTwoInts, "nobody_serves_this")
     begun = threading.Event()
 
     def ask() -> None:
         begun.set()
+        time.sleep(later)
         client.call(AddTwoInts.Request())
 
     node.create_timer(0.005, ask)
@@ -242,9 +243,12 @@ def test_a_callback_of_an_answer_that_never_comes_ends_in_silence() -> None:
     assert isinstance(seen[0], NodeEndedError)
 
 
-def test_a_healthy_call_that_the_end_cuts_off_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("later", [0.0, 0.2], ids=["before the stop", "after it"])
+def test_a_healthy_call_that_the_end_cuts_off_is_no_error(
+    monkeypatch: pytest.MonkeyPatch, later: float
+) -> None:
     monkeypatch.setattr(spin_threads, "_LONG_WAIT", 60.0)
-    background = in_a_call_that_nobody_answers("healthy")
+    background = in_a_call_that_nobody_answers("healthy", later)
     background.stop()
     assert background.errors == ()
 
