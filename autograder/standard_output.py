@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import sys
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, BinaryIO, Protocol
+from typing import TYPE_CHECKING, Any, AnyStr, BinaryIO, Protocol
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -49,10 +49,25 @@ class Chunks(Protocol):
 _CHUNK = 65_536
 
 
+def split_lines(text: AnyStr) -> list[AnyStr]:
+    """The lines of a text without their ends; the last one has none yet.
+
+    A carriage return ends a line, too: a program may write one line of the terminal over and over. At the end of the
+    text it may be the first half of an end.
+    """
+    end: Any
+    back: Any
+    end, back = ("\n", "\r") if isinstance(text, str) else (b"\n", b"\r")
+    *lines, rest = text.replace(back + end, end).split(end)
+    begun = rest.removesuffix(back)
+    *pieces, last = begun.split(back)
+    return [*(piece for line in lines for piece in line.split(back)), *pieces, last + rest[len(begun) :]]
+
+
 def short_lines(stream: Chunks, limit: int) -> Iterator[bytes]:
     """The lines of a stream as they come, each with its end; of a longer one only the beginning.
 
-    A carriage return ends a line, too: a program may write one line of the terminal over and over.
+    A carriage return ends a line, as in :func:`split_lines`.
 
     Args:
         stream: What is read to its end.

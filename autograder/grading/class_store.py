@@ -136,7 +136,7 @@ class ClassStore:
             )
             if seen.checks:
                 book.execute(
-                    "REPLACE INTO evidence VALUES (?, ?, ?, ?, ?, ?, ?)",
+                    "INSERT OR IGNORE INTO evidence VALUES (?, ?, ?, ?, ?, ?, ?)",
                     (*names, seen.task, seen.course, msgspec.msgpack.encode(seen.checks), seen.cells),
                 )
         return result

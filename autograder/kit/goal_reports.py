@@ -275,7 +275,11 @@ def aborted_as_seen(evidence: Evidence) -> str:
             return f"“{line}”"
     new = [line for line in _new_words(said, evidence.part(LATE)) if not _names_another(line)]
     raised = last_line_of(part.traceback)
-    if named or new or (on_purpose(part.traceback) and not _names_another(raised)):
+    if (
+        named
+        or new
+        or (on_purpose(part.traceback) and (_names_aborted(raised) or not _names_another(raised)))
+    ):
         return ""
     if part.first("result_request") is None:
         return "never asked for the result"
@@ -300,9 +304,10 @@ def _names_aborted(line: str) -> bool:
 
 _ANOTHER = re2.compile(r"(?i)cancel|\brejected\b|\bsucce|\berfolg(?:reich)?\b")
 _NO_OTHER = re2.compile(
-    r"(?i)(?:\b(?:not?|n?or|neither|never|without|nicht|kein\w*)|n't)(?:\s+\w+){0,2}\s+(?:cancel|rejected|succe|erfolg)\w*"
+    r"(?i)(?:\b(?:not?|n?or|neither|never|without|nicht|kein\w*|expect\w*|instead of|(?:rather|other) than)\b|n't)"
+    r"[^.;!?]*"
 )
-"""Another end than the goal's, and one that is denied: "was not successful", "neither canceled nor rejected"."""
+"""Another end than the goal's, and a clause that denies one: "did not end with status SUCCEEDED"."""
 
 
 def _names_another(line: str) -> bool:

@@ -359,12 +359,12 @@ KNOWN = (
     ),
     Crash(
         "result_read_too_early",
-        r"^ +(?:.*[^\w.)])?(?P<what>[A-Za-z_][\w.]*)\.(?:accepted|cancel_goal_async|get_result_async)\b.*\n"
+        r"^ +(?:.*[^\w.)])?[A-Za-z_][\w.]*\.(?:accepted|cancel_goal_async|get_result_async)\b.*\n"
         r"(?:[ ~^]*\n)?AttributeError: 'NoneType' object has no attribute '(?:accepted|cancel_goal_async"
         r"|get_result_async)'",
-        "{what} is None: nothing has kept the handle of the goal there, or it was kept before the answer had arrived, "
-        "or the function that should give it returns nothing.",
-        "Wait until the future of send_goal_async is done, then keep its result in {what}. Where another function "
+        "{owner:What is before the dot} is None: nothing has kept the handle of the goal there, or it was kept before "
+        "the answer had arrived, or the function that should give it returns nothing.",
+        "Wait until the future of send_goal_async is done, then keep its result in {owner:it}. Where another function "
         "keeps the handle, such as the send_goal of a lab, call that one first, and read the handle where it keeps it.",
     ),
     Crash(

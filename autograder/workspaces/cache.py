@@ -189,24 +189,25 @@ def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[st
     for used, folder in entries:
         if total <= limit or time.time() - used < in_use:
             break
-        if _remove(base, folder):
+        if _remove(base, folder, used):
             total -= sizes[folder]
             removed.append(folder.name)
     for lock in base.glob("*.lock"):
         if _last_use(folder := lock.with_suffix("")) is None:
-            _remove(base, folder)
+            _remove(base, folder, None)
     return removed
 
 
-def _remove(base: Path, folder: Path) -> bool:
+def _remove(base: Path, folder: Path, used: float | None) -> bool:
+    """Remove an entry that was used last then, or never finished; False where somebody uses it, or has since."""
     file = base / f"{folder.name}.lock"
     with file.open("a") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             return False  # somebody uses it
-        if not _is_at(lock, file):
-            return False  # somebody else has removed it just now
+        if not _is_at(lock, file) or _last_use(folder) != used:
+            return False  # somebody else has removed it just now, or made it or used it
         # Without its marker it does not count, should the rest stay behind.
         (folder / _MARKER).unlink(missing_ok=True)
         shutil.rmtree(folder, ignore_errors=True)

@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
+from autograder.standard_output import split_lines
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
@@ -131,7 +133,7 @@ def output_lines(
     """
     line = b""
     while wanted() and (data := program.read(within)) != b"":
-        *complete, line = (line + (data or b"")).split(b"\n")
+        *complete, line = split_lines(line + (data or b""))
         yield from map(_as_text, complete)
         line = line[:MAX_LINE]
     if line:

@@ -96,6 +96,7 @@ def test_who_says_how_each_goal_ended_is_right(canceled: str, succeeded: str) ->
         ("=> CANCELED (5)", "=> CANCELED (4)"),
         ("Result: canceled (5)", "Result: canceled (4)"),
         ("Succeeded (5)", "Succeeded (4)"),
+        ("ticket qwer says canceled", "ticket asdf says canceled"),
     ],
 )
 def test_a_word_that_is_true_of_the_other_goal_only_is_wrong(canceled: str, succeeded: str) -> None:

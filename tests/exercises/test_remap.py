@@ -92,6 +92,7 @@ PATH = "/home/student/ros2_ws/install/my_robot_pkg/lib/my_robot_pkg"
     ("argv", "alone"),
     [
         (("python3", f"{PATH}/talker", *RULES), ("my_robot_pkg", "talker", "--ros-args")),
+        (("python3", "-u", f"{PATH}/talker", *RULES), ("my_robot_pkg", "talker", "--ros-args")),
         ((f"{PATH}/talker", "7", *RULES), ("my_robot_pkg", "talker", "7", "--ros-args")),
         ((f"{PATH}/talker", *RULES, "--params-file", "/tmp/p"), ("my_robot_pkg", "talker", "--ros-args")),
         (
@@ -122,7 +123,7 @@ def test_a_program_without_its_rules_keeps_its_other_arguments(
     "argv",
     [
         ("python3", "talker.py", *RULES),
-        ("python3", "-m", f"{PATH}/talker", *RULES),
+        ("python3", "-m", "my_robot_pkg.talker", *RULES),
         ("python3", f"{PATH}/--prefix", *RULES),
         ("python3", f"{PATH}/talker", "--ros-args"),
     ],

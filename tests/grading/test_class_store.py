@@ -90,6 +90,9 @@ def test_a_run_that_enters_nothing_leaves_the_evidence_of_a_grade(store: ClassSt
     seen = store.evidence("ada", "lab.one")
     assert seen is not None
     assert (seen.task, seen.checks) == (TASK.key(), {"lab.one": b"first"})
+    store.keep(TASK, replace(DONE, evidence={"lab.one": b"executed again, and seen otherwise"}))
+    assert store.evidence("ada", "lab.one") == seen
+    store.keep(changed, replace(DONE, evidence={"lab.one": b"1"}))
     store.enter(submission(), attempt(), replace(entered(), tasks={"lab": changed.key()}))
     seen = store.evidence("ada", "lab.one")
     assert seen is not None

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.archives import EMPTY, File, NotTaken, Room, files_of, is_zip, within
 from autograder.grading.collecting.assignment_of import AssignmentOf, NoTarget, is_notebook, stem_of
-from autograder.grading.collecting.forms import FORMS, is_drives_own, plain, read_alone, read_path
+from autograder.grading.collecting.forms import is_drives_own, plain, read_alone, read_path
 from autograder.grading.collecting.lists import GRADESCOPE, Entry, is_unread, read_list
 from autograder.grading.collecting.outcomes import CollectReport, Outcome, State, WaitingList
 from autograder.grading.collecting.records import Collected, CollectedRecords
@@ -99,6 +99,7 @@ class _Collecting:
         self._roster: Roster = read_roster(directory)
         self._student_of = StudentOf(self._roster)
         self._assignment_from = AssignmentOf(directory, assignment)
+        self._is_notebook = self._assignment_from.is_notebook
         self._candidates: list[Candidate] = []
         self._outcomes: list[Outcome] = []
         self._handed_in_alone: set[Path] = set()
@@ -188,7 +189,7 @@ class _Collecting:
     def _is_list(self, source: Path, file: File, depth: int) -> bool:
         """True if a file is a list of the instructor's: no student's of that name is ever opened as one."""
         if file.name == GRADESCOPE and len(file.parts) <= depth:
-            return read_path(file.parts, "gradescope", self._assignment_from.is_notebook) is None
+            return read_path(file.parts, "gradescope", self._is_notebook) is None
         is_csv = source.suffix.lower() == ".csv" and file.parts == (source.name,)
         return is_csv and source not in self._handed_in_alone
 
@@ -205,7 +206,7 @@ class _Collecting:
         return by_a_system or self._is_known(source)
 
     def _ways(self, source: Path) -> list[Found]:
-        return read_alone(source, self._assignment_from.is_notebook)
+        return read_alone(source, self._is_notebook)
 
     def _is_known(self, source: Path) -> bool:
         return any(map(self._student_of.find, self._ways(source)))
@@ -220,7 +221,8 @@ class _Collecting:
                 f"{source} was taken for a download, in which names say whose work it is: if one student sent it, "
                 "rename it to the student's id"
             )
-        if source in self._handed_in_alone and suffix in (".zip", ".csv") and not self._is_known(source):
+        is_sure = self._roster.students and self._is_known(source)
+        if source in self._handed_in_alone and suffix in (".zip", ".csv") and not is_sure:
             return (
                 f"{source} was taken for one student's work, as a system gives it such a name: if it is a download "
                 "or a list, rename it to submissions.zip or list.csv"
@@ -246,15 +248,20 @@ class _Collecting:
         return found or []
 
     def _take(self, files: list[File], source: Path, depth: int) -> None:
-        form = self._form or self._likely_form(files, depth)
+        paths = [file.parts for file in files]
+        form, *rivals = (
+            [self._form] if self._form else self._student_of.likely_forms(paths, depth, self._is_notebook)
+        )
         by_its_own_name = self._ways(source) if source in self._handed_in_alone else []
         rooms: dict[tuple[str, ...], Room] = defaultdict(Room)
         for file in files:
-            found = (
-                read_path(file.parts, form, self._assignment_from.is_notebook)
-                if form and file.parts
-                else None
-            )
+            found = read_path(file.parts, form, self._is_notebook) if form and file.parts else None
+            if found and (other := self._student_of.rival(file.parts, found, rivals, self._is_notebook)):
+                names = " and as ".join(one.capitalize() for one in (form, other))
+                self._refuse(
+                    file, f"its name can be read as {names} gives it, of another student or time: say --from"
+                )
+                continue
             in_folders = plain(file.parts)[:depth] if file.parts else []
             ways = [found] if found else [*in_folders, *by_its_own_name]
             known = (owners for way in ways if (owners := self._student_of.find(way)) is not None)
@@ -273,25 +280,6 @@ class _Collecting:
                     self._not_taken(inner, str(held), owners)
                 else:
                     self._take_file(inner, held, owners, source)
-
-    def _likely_form(self, files: Sequence[File], depth: int) -> str:
-        """The form that most of the names have; empty where as many are in folders that are called as students are.
-
-        A student chooses the names of files in such a folder, and might choose one that another system would give
-        to somebody else's.
-        """
-        votes: dict[str, set[tuple[str, ...]]] = {form: set() for form in FORMS}
-        in_folders = set()
-        for file in files:
-            folder = file.parts[:depth]  # which has one vote, however many files its student puts into it
-            if folder and any(map(self._student_of.find, plain(file.parts)[:depth])):
-                in_folders.add(folder)
-            for form in FORMS if folder else ():
-                if read_path(file.parts, form, self._assignment_from.is_notebook) is not None:
-                    votes[form].add(folder)
-                    break
-        likely = max(FORMS, key=lambda form: len(votes[form]))
-        return likely if len(votes[likely]) > len(in_folders) else ""
 
     def _not_taken(self, file: File, reason: str, owners: Owners) -> None:
         """Say why a file cannot be read."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -134,7 +135,8 @@ class WaitingList:
             known = msgspec.json.decode(self._path.read_bytes(), type=list[Waiting])
         except (OSError, msgspec.MsgspecError):
             return []
-        return [one for one in known if not one.assignment or one.there == self._there(one)]
+        there = functools.cache(self._there)  # one archive may have thousands of files without a place
+        return [one for one in known if not one.assignment or one.there == there(one.student, one.assignment)]
 
     def note(self, outcomes: Sequence[Outcome]) -> None:
         """Write down the files that have no place now; what was written of the same files before is replaced.
@@ -145,7 +147,23 @@ class WaitingList:
         again = {one.label for one in outcomes}
         kept = [one for one in self.read() if one.label not in again]
         new = [one for one in outcomes if one.state == State.NOT_PLACED]
-        self._write([*kept, *map(self._waiting, new)])
+        there, now = functools.cache(self._there), datetime.now(tz=UTC)
+        self._write(
+            [
+                *kept,
+                *(
+                    Waiting(
+                        one.label,
+                        one.reason,
+                        one.student,
+                        one.assignment,
+                        there(one.student, one.assignment),
+                        now,
+                    )
+                    for one in new
+                ),
+            ]
+        )
 
     def settle(self, labels: Iterable[str]) -> list[str]:
         """Forget files that need no place, and give back the names that are not in the list.
@@ -157,15 +175,11 @@ class WaitingList:
         self._write([one for one in known if one.label not in labels])
         return sorted(labels - {one.label for one in known})
 
-    def _waiting(self, outcome: Outcome) -> Waiting:
-        there, now = self._there(outcome), datetime.now(tz=UTC)
-        return Waiting(outcome.label, outcome.reason, outcome.student, outcome.assignment, there, now)
-
-    def _there(self, one: Outcome | Waiting) -> str:
+    def _there(self, student: str, assignment: str) -> str:
         """A digest of the notebooks at a file's place; empty where its place is not known."""
-        if not one.student or not one.assignment:
+        if not student or not assignment:
             return ""
-        folder = self._directory.path / "submitted" / one.student / one.assignment
+        folder = self._directory.path / "submitted" / student / assignment
         digest = hashlib.sha256()
         for path in sorted(folder.glob(f"*{SUFFIX}")):
             try:

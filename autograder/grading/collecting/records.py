@@ -49,6 +49,17 @@ class Collected:
     by_hand: bool = False
 
 
+def repository_of(one: Collected) -> str:
+    """The name of the repository of GitHub's that a notebook came from; empty for another system's.
+
+    It ends with a user name, and so does the repository of whoever takes a name that ends as that one.
+    """
+    if one.lms != "github":
+        return ""
+    folders = (folder.removesuffix("-main").removesuffix("-master") for folder in one.file.split("/")[:-1])
+    return next((folder for folder in folders if folder.endswith(one.number or one.name)), "")
+
+
 @dataclass(frozen=True)
 class History:
     """The files that were collected of one student for one assignment.

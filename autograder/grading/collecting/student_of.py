@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import reason_against_name
+from autograder.grading.collecting.forms import FORMS, plain, read_path
 from autograder.grading.table.roster import Identity, Roster, Student
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable, Sequence
     from datetime import datetime
 
     from autograder.grading.collecting.forms import Found
@@ -59,6 +60,44 @@ class StudentOf:
             if members := self._of(identity):
                 return Owners(replace(way, identity=identity), members)
         return None
+
+    def likely_forms(
+        self, paths: Iterable[Sequence[str]], depth: int, is_notebook: Callable[[str], bool]
+    ) -> list[str]:
+        """The form that most names of a download have, and those that as many have; empty where more are plain folders.
+
+        Whatever a student calls a file, the system's own part is in front of it: no other form fits more names. And a
+        student chooses the names of files in a folder that is called as a student is, and might choose one that another
+        system would give to somebody else's.
+
+        Args:
+            paths: Of its files.
+            depth: The number of folders with names that may say a student.
+            is_notebook: Whether a file of this name is a notebook of the class.
+        """
+        votes: dict[str, set[tuple[str, ...]]] = {form: set() for form in FORMS}
+        in_folders = set()
+        for path in filter(None, paths):
+            folder = tuple(path[:depth])  # which has one vote, however many files its student puts into it
+            if any(map(self.find, plain(path)[:depth])):
+                in_folders.add(folder)
+            for form in FORMS:
+                if read_path(path, form, is_notebook) is not None:
+                    votes[form].add(folder)
+        most = max(map(len, votes.values()))
+        return [form for form in FORMS if len(votes[form]) == most] if most > len(in_folders) else [""]
+
+    def rival(
+        self, path: Sequence[str], found: Found, forms: Iterable[str], is_notebook: Callable[[str], bool]
+    ) -> str:
+        """The form by which a name means another known student, or another time; empty where none does."""
+        owners = self.find(found)
+        for form in forms if owners is not None else ():
+            other = read_path(path, form, is_notebook)
+            meant = self.find(other) if other is not None else None
+            if other and owners and meant and (owners.members, found.when) != (meant.members, other.when):
+                return form
+        return ""
 
     def _of(self, identity: Identity) -> tuple[tuple[Student, ...], ...]:
         """The students who may be meant; in a class without a list of students, the one that the LMS names."""

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory
 from autograder.grading.classes.timestamps import TIMESTAMP, timestamp_text
 from autograder.grading.collecting.outcomes import Outcome, State
-from autograder.grading.collecting.records import Collected, CollectedRecords, History
+from autograder.grading.collecting.records import Collected, CollectedRecords, History, repository_of
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.regular_files import write_whole
 
@@ -280,6 +280,12 @@ def _older(newest: Candidate, known: Collected, history: History) -> Outcome | N
         if new.order < known.order:
             return newest.outcome(State.EARLIER, "the one that is there was handed in later")
         return None
+    if repository_of(new) != repository_of(known):
+        return newest.outcome(
+            State.NOT_PLACED,
+            f"the one that is there came from another repository, {known.source}, and only the end of this one's name "
+            f"is {newest.student}'s: if it counts, put it into submitted/ yourself",
+        )
     if any(one.content == newest.content for one in history.before):
         return newest.outcome(State.EARLIER, "it was collected before, and a newer one after it")
     if known.when is not None:

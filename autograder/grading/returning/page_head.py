@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from autograder.grading.entering.gradebook_reading import CellEntry
 
 WAITS = "waits_for_a_person"
-"""The mark, among nbgrader's own metadata, of a cell that still waits for points by a person."""
+"""The mark, among nbgrader's own metadata, of a cell whose points are still to come, with the words for it."""
+_FOR_A_PERSON, _TRIED_AGAIN = "waits for your instructor", "could not be checked, and is tried again"
 _BEGIN, _END = '<div id="toc">', "</div>"
 _LINK = re2.compile(r'(?s)<a\b[^>]*\bhref="([^"]*)"[^>]*>(.*?)</a>')
 _LEADS_SOMEWHERE = re2.compile(r"#|[a-zA-Z][a-zA-Z+.-]*:")
@@ -54,15 +55,17 @@ def with_summary(body: str, notebook: NotebookNode, names: Mapping[str, Any]) ->
 
 
 def mark_waiting(notebook: NotebookNode, cells: Mapping[str, CellEntry]) -> None:
-    """Mark the cells whose points a person still has to give.
+    """Mark the cells whose points a person, or the judge, still has to give.
 
     Args:
         notebook: A graded one; it is changed.
         cells: The gradebook's entries of it, by grade_id.
     """
     for cell in notebook.cells:
-        if (name := grade_id(cell)) in cells and cells[name].waits:
-            cell.metadata.nbgrader[WAITS] = True
+        entry = cells.get(grade_id(cell))
+        if entry is not None and entry.waits:
+            unchecked = is_check(cell) and entry.by_hand is None
+            cell.metadata.nbgrader[WAITS] = _TRIED_AGAIN if unchecked else _FOR_A_PERSON
 
 
 def without_dead_links(page: str) -> str:
@@ -80,7 +83,7 @@ def _lines(notebook: NotebookNode, names: Mapping[str, Any]) -> Iterator[tuple[s
         link = f'<a href="#{escape(grade_id(cell))}">{escape(_title(cell))}</a>'
         word = "✓ all points" if score >= most else "◐ some points, see below" if score > 0 else "✗ see below"
         if marks.get(WAITS):
-            word = "… waits for your instructor"
+            word = f"… {marks[WAITS]}"
         if marks.get("comment"):
             word += f', <a href="#comment-{escape(grade_id(cell))}">with a comment</a>'
         yield link, f"{score:g} of {most:g}", word

@@ -201,7 +201,9 @@ class Launched:
 
         Nor has it a file of parameters: a launch writes one for itself, and takes it away at its end.
         """
-        for place, word in enumerate(argv[:2], 1):
+        # A prefix, such as `python3 -u`, may stand before the program.
+        own = argv[: argv.index("--ros-args")] if "--ros-args" in argv else argv
+        for place, word in enumerate(own, 1):
             if found := _OF_A_PACKAGE.search(word):
                 pairs = enumerate(pairwise(argv))
                 gone = {at for at, pair in pairs if pair[0] == "--params-file" or self._has_a_rule(pair)}

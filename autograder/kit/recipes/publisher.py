@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -77,7 +78,7 @@ class Publisher:
 
         Who publishes one while it makes its publisher is heard or not, by chance, and counts the same in both cases.
         """
-        begins = self.templates.index(max(self.templates, key=self.templates.count)) if self.texts else 0
+        begins = self.templates.index(Counter(self.templates).most_common(1)[0][0]) if self.texts else 0
         around = counters(self.texts[begins - 1 : begins + 1]) if begins else []
         leads_on = len(around) > 1 and around[1] == around[0] + 1
         return 0 if leads_on else begins

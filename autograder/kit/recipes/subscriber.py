@@ -411,16 +411,15 @@ def _not_logged(evidence: Evidence) -> Advice | None:
 
 def _put_it_there(line: str) -> str:
     """The next step after a line without the string, in which there may be braces that Python did not fill in."""
-    braces = _BRACES.search(line)
+    return _write_f(line) or "Put the field data of the message into the line that you log."
+
+
+def _write_f(line: str) -> str:
+    """The next step where a line has braces with a name in them, which Python did not fill in; else empty."""
+    braces = re2.search(r"\{[\w.]+\}", line)
     if braces is None:
-        return "Put the field data of the message into the line that you log."
-    return _write_f(braces[0])
-
-
-def _write_f(braces: str) -> str:
-    return (
-        f"Write an f before the opening quotation mark: Python then puts the string in the place of {braces}."
-    )
+        return ""
+    return f"Write an f before the opening quotation mark: Python then puts the string in the place of {braces[0]}."
 
 
 def _invented_text(evidence: Evidence) -> Advice | None:
@@ -428,10 +427,8 @@ def _invented_text(evidence: Evidence) -> Advice | None:
     made_up = invented(evidence.main, _sent_texts(evidence))
     if not made_up:
         return None
-    braces = re2.search(r"\{[\w.]+\}", made_up[0])
     return Advice(
         f"Your node said “{made_up[0]}”, but no node sent that.",
-        _write_f(braces[0])
-        if braces
-        else "Log only in the subscription's callback, and only the string of the message that it was given.",
+        _write_f(made_up[0])
+        or "Log only in the subscription's callback, and only the string of the message that it was given.",
     )

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Self
 from rclpy.impl.rcutils_logger import RcutilsLogger
 
 from autograder.notebook.checking.judge_link import MAX_TEXT
+from autograder.standard_output import split_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -112,7 +113,7 @@ class _CapturedStream:
             written: int = self._usual_write(text)
             return written
         with self._lock:
-            *lines, rest = (self._rest + text).split("\n")
+            *lines, rest = split_lines(self._rest + text)
             self._rest = rest[:MAX_TEXT]
         for line in lines:
             self._tell(line[:MAX_TEXT], False)
@@ -128,7 +129,7 @@ class _CapturedStream:
         with self._lock:
             rest, self._rest = self._rest, ""
         if rest:
-            self._tell(rest, False)
+            self._tell(rest.rstrip("\r"), False)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)

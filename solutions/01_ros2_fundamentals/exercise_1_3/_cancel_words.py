@@ -34,6 +34,10 @@ HAS_SUCCEEDED = "succeeded in spite of the cancel request"
 """The ends of the goals."""
 _OF_EITHER = "abgebrochen|annul"
 """Words that stand for both a canceled and an aborted goal in some languages."""
+_NOT_SO = re2.compile(
+    r"(?i)\b(?:pas|niet|non|no|não|nao|nie|не|inte|ikke|ei)\b|[不没沒非]|ない|(?:rather|other) than|[!≠]=?|\bun"
+)
+"""Words of who denies what follows, in some languages."""
 _ENGLISH = "cancel+ed"
 """Words that nobody may say of a goal that was aborted. In other languages one word may stand for both."""
 
@@ -124,21 +128,25 @@ def false_claim(honoured: Part, refused: Part, aborted: Part | None = None) -> t
 
 
 def _claimed(part: Part, honoured: Part, truth: str, word: str = CANCELED) -> str | None:
-    """A line that amounts to "the goal was canceled" where it was not: it is said of the canceled goal, too.
+    """A line that amounts to "the goal was canceled" where it was not.
+
+    It says so in plain English, or it is said of the canceled goal, too: whose words differ there has told the two ends
+    apart, in any language.
 
     Args:
         part: The run.
-        honoured: The run in which the goal was canceled. Whose words differ there has told the two ends apart.
+        honoured: The run in which the goal was canceled.
         truth: The words and the number for how the goal of ``part`` ended.
         word: The words that claim it.
     """
     said, of_canceled = _told(part), {_shape(line) for line in _told(honoured)}
+    in_english = [line for line in said if re2.search(f"(?i){_ENGLISH}", line) and not _NOT_SO.search(line)]
     claims = [
         line
         for line in said
         if re2.search(f"(?i){word}", without_lists(line))
         and flag(CANCELED, line) is not False
-        and _shape(line) in of_canceled
+        and (line in in_english or _shape(line) in of_canceled)
     ]
     if not claims or any(re2.search(f"(?i){DOUBTFUL}|{truth}", without_lists(line)) for line in said):
         return None

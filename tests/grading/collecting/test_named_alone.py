@@ -52,7 +52,7 @@ def test_a_zip_of_somebody_unknown_is_no_download_either(
     assert lies(tiny, ben) == work(tiny, 3)
     assert placed(report).keys() == ({ben} if has_list else {ben, "malloryeve"})
     told = [note for note in report.notes if "rename it to submissions.zip or list.csv" in note]
-    assert len(told) == (2 if has_list else 0)
+    assert len(told) == 2
     assert not has_list or "nobody in the class is called malloryeve" in why(report)
 
 
@@ -176,3 +176,46 @@ def test_who_is_called_as_another_hands_in_nothing_for_the_other(
             "id,first_name,last_name,canvas\nada,Ada,Lovelace,101\neve,,,999\n"
         )
         assert placed(collect(tiny.path, [download])).keys() == {"ada", "eve"}
+
+
+BLACKBOARDS = "malloryeve_LATE_104_5003_x_{}_attempt_2025-12-31-00-00-00_lab_1_2.ipynb"
+"""A file's name of Canvas's, whose end, which its student has chosen, looks like one of Blackboard's."""
+
+
+def test_a_name_that_two_systems_may_have_given_to_two_students_is_refused(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    (klass.path / "students.csv").write_text("id,canvas\nada,101\nmalloryeve,104\n")
+    for whose in ("ada", "malloryeve"):
+        file = tmp_path / BLACKBOARDS.format(whose)
+        file.write_text(work(klass, 1))
+        report = collect(klass.path, [file])
+        assert placed(report) == {}, whose
+        assert "its name can be read as Blackboard and as Canvas gives it" in why(report)
+    assert placed(collect(klass.path, [file], form="canvas")).keys() == {"malloryeve"}
+
+
+def test_no_names_that_one_student_chooses_say_which_system_a_download_is_of(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    files = {
+        "lovelaceada_101_5001_lab_1_2.ipynb": work(klass, 1),
+        "barben_102_5002_lab_1_2.ipynb": work(klass, 2),
+    }
+    for number, whose in enumerate(("ada", "ben", "zoe")):
+        name = f"oneilleve_104_600{number}_x_{whose}_attempt_2025-12-31-00-00-00_lab_1_2.ipynb"
+        files[name] = work(klass, 5 + number)
+    report = collect(klass.path, [write_zip(tmp_path / "submissions.zip", files)])
+    assert (lies(klass, "ada"), lies(klass, "ben")) == (work(klass, 1), work(klass, 2))
+    assert {one.student for one in report.outcomes} <= {"ada", "ben", "eve"}
+
+
+def test_a_repository_whose_name_only_ends_as_a_students_replaces_nothing(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    for place, repository in enumerate(("lab-1-2-adalove", "lab-1-2-x-adalove-main")):
+        (tmp_path / repository).mkdir()
+        (tmp_path / repository / "lab_1_2.ipynb").write_text(work(klass, place))
+        report = collect(klass.path, [tmp_path / repository])
+    assert lies(klass, "ada") == work(klass, 0)
+    assert "came from another repository" in why(report)
