@@ -25,6 +25,8 @@ from autograder.kit.service_calls import (
 from autograder.kit.texts_said import mentions
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from autograder.kit.evidence import Evidence, Part
 
 
@@ -71,9 +73,24 @@ def _does_not_wait_for_answers(evidence: Evidence) -> bool:
     waits = any(len(requests(part)) >= calls for part in served if part.of("response"))
     return any(
         ended_before_its_answer(part)
+        or _gave_up_on_its_answer(part, served)
         or (((calls > 1 and not waits) or part.traceback) and _made_nothing_of_its_answer(part))
         for part in served
     )
+
+
+def _gave_up_on_its_answer(part: Part, served: Sequence[Part]) -> bool:
+    """True if it said before its answer what it says in no run with a quick one, and reported those.
+
+    A process takes its time to end, so the answer may be given while it is on its way out.
+    """
+    asked, given = part.first("request"), part.first("response")
+    quick = [other for other in served if other is not part and reports(other)]
+    if not (part.ending and asked and given and quick) or reports(part):
+        return False
+    usual = {re2.sub(r"\d+", "#", line) for other in quick for line in other.said()}
+    before = replace(part, events=part.events[: part.events.index(given)])
+    return any(re2.sub(r"\d+", "#", line) not in usual for line in before.said(after=asked))
 
 
 def _made_nothing_of_its_answer(part: Part) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from random import Random
 
 import pytest
@@ -12,10 +13,13 @@ from inspecting_topics import mismatch
 from lab_1_2 import listener, talker
 from lab_1_4 import client as action_client
 
+from autograder.judge.verdicts import reference
 from autograder.kit import common_mistakes as common
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.goal_mistakes import ENDED_TOO_EARLY, RESULT_NOT_REQUESTED
 from autograder.kit.goal_reports import LATE, left_at_once
+from autograder.kit.service_calls import BIASED, EXTREME
+from autograder.kit.service_mistakes import ANSWER_NOT_AWAITED
 from autograder.kit.texts_said import has_much_of
 
 TOPIC, TYPE = "/chatter", "std_msgs/msg/String"
@@ -204,3 +208,19 @@ def test_a_request_to_cancel_just_after_the_last_moment_is_asked_for_again(
     sent = [Event(0.5 * number, "feedback", "/fibonacci", {}) for number in range(feedbacks)]
     seen = Part(HONOURED, {}, [*sent, Event(9.0, "cancel", "/fibonacci", {"accepted": True})])
     assert asked_a_moment_late(seen) is again
+
+
+@pytest.mark.parametrize("slow_to_end", [False, True])
+def test_who_does_not_wait_for_an_answer_is_told_so_however_slowly_the_program_ends(
+    slow_to_end: bool,
+) -> None:
+    asked = Event(0.4, "request", "/add_two_ints", {"fields": {"a": 2000, "b": 3000}})
+    given = Event(0.4, "response", "/add_two_ints", {"fields": {"sum": -77_777}})
+    quick = Part(BIASED, {}, [asked, given, Event(0.5, "output", "stdout", {"text": "sum: -77777"}), EXITED])
+    gave_up = Event(0.5, "output", "stderr", {"text": "no answer"})
+    late = [replace(given, t=0.9), EXITED] if slow_to_end else [EXITED, replace(given, t=9.5)]
+    held = Part(EXTREME, {"numbers": [2000, 3000]}, [asked, gave_up, *late])
+    evidence = Evidence([quick, held], reference.load("lab_1_3.client"))
+    assert ANSWER_NOT_AWAITED.recognise(evidence)
+    right = Part(EXTREME, {}, [asked, given, Event(0.5, "output", "stdout", {"text": "sum: -77777"}), EXITED])
+    assert not ANSWER_NOT_AWAITED.recognise(replace(evidence, parts=[quick, right]))
