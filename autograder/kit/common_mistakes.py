@@ -82,8 +82,8 @@ def endpoint_name(role: str) -> Mistake:
         near = difflib.get_close_matches(missing[0], strange, n=1, cutoff=0.0) or sorted(strange)
         return Advice(
             f"Your node {verb} {near[0]}; the {noun} is called {missing[0]}.",
-            f"Correct the name. `ros2 {noun} list` shows the names on the graph: two nodes are connected only if the "
-            "names are equal, letter by letter.",
+            f"Compare the names letter by letter: two nodes are connected only if they are equal, as `ros2 {noun} "
+            "list` shows them. A ~/ or a namespace in front comes from your code or your launch file: leave it out.",
         )
 
     return Mistake(_KEY[noun], recognise, certain=True)
@@ -241,9 +241,10 @@ def _worked(part: Part, role: str) -> bool:
 
 _AT_ONCE = "The program ended at once, without a word and without a node:"
 _IN_MAIN = "In main(), call rclpy.init(), make your node and spin it: rclpy.spin(your_node)."
+_IN_MAIN_OF_A_SERVER = _IN_MAIN.replace("main(),", "main() of a server,")
 _IN_MAIN_OF_A_CLIENT = (
-    "The main() of a client calls rclpy.init(), then what sends its request, and spins its node until the answer is "
-    "there."
+    "In main() of a client, call rclpy.init(), then your function that sends the request or the goal and waits for the "
+    "answer."
 )
 _BEGIN_AT_TODO = "If your code still has its TODO, begin there."
 
@@ -252,8 +253,9 @@ def _what_main_does(evidence: Evidence) -> str:
     """The calls that belong into main(), of a server or of a client, as the task asks for one of them or both."""
     roles = evidence.reference.interface.keys()
     client = _IN_MAIN_OF_A_CLIENT if roles & {"client", "action_client"} else ""
-    other = _IN_MAIN if not client or roles - {"client", "action_client"} else ""
-    return f"{other} {client}".strip()
+    if not client:
+        return _IN_MAIN
+    return f"{_IN_MAIN_OF_A_SERVER} {client}" if roles - {"client", "action_client"} else client
 
 
 def _main_guard(evidence: Evidence) -> Advice | None:

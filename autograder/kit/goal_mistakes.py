@@ -102,8 +102,9 @@ def _wrong_order(evidence: Evidence) -> str:
 WRONG_ORDER = mistake(
     "wrong_order",
     _wrong_order,
-    "The judge got {}.",
-    "Send one goal, once, with the order that your function or program was given (sys.argv[1] on a command line). "
+    "The judge got {}; the task asks for one goal of the given order.",
+    "Send one goal, once, with the order that your function or program was given (sys.argv[1] on a command line; 0 "
+    "is an order like any other). "
     "If a timer sends the goal, switch the timer off after that, with its cancel().",
     certain=True,
 )

@@ -118,8 +118,8 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
         "nested_spin",
         lambda found: any(map(_spins_in_callback, found)),
         "A callback of yours spins, and waits inside that spin for ever: the executor that called it cannot go on.",
-        "Leave the spin out of the callback: send the request there, and go on in a function that you give to the "
-        "add_done_callback(...) of the future.",
+        "Leave the spin out of the callback. If you wait for an answer there, go on in a function that you give to the "
+        "add_done_callback(...) of its future.",
     ),
     (
         "call_in_same_group",

@@ -31,7 +31,7 @@ def first_difference(said: str, wanted: str) -> str:
 
 def _next(text: str, same: str) -> str:
     rest = text[len(same) :]
-    return f"“{rest[:SHOWN]}”" if rest else "nothing more"
+    return f"“{rest[:SHOWN]}{'…' if rest[SHOWN:] else ''}”" if rest else "nothing more"
 
 
 def shortened(text: str) -> str:

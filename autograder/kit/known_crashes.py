@@ -50,7 +50,8 @@ KNOWN = (
         # An executor that was made before: spinning makes one.
         r"|guard_condition\.py\".*\n.*self\._context\.handle",
         "The node was made before ROS was started, or after it was shut down.",
-        "In a notebook, call start_ros() before you make a node. In a program, call rclpy.init() before you make one.",
+        "In a notebook, call start_ros() before you make a node. In a program, call rclpy.init() before you make "
+        "the node.",
     ),
     Crash(
         "super_init_missing",
@@ -348,8 +349,9 @@ KNOWN = (
         "result_read_too_early",
         r"AttributeError: '(?:Future|Task)' object has no attribute '(?P<name>\w+)'",
         "{name} is read from {owner:a future}, which is the promise of an answer and not the answer.",
-        "Wait until it is done, with rclpy.spin_until_future_complete(your_node, {owner:your_future}, "
-        "timeout_sec=5.0), and read {owner:your_future}.result().{name}.",
+        "Read {owner:your_future}.result().{name}, once the future is done. Outside of callbacks, wait for that with "
+        "rclpy.spin_until_future_complete(your_node, {owner:your_future}, timeout_sec=5.0); inside one, go on in a "
+        "function that you give to {owner:your_future}.add_done_callback(...).",
     ),
     Crash(
         "callback_signature",

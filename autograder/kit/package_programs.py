@@ -139,8 +139,8 @@ def package_name(evidence: Evidence, package: str) -> Advice | None:
     names = ", ".join(known.name for known in report.packages)
     return Advice(
         f"The workspace was built, but the package {package} is not in it; there is {names}.",
-        f"Make it in src with `ros2 pkg create --build-type ament_python {package} …`; <name> in package.xml counts, "
-        "and setup.py must have the same.",
+        f"<name> in package.xml counts: write {package} there, as the name in setup.py, and in setup.cfg. The folder "
+        "with your modules and the file in resource have that name, too.",
     )
 
 

@@ -56,7 +56,8 @@ RUNNING: Sequence[Row] = (
         r"^TypeError: (?:unsupported operand type\(s\) for|'[<>]=?' not supported between).*'\w+_(?P<part>Request"
         r"|Response|Goal|Result|Feedback)'",
         "A whole {part} is used as if it were a number.",
-        "Name its field, with a dot, as in request.a, response.sum or goal.order.",
+        "Name its field, with a dot, as in request.a, response.sum or goal.order. If you gave ROS a function of "
+        "Python's own as a callback, such as max, write a method of your own.",
     ),
     (
         r"^TypeError: 'NoneType' object is not (?:iterable|subscriptable)",
@@ -258,8 +259,8 @@ RUNNING: Sequence[Row] = (
         r"^IndexError: (?P<kind>list|string|tuple|array) (?:assignment )?index out of range",
         "The {kind} has fewer elements than the index asks for: the first element has the index 0, the last one "
         "len(...) - 1.",
-        "Ask for an index from 0 to len(...) - 1. In a callback, which is called again and again, a count that goes on "
-        "leaves every {kind} behind: do without it there.",
+        "Ask for an index from 0 to len(...) - 1. In a callback, which is called again and again, a number that grows "
+        "with each call becomes too large: stop it with an `if`.",
     ),
     (
         r"^IndexError: pop from (?:an )?empty (?P<kind>list|deque|set)",
@@ -287,8 +288,8 @@ RUNNING: Sequence[Row] = (
     (
         r"^KeyError: (?P<key>.+)",
         "The dictionary has no entry {key}.",
-        "Compare it with the entries of the dictionary. A name in quotation marks is a string; to look up the value of "
-        "a variable, leave them out, as in STATUS_NAMES[answer.status].",
+        "Compare it with the entries of the dictionary, and add it if it is missing. A name in quotation marks is a "
+        "string; to look up the value of a variable, leave them out, as in names[answer.status].",
     ),
     (
         r"^OverflowError: .*(?:greater than|less than|too (?:large|small|big))",

@@ -285,7 +285,7 @@ NAMES: Sequence[Row] = (
         r"^NameError: name '(?P<name>\w+)' is not defined\. Did you mean: '(?P<meant>\w+)'",
         "Python does not know {name}, and knows {meant}.",
         "If that is what you mean, write {meant}. If {name} belongs to your node, write self.{name}. In a notebook, "
-        "run the cell that defines it, if there is one. In a program, define it in this file.",
+        "run the cell that defines it, if there is one. In a program, write or copy its definition into this file.",
     ),
     (
         r"^NameError: name '(?P<type>[A-Z]\w*)_(?P<part>Request|Response|Goal|Result|Feedback)' is not defined",
@@ -303,7 +303,7 @@ NAMES: Sequence[Row] = (
         "Python does not know {name}.",
         "If it belongs to your node, as a value or a method, write self.{name}; in a function, which has no self, "
         "write the node's name in place of self. In a notebook, run the cell that defines it, if there is one. In a "
-        "program, define it in this file, above the line. If it is neither, compare the spelling.",
+        "program, write or copy its definition into this file, above the line. If it is neither, compare the spelling.",
     ),
 )
 """Python's words about names and attributes; the first row that fits wins."""

@@ -27,7 +27,7 @@ def test_one_is_not_many(number: int, words: str) -> None:
             "After “ From SimpleNode” the task has “.”, and yours has nothing more.",
         ),
         (LINE + "!", "After “From SimpleNode.” the task has nothing more, and yours has “!”."),
-        ("hello", "At the beginning the task has “Hello, ROS 2! Fr”, and yours has “hello”."),
+        ("hello", "At the beginning the task has “Hello, ROS 2! Fr…”, and yours has “hello”."),
     ],
 )
 def test_the_first_difference_is_quoted_from_both(said: str, words: str) -> None:

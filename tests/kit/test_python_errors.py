@@ -82,7 +82,7 @@ SAID = {
     "TypeError: wait_for_service() got an unexpected keyword argument 'patience_sec'": "write timeout_sec",
     "TypeError: ActionServer.__init__() takes 5 positional arguments but 7 were given": "execute_callback=",
     "TypeError: ActionClient.__init__() takes 4 positional arguments but 5 were given": "ActionClient takes 4",
-    "KeyError: 'status'": "STATUS_NAMES[answer.status]",
+    "KeyError: 'status'": "names[answer.status]",
     "OverflowError: signed integer is greater than maximum": "order + 1",
     f"{TRANSITION} CANCELED with event SUCCEED, at goal_handle.c:100": "End each goal once",
     f"{TRANSITION} EXECUTING with event CANCELED, at goal_handle.c:100": "where your_goal_handle.is_cancel_requested",
@@ -243,7 +243,7 @@ def test_the_card_names_what_to_mend(last: str) -> None:
         (
             "print(replies[0].sum)",
             "AttributeError: 'Future' object has no attribute 'sum'",
-            "read replies[0].result().sum",
+            "Read replies[0].result().sum",
         ),
         (
             "print(cli.call_async(request).sum)",
@@ -327,7 +327,7 @@ def test_the_line_that_raised_tells_what_to_write(code: str, last: str, advice: 
 def test_only_a_line_of_the_students_own_tells_a_name(file: str, future: str) -> None:
     lines = f'  File "{file}", line 3, in f\n    print(fut.sum)\n'
     last = "AttributeError: 'Future' object has no attribute 'sum'"
-    assert f"read {future}.result().sum" in told(f"Traceback (most recent call last):\n{lines}{last}")
+    assert f"Read {future}.result().sum" in told(f"Traceback (most recent call last):\n{lines}{last}")
 
 
 def told(traceback: str) -> str:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.archives import EMPTY, File, NotTaken, Room, files_of, is_zip, within
 from autograder.grading.collecting.assignment_of import AssignmentOf, NoTarget, is_notebook, stem_of
-from autograder.grading.collecting.forms import is_drives_own, plain, read_alone, read_path
+from autograder.grading.collecting.forms import is_download, plain, read_alone, read_path
 from autograder.grading.collecting.lists import GRADESCOPE, Entry, is_unread, read_list
 from autograder.grading.collecting.outcomes import CollectReport, Outcome, State, WaitingList
 from autograder.grading.collecting.records import Collected, CollectedRecords
@@ -200,7 +200,7 @@ class _Collecting:
         instructor's, in which names say whose work it is. Google's form is that of many other names, as in
         ``Grades - ROS 2.csv``: there, somebody of the class must be meant.
         """
-        if not source.is_file() or is_drives_own(source.name):
+        if not source.is_file() or is_download(source.name):
             return False
         by_a_system = any(way.identity.lms not in ("", "google") for way in self._ways(source))
         return by_a_system or self._is_known(source)

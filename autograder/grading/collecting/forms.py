@@ -28,7 +28,7 @@ _COPY_OF = "Copy of "
 _MARK = r" ?\((\d{1,6})\)|-(\d{1,6})| - [Cc]opy"
 _MARKED = re2.compile(rf"^(?P<base>.+?)(?P<marks>(?:{_MARK})+)$")
 _MARKS = re2.compile(_MARK)
-_DRIVES_OWN = re2.compile(r"-\d{8}T\d{6}Z(?:-\d+)+(?: \(\d+\))?\.zip$")
+_DOWNLOADS = re2.compile(r"^gradebook_.*\.zip$|-\d{8}T\d{6}Z(?:-\d+)+(?: \(\d+\))?\.zip$")
 
 
 @dataclass(frozen=True)
@@ -105,9 +105,13 @@ def read_alone(file: Path, is_notebook: Callable[[str], bool]) -> list[Found]:
     return [way for way in ways if way is not None] + plain((file.stem, file.name))
 
 
-def is_drives_own(name: str) -> bool:
-    """True of an archive that Google Drive makes of a folder: ``Lab 1.2-20251003T140506Z-1-001.zip``."""
-    return _DRIVES_OWN.search(name) is not None
+def is_download(name: str) -> bool:
+    """True of an archive with a name that a system gives to a download, and that looks like one of a student's file.
+
+    Google Drive: ``ROS 2 - Lab 1.2-20251003T140506Z-1-001.zip``; Blackboard:
+    ``gradebook_ROS_lab_1_2_2025-10-03-14-05-06.zip``.
+    """
+    return _DOWNLOADS.search(name) is not None
 
 
 def read_time(text: str) -> datetime | None:

@@ -56,7 +56,10 @@ def repository_of(one: Collected) -> str:
     """
     if one.lms != "github":
         return ""
-    folders = (folder.removesuffix("-main").removesuffix("-master") for folder in one.file.split("/")[:-1])
+    *folders, file = one.file.split("/")
+    if file.endswith(".zip"):
+        folders.append(file.removesuffix(".zip"))
+    folders = [folder.removesuffix("-main").removesuffix("-master") for folder in reversed(folders)]
     return next((folder for folder in folders if folder.endswith(one.number or one.name)), "")
 
 

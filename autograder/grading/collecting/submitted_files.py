@@ -271,6 +271,14 @@ def _has_news(newest: Collected, known: Collected) -> bool:
 def _older(newest: Candidate, known: Collected, history: History) -> Outcome | None:
     """The outcome of a file that does not replace the one that is there; None where it does."""
     new = newest.collected
+    came, lay = repository_of(new), repository_of(known)
+    # One that is called as the student is, no more, is the student's.
+    if came and lay and came != lay and new.number not in (came, lay):
+        return newest.outcome(
+            State.NOT_PLACED,
+            f"the one that is there came from another repository, {known.source}, and only the end of this one's name "
+            f"is {newest.student}'s: if it counts, put it into submitted/ yourself",
+        )
     if new.when is not None and known.when is not None and new.when != known.when:
         if new.when < known.when:
             at = f"{known.when:%Y-%m-%d %H:%M} UTC"
@@ -280,12 +288,6 @@ def _older(newest: Candidate, known: Collected, history: History) -> Outcome | N
         if new.order < known.order:
             return newest.outcome(State.EARLIER, "the one that is there was handed in later")
         return None
-    if repository_of(new) != repository_of(known):
-        return newest.outcome(
-            State.NOT_PLACED,
-            f"the one that is there came from another repository, {known.source}, and only the end of this one's name "
-            f"is {newest.student}'s: if it counts, put it into submitted/ yourself",
-        )
     if any(one.content == newest.content for one in history.before):
         return newest.outcome(State.EARLIER, "it was collected before, and a newer one after it")
     if known.when is not None:

@@ -376,10 +376,12 @@ class Hears:
             return None
         period = reference_period(evidence.reference)
         return Advice(
-            f"Your node publishes {finding.seen}; the task asks for {finding.expected}.",
-            "Publish one message each time the timer calls you, and let the timer alone set the pace."
+            f"Your node publishes at another pace: {finding.seen}. The task asks for {finding.expected}.",
+            f"Use one create_timer({period:g}, your_method), and publish one message in that method: without a loop, a "
+            "sleep or an `if`."
             if "unevenly" in finding.seen
-            else f"Look at the first argument of create_timer: the period in seconds ({period:g}), not a frequency.",
+            else f"The time between two messages is a period in seconds ({period:g}), not a frequency: the first "
+            "argument of create_timer or, in a loop, that of the sleep. Leave sleep out of callbacks.",
         )
 
     def _stopped_publishing(self, evidence: Evidence) -> Advice | None:

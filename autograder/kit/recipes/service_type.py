@@ -147,7 +147,7 @@ class ServiceType(SeenAsItIs):
                 return Advice(
                     f"{file} has {number - 1} lines of three dashes; a service has exactly one, between request "
                     "and response.",
-                    "Write --- on a line of its own after the request's fields. Below it come the response's.",
+                    "Keep one line with nothing but ---, after the request's fields. Below it come the response's.",
                 )
         return None
 

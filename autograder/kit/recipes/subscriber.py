@@ -430,5 +430,5 @@ def _invented_text(evidence: Evidence) -> Advice | None:
     return Advice(
         f"Your node said “{made_up[0]}”, but no node sent that.",
         _write_f(made_up[0])
-        or "Log only in the subscription's callback, and only the string of the message that it was given.",
+        or "Log only in the subscription's callback: the field data of the message that it was given, unchanged.",
     )

@@ -182,7 +182,7 @@ def one_node_only(seen: Launched, _: Launched) -> Advice | None:
     there, missing = ("talker", "listener") if seen.publishers else ("listener", "talker")
     return Advice(
         f"Only the {there} is there; no {missing} was started, or it ended.",
-        f"The launch file must start both programs. Is the {missing} in the list that it returns?",
+        f"The launch file must start both programs. Is there a node for the {missing} in it?",
     )
 
 

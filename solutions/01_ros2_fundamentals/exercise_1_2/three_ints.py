@@ -131,8 +131,8 @@ def wrong_arguments(seen: Client, expected: Client) -> Advice | None:
         return None
     return Advice(
         f"The calls carry the wrong numbers ({finding.seen}).",
-        "The first call adds a and b, the second adds the first answer and c. Look at which field gets which number, "
-        "and whether one request object is reused before it was sent.",
+        "The first call adds a and b, the second adds the first answer and c: the numbers that your code was given, "
+        "with their minus signs, and no numbers of your own. If you use one request object twice, fill it anew.",
     )
 
 

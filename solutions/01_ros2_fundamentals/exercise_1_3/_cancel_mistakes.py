@@ -90,7 +90,7 @@ def ended_on_the_way(evidence: Evidence) -> Advice | None:
     events = list(part.events)
     before = events[: events.index(ending)]
     if cancel is None and not any(event.kind == "result" for event in before):
-        missing = "a request to cancel it came"
+        missing = "it had asked to cancel it"
     elif cancel is not None and not any(event.kind == "cancel_answered" for event in before):
         missing = "the answer to its cancel request was there"
     else:
@@ -99,8 +99,9 @@ def ended_on_the_way(evidence: Evidence) -> Advice | None:
         raised = what_and_where(part.traceback)
         return Advice(
             f"Your client sent its goal, and ended before {missing}, because it raised {raised}.",
-            "Look at the condition above that line, and at the wait before it. Raise only where the goal is not "
-            "accepted (`accepted` of its handle is False), or where an answer did not come in time.",
+            "Look at the condition above that line, and give the wait before it some seconds (timeout_sec=5.0). "
+            "Raise only where the goal is not accepted (`accepted` of its handle is False), or "
+            "where that time is over.",
         )
     return Advice(
         f"Your client sent its goal, and ended before {missing}.",

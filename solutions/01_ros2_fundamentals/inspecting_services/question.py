@@ -310,8 +310,8 @@ def wrong_service(seen: Evidence, _: Evidence) -> Advice | None:
         others = [name for name in told if name != part.inputs["right"]]
         if others:
             return Advice(
-                f"You were asked for a service of the type {part.inputs['type']} and named {others[0]}, which is a "
-                f"{part.inputs['others'][others[0]]}.",
+                f"You were asked for a service of the type {part.inputs['type']}. Your answer, {others[0]}, is of "
+                f"the type {part.inputs['others'][others[0]]}.",
                 "Compare each service's type with the type_name that you are given. The name of a service says nothing "
                 "about its type.",
             )

@@ -268,7 +268,10 @@ def no_answer(seen: Evidence, _: Evidence) -> Advice | None:
             missing = ", ".join(key for key in KEYS if key not in (given or {}))
             return Advice(
                 f"Your answer lacks {missing}." if given else "Your function ended without an answer.",
-                "Return a dictionary with the keys " + ", ".join(KEYS) + " (a program prints it).",
+                "Return a dictionary with the keys "
+                + ", ".join(KEYS)
+                + " (a program prints it). If yours has them, "
+                "it did not find that side: go through all ends of each topic, not only the first.",
             )
     return None
 
@@ -298,9 +301,9 @@ def wrong_node(seen: Evidence, _: Evidence) -> Advice | None:
                 "Leave them out, and take the topic that is left.",
             )
         if given & set(part.inputs.get("beside", ())):
+            named = " and ".join(sorted(given & set(part.inputs["beside"])))
             return Advice(
-                f"Your answer names {', '.join(part.inputs['beside'])}, a topic of a third node that has nothing to do "
-                "with it.",
+                f"Your answer names {named}, of a third node that has nothing to do with it.",
                 "Ask for the topics of the two nodes you were given, not for all that there are.",
             )
     return None

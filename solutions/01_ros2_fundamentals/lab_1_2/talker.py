@@ -96,9 +96,9 @@ talker.knows(
 talker.knows(
     "counter_stuck",
     lambda seen, _: len(seen.counters) >= 3 and len(set(seen.counters)) == 1,
-    "Every message carries the number {seen.counters[0]}: the counter is never counted up.",
-    "Add 1 to your counter at the end of the method, as in self.count += 1. Without self. in front, another variable "
-    "is changed, not the node's.",
+    "Every message carries the number {seen.counters[0]}.",
+    "Add 1 to your counter at the end of the method, as in self.count += 1, and put it into the string with an "
+    "f-string. Without self. in front, another variable is changed, not the node's.",
     certain=True,
 )
 

@@ -142,9 +142,9 @@ def goals_mixed_up(seen: Evidence, _: Evidence) -> Advice | None:
     canceled_at = to_be_canceled(seen).cancel_answered_at
     if to_be_canceled(seen).cancel_accepted and beside.sent_after(canceled_at) <= ROUNDS_LEFT:
         return Advice(
-            f"When one goal was canceled, another one did not come to its end ({wrong[0]}).",
-            "Ask the goal handle of each goal: its is_cancel_requested is True only for the goal that is to "
-            "stop. A flag in self belongs to all goals, and stays True for later ones.",
+            f"When one goal was canceled, another one went wrong ({wrong[0]}).",
+            "Ask the goal handle of each goal: its is_cancel_requested is True only for the goal that is to stop. A "
+            "flag or a list in self belongs to all goals, and keeps its value for later ones.",
         )
     return Advice(
         f"One goal alone is right, but of two at once one is not ({wrong[0]}): they disturb each other.",

@@ -219,3 +219,32 @@ def test_a_repository_whose_name_only_ends_as_a_students_replaces_nothing(
         report = collect(klass.path, [tmp_path / repository])
     assert lies(klass, "ada") == work(klass, 0)
     assert "came from another repository" in why(report)
+    for place, again in enumerate(
+        ("lab-1-2-adalove-main", "adalove", "ada"), 3
+    ):  # the same, and what is hers alone
+        (tmp_path / again).mkdir()
+        (tmp_path / again / "lab_1_2.ipynb").write_text(work(klass, place))
+        collect(klass.path, [tmp_path / again])
+        assert lies(klass, "ada") == work(klass, place), again
+
+
+@pytest.mark.parametrize("has_list", [True, False])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "12345-67890 - {} - Oct 3, 2025 205 PM - lab_1_2.ipynb",
+        "lab_1_2_{}_attempt_2025-10-03-14-05-06_lab_1_2.ipynb",
+        "12345-67890 - {} - Oct 3, 2025 205 PM/{} - lab_1_2.ipynb",
+    ],
+)
+def test_names_of_a_system_that_look_like_those_of_another_are_read_as_before(
+    tiny: TinyClass, tmp_path: Path, name: str, *, has_list: bool
+) -> None:
+    if has_list:
+        (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
+    who = ("ada", "eve") if "attempt" in name else ("Ada Lovelace", "Eve O'Neill")
+    files = {name.format(one, one): work(tiny, place) for place, one in enumerate(who)}
+    report = collect(
+        tiny.path, [write_zip(tmp_path / "gradebook_ROS_lab_1_2_2025-10-03-14-05-06.zip", files)]
+    )
+    assert len(placed(report)) == 2
