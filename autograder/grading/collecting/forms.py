@@ -93,10 +93,15 @@ def plain(parts: Sequence[str]) -> list[Found]:
     found = Found(Identity(), parts[-1])
     ways = []
     for part in parts[:-1]:
-        bare = next((part.removesuffix(end) for end in _BRANCHES if part.endswith(end)), part)
+        bare = without_branch(part)
         repository = [Identity("github", number=login) for login in (bare, *_ends(bare, "-"))]
         ways.append(replace(found, readings=(Identity(login=part, name=part), *repository)))
     return ways
+
+
+def without_branch(repository: str) -> str:
+    """The name of a repository, without the branch that GitHub adds to it in a download."""
+    return next((repository.removesuffix(end) for end in _BRANCHES if repository.endswith(end)), repository)
 
 
 def read_alone(file: Path, is_notebook: Callable[[str], bool]) -> list[Found]:

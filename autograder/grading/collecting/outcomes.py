@@ -146,24 +146,15 @@ class WaitingList:
         """
         again = {one.label for one in outcomes}
         kept = [one for one in self.read() if one.label not in again]
-        new = [one for one in outcomes if one.state == State.NOT_PLACED]
         there, now = functools.cache(self._there), datetime.now(tz=UTC)
-        self._write(
-            [
-                *kept,
-                *(
-                    Waiting(
-                        one.label,
-                        one.reason,
-                        one.student,
-                        one.assignment,
-                        there(one.student, one.assignment),
-                        now,
-                    )
-                    for one in new
-                ),
-            ]
-        )
+        new = [
+            Waiting(
+                one.label, one.reason, one.student, one.assignment, there(one.student, one.assignment), now
+            )
+            for one in outcomes
+            if one.state == State.NOT_PLACED
+        ]
+        self._write([*kept, *new])
 
     def settle(self, labels: Iterable[str]) -> list[str]:
         """Forget files that need no place, and give back the names that are not in the list.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from autograder.grading.collecting.forms import without_branch
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
@@ -59,8 +60,8 @@ def repository_of(one: Collected) -> str:
     *folders, file = one.file.split("/")
     if file.endswith(".zip"):
         folders.append(file.removesuffix(".zip"))
-    folders = [folder.removesuffix("-main").removesuffix("-master") for folder in reversed(folders)]
-    return next((folder for folder in folders if folder.endswith(one.number or one.name)), "")
+    names = map(without_branch, reversed(folders))
+    return next((name for name in names if name.endswith(one.number or one.name)), "")
 
 
 @dataclass(frozen=True)

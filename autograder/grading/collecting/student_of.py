@@ -92,13 +92,13 @@ class StudentOf:
     ) -> str:
         """The form by which a name means another known student, or another time; empty where none does."""
         owners = self.find(found)
-        # Google's form is that of many other names; without a list of students, each reading is somebody's.
-        for form in forms if owners is not None and self._roster.students else ():
-            if form == "google":
-                continue
-            other = read_path(path, form, is_notebook)
+        if owners is None or not self._roster.students:  # without a list, each reading is somebody's
+            return ""
+        for form in forms:
+            # Google's form is that of many other names.
+            other = read_path(path, form, is_notebook) if form != "google" else None
             meant = self.find(other) if other is not None else None
-            if other and owners and meant and (owners.members, found.when) != (meant.members, other.when):
+            if other and meant and (owners.members, found.when) != (meant.members, other.when):
                 return form
         return ""
 
