@@ -184,9 +184,10 @@ def filled_in(
     strangers = []
     meant: dict[str, list[_Meant]] = {}
     for row in rows[1:]:
-        is_nobodys = not any(row[:1]) or row[0].strip().startswith(("Points Possible", "Student, Test"))
-        if len(row) <= max(places.values()) or is_nobodys:
+        if not any(row[:1]) or row[0].strip().startswith(("Points Possible", "Student, Test")):
             continue
+        # Some spreadsheet programs leave out the empty cells at the end of a line.
+        row += [""] * (len(header) - len(row))
         values = [original(row[header.index(name)].strip()) for name in names if name in header]
         called = values[-1] if values else row[0]
         if (found := _who(table, lms, values)) is None:

@@ -21,7 +21,7 @@ from autograder.verdict import not_checked
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import FakeEngine, TinyClass
+    from conftest import TinyClass
 
 WORKSHEET = (
     "Identifier,Full name,Email address,Grade,Maximum Grade\n"
@@ -29,15 +29,6 @@ WORKSHEET = (
 )
 CANVAS = 'Student,ID,SIS User ID,SIS Login ID,Section,lab_1_2\n"Lovelace, Ada",101,,al,A,8\n'
 GRADESCOPE = "Name,SID,Email,lab_1_2\nAda Lovelace,ada,ada.love@uni.example,8\n"
-
-
-@pytest.fixture
-def klass(tiny: TinyClass, fake_engine: FakeEngine) -> TinyClass:
-    """Ben's work was graded; Ada has handed in nothing."""
-    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
-    tiny.submit("ben", 7, 10)
-    tiny.grade()
-    return tiny
 
 
 def rows(path: Path) -> list[list[str]]:
@@ -131,3 +122,11 @@ def test_a_doubtful_line_is_settled_by_what_the_list_has_in_it(klass: TinyClass,
     (klass.path / "students.csv").write_text("id,first_name,last_name,moodle\nben,Ben,Bär,two@uni.example\n")
     export(klass.path, "moodle", into=into)
     assert [row[-1] for row in rows(klass.path / "export" / "list.csv")[1:]] == ["", "17"]
+
+
+def test_a_line_without_its_empty_cells_is_filled_in_too(klass: TinyClass, tmp_path: Path) -> None:
+    """Some spreadsheet programs leave out the empty cells at the end of a line: Ben's points went nowhere."""
+    into = tmp_path / "list.csv"
+    into.write_text("Name,SID,Email,lab_1_2\nBen Bar,ben,ben@uni.example\n")
+    export(klass.path, "gradescope", into=into)
+    assert rows(klass.path / "export" / "list.csv")[1] == ["Ben Bar", "ben", "ben@uni.example", "17"]

@@ -19,16 +19,7 @@ from autograder.grading.running import engine
 from autograder.verdict import not_checked
 
 if TYPE_CHECKING:
-    from conftest import FakeEngine, TinyClass
-
-
-@pytest.fixture
-def klass(tiny: TinyClass, fake_engine: FakeEngine) -> TinyClass:
-    """Ben's work was graded; the others have handed in nothing."""
-    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
-    tiny.submit("ben", 7, 10)
-    tiny.grade()
-    return tiny
+    from conftest import TinyClass
 
 
 def students(klass: TinyClass) -> dict[str, dict[str, str]]:
