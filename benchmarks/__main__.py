@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
 RESULTS = Path(__file__).with_name("results.json")
-PROFILE = Path(__file__).with_name("profile.txt")
 PAGE = course.root() / "docs" / "performance.md"
 MOST_AT_ONCE = 12
 """Notebooks of the floor for each core, which wait most of the time: about as many as a grading run lets in."""
@@ -215,9 +214,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--short", action="store_true", help="a minute instead of half an hour; nothing is kept"
     )
     parser.add_argument("--students", type=int, help="students in the class that is graded")
-    parser.add_argument(
-        "--profile", action="store_true", help=f"only write {PROFILE.name}, of the grader's own process"
-    )
+    parser.add_argument("--profile", action="store_true", help="only profile the grader's own process")
     parser.add_argument("--output", type=Path, help="keep the figures here; beside this program by default")
     chosen = parser.parse_args(arguments)
     form = SHORT if chosen.short else FULL
@@ -227,7 +224,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     folder = Path(tempfile.mkdtemp(prefix="benchmark-"))
     try:
         if chosen.profile:
-            profile_grade(folder / "class", PROFILE)
+            profile_grade(folder / "class")
             return 0
         found = measure(form, folder)
     finally:
