@@ -140,10 +140,11 @@ class BoxGuard:
         self._seen_cpu = max(self._seen_cpu, use.cpu_seconds)
         if self.cpu_seconds > self._limits.cpu_seconds:
             return Ended.OUT_OF_CPU
-        if use.files > self._limits.all_open_files:
-            return Ended.TOO_MANY_FILES
+        # Before the files: each process that was forked has open what its parent has.
         if not self._processes and use.threads > self._limits.processes:
             return Ended.TOO_MANY_PROCESSES
+        if use.files > self._limits.all_open_files:
+            return Ended.TOO_MANY_FILES
         if use.most_memory > self._limits.memory_now:
             return Ended.OUT_OF_MEMORY
         files = 0 if self._memory else _scratch_of(self._first)

@@ -22,7 +22,7 @@ from jupyter_client.session import Session
 
 from autograder.boxes.execution import Ended
 from autograder.boxes.guards import INTERVAL, NoGuard
-from autograder.boxes.limits import Left, until, wall_time
+from autograder.boxes.limits import Left, first_of, until, wall_time
 from autograder.boxes.zmtp import ZmtpConnection
 
 if TYPE_CHECKING:
@@ -37,6 +37,7 @@ Output = Callable[[str, str, Mapping[str, Any]], None]
 
 _ASK_AGAIN_S = 0.5
 _LAST_OUTPUT_S = 2.0
+"""Seconds without anything new, after which a cell's last outputs are no longer waited for."""
 SHELL, IOPUB = 1, 2
 """The channels that are used, as they are numbered in the sockets' names."""
 _TOO_LARGE = "\n[output that was too large was dropped]\n"
@@ -206,7 +207,7 @@ class Kernel:
         if reply is None:
             return None if self.alive else self._died()
         if not idle:
-            self._await_idle(request)
+            self._await_idle(request, left)
         if self._iopub.dropped > self._dropped_before:
             self._on_output(request, "stream", {"name": "stdout", "text": _TOO_LARGE})
         if _asks_to_exit(reply):
@@ -218,9 +219,21 @@ class Kernel:
             return self._died()
         return Ended.DONE if reply.get("status") == "ok" else Ended.RAISED
 
-    def _await_idle(self, request: str) -> None:
-        """The reply is there; the last outputs travel on the other socket and may be a little later."""
-        for channel, message in self._messages(wall_time(_LAST_OUTPUT_S)):
+    def _await_idle(self, request: str, left: Left) -> None:
+        """The reply is there; the last outputs travel on the other socket and may be a little later.
+
+        On a crowded machine much later: an earlier cell's line of 100 MB may be in front of them.
+        """
+        last_read, silence = -1, wall_time(_LAST_OUTPUT_S)
+
+        def before_silence() -> float:
+            nonlocal last_read, silence
+            if self._iopub.read > last_read:
+                last_read, silence = self._iopub.read, wall_time(_LAST_OUTPUT_S)
+            return silence()
+
+        longest = wall_time(max(left(), _LAST_OUTPUT_S))
+        for channel, message in self._messages(first_of(before_silence, longest)):
             if channel is self._iopub and _answer(message, request).get("execution_state") == "idle":
                 return
 

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+SLEEP = ["sleep", os.environ["SLEEPERS_SECONDS"]]
+"""The number is a test run's own, so that another one beside it does not take these sleepers for its own."""
 
 
 def prepare() -> None:
@@ -18,5 +22,5 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
     """Sleep."""
     for name in (signal.SIGINT, signal.SIGTERM):
         signal.signal(name, signal.SIG_IGN)
-    subprocess.Popen(["sleep", "7654.5"], start_new_session=True)
-    subprocess.run(["sleep", "7654.5"], check=False)
+    subprocess.Popen(SLEEP, start_new_session=True)
+    subprocess.run(SLEEP, check=False)

@@ -25,7 +25,11 @@ if TYPE_CHECKING:
 
     from autograder.boxes.fork_server import Addresses
 
-STUBBORN = "trap '' INT TERM HUP; (setsid sh -c \"trap '' INT TERM HUP; sleep 7654.5\" &); sleep 7654.5"
+SECONDS = f"7654.{os.getpid()}"
+"""How long the sleepers of this run sleep: another run of the tests beside it has sleepers, too."""
+STUBBORN = (
+    f"trap '' INT TERM HUP; (setsid sh -c \"trap '' INT TERM HUP; sleep {SECONDS}\" &); sleep {SECONDS}"
+)
 WORKER = """
 import sys, time
 from pathlib import Path
@@ -39,7 +43,7 @@ time.sleep(600)
 
 def sleepers() -> list[psutil.Process]:
     """What the stubborn program has started."""
-    return [p for p in psutil.process_iter(["cmdline"]) if p.info["cmdline"] == ["sleep", "7654.5"]]
+    return [p for p in psutil.process_iter(["cmdline"]) if p.info["cmdline"] == ["sleep", SECONDS]]
 
 
 def gone(within: float = 120.0) -> bool:
@@ -101,7 +105,7 @@ def test_killing_anyone_ends_all(
 
 
 def test_a_process_that_entered_ends_with_its_box(supervisors: ForkServer, tmp_path: Path) -> None:
-    warm = ForkServer(INSIDE, "tests.boxes.sleeping_module", tmp_path / "warm", extra={"PYTHONPATH": ROOT})
+    warm = ForkServer(INSIDE, "tests.boxes.sleeping_module", tmp_path / "warm", extra=SLEEPING)
     try:
         with Enclosure(supervisors.address, tmp_path / "box") as enclosure:
             box = enclosure.box("student")
@@ -119,7 +123,7 @@ def test_a_process_that_entered_ends_with_its_box(supervisors: ForkServer, tmp_p
 
 
 def test_a_process_whose_grader_hangs_up_is_killed(supervisors: ForkServer, tmp_path: Path) -> None:
-    warm = ForkServer(INSIDE, "tests.boxes.sleeping_module", tmp_path / "warm", extra={"PYTHONPATH": ROOT})
+    warm = ForkServer(INSIDE, "tests.boxes.sleeping_module", tmp_path / "warm", extra=SLEEPING)
     try:
         with Enclosure(supervisors.address, tmp_path / "box") as enclosure:
             box = enclosure.box("student")
@@ -133,4 +137,4 @@ def test_a_process_whose_grader_hangs_up_is_killed(supervisors: ForkServer, tmp_
         warm.stop()
 
 
-ROOT = str(Path(__file__).resolve().parents[2])
+SLEEPING = {"PYTHONPATH": str(Path(__file__).resolve().parents[2]), "SLEEPERS_SECONDS": SECONDS}

@@ -5,18 +5,21 @@ from __future__ import annotations
 import contextlib
 import os
 import secrets
+import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import psutil
 import pytest
 
+from autograder.boxes import kernel
 from autograder.boxes.execution import Cell, CellType, Check, Ended, Execution
 from autograder.boxes.fork_server import Addresses
 from autograder.boxes.limits import Left, Limits, Patient, wall_time
 from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.boxes.runner import run_notebook
 from autograder.boxes.scratch import scratch_folder
+from autograder.boxes.zmtp import ZmtpConnection
 from autograder.verdict import State, Verdict
 
 CHECK = Check("lab.one", "One", points=10, worth=10, limit=2)
@@ -197,6 +200,23 @@ def test_input_is_refused_at_once(run: Run) -> None:
     execution = run(["input('name? ')"])
     assert execution.cells[0].ended is Ended.RAISED
     assert "StdinNotImplementedError" in execution.cells[0].error
+
+
+@pytest.mark.parametrize("run", ["in a box"], indirect=True)
+def test_what_is_printed_behind_a_line_that_is_long_on_its_way(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On a crowded machine 40 MB take seconds to be read, and the next cell's output comes after them."""
+    received = ZmtpConnection.received
+
+    def received_slowly(connection: ZmtpConnection) -> Iterator[list[bytes]]:
+        time.sleep(0.02)
+        return received(connection)
+
+    monkeypatch.setattr(ZmtpConnection, "received", received_slowly)
+    monkeypatch.setattr(kernel, "_LAST_OUTPUT_S", 1.0)
+    execution = run(["print('x' * 40_000_000)", "print('alive')"])
+    assert "alive" in str(execution.cells[1].outputs)
 
 
 def test_no_process_of_the_notebook_survives(run: Run) -> None:
