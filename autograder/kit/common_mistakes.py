@@ -382,7 +382,13 @@ def _without_node(evidence: Evidence) -> str:
     if any(part.had_node or any(map(part.of, ("log", "request", "goal", "message"))) for part in evidence):
         return ""
     ending = evidence.main.ending
-    return "The program ended, and no" if ending is not None and ending.name == "exited" else "No"
+    ended = {"exited": "The program ended, and no", "returned": "Your function returned, and no"}
+    return ended.get(ending.name, "No") if ending is not None else "No"
+
+
+def _surely_without_node(evidence: Evidence) -> str:
+    """The same; empty also of a function that has returned: its node may have gone before the graph told of it."""
+    return "" if evidence.main.returned is not None else _without_node(evidence)
 
 
 NEVER_CONSTRUCTED = mistake(
@@ -397,14 +403,17 @@ NOT_BEGUN = Mistake("not_written", _returned_at_once, certain=True)
 NOTHING_THERE = (
     Mistake("not_written", _returned_silently, certain=True),
     Mistake("main_guard", _main_guard, certain=True),
-    mistake(
-        "nothing_on_the_graph",
-        _without_node,
-        "{} node of yours appeared on the graph.",
-        "In a program, call rclpy.init() in main(), then make your node (of your class, or with create_node) and spin "
-        "it, which keeps the program running. In a notebook, make the node in your function: start_ros() has started "
-        "ROS.",
-        certain=True,
+    *(
+        mistake(
+            "nothing_on_the_graph",
+            found,
+            "{} node of yours appeared on the graph.",
+            "In a program, call rclpy.init() in main(), then make your node (of your class, or with create_node) and "
+            "spin it, which keeps the program running. In a notebook, make the node in your function (start_ros() has "
+            "started ROS) and do all of the work before the function returns.",
+            certain=found is _surely_without_node,
+        )
+        for found in (_surely_without_node, _without_node)
     ),
     Mistake("not_written", _not_written),
     Mistake("not_written", _other_end),

@@ -19,7 +19,7 @@ from autograder.kit.crashes import last_line_of, meant, on_purpose
 from autograder.kit.model import mistake
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from autograder.kit.evidence import Evidence, Part
     from autograder.kit.model import Bench, Finding, Mistake
@@ -52,6 +52,8 @@ AGAIN_AND_AGAIN = 3
 SAYS_SO_TO = 8.0
 """Seconds after which it must still say so: who says it every four seconds does, and who tried three times does not."""
 _CLIENTS = ("client", "action_client")
+_AT_WORK = ("log", "spared", "called", "willing")
+"""The kinds of events that show a node at work, or a function that waits, also where the graph tells of neither."""
 MOMENT = 0.5
 """Seconds: what is said within these is said once. A log line comes on two ways, and a loop may be in a hurry."""
 
@@ -242,7 +244,7 @@ def patience_not_kept(absent: str) -> Mistake:
     """A function waits by a limit of its own in the run without a server, which is called ``absent``."""
     return mistake(
         "patience_not_kept",
-        lambda evidence: broken_patience(evidence.part(absent)),
+        lambda evidence: "" if _looked_for_nobody(evidence) else broken_patience(evidence.part(absent)),
         "When there is no server, your function {}.",
         f"Use {PATIENCE} as the limit, once: `if not your_client.wait_for_service(timeout_sec={PATIENCE}):` (or "
         f"`wait_for_server`), and below it say so and end: `raise TimeoutError(...)`. Without `raise` or `return` it "
@@ -277,8 +279,8 @@ def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool])
         absent: The run without one.
         asked: Whether the subject asked the server for something in a run.
     """
-    if all(map(_ended_without_node, (absent, *served))):
-        return False  # it has looked for nobody
+    if _looked_for_nobody((absent, *served)):
+        return False
     ended = [part for part in served if part.ending and not asked(part)]
     if served[0] in ended and any(asked(part) for part in served):
         return True
@@ -287,9 +289,19 @@ def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool])
     return bool(absent.ending and told and ended) and all(_same(_parting_words(part), told) for part in ended)
 
 
-def _ended_without_node(part: Part) -> bool:
-    """True of a program that was no node. A notebook's function may be gone before the graph tells of its node."""
-    return part.ending is not None and part.ending.name == "exited" and not part.had_node
+def _looked_for_nobody(parts: Iterable[Part]) -> bool:
+    """True of a subject that came to a good end in each of its runs and was never seen to be a node, nor to wait.
+
+    A notebook's function may be gone before the graph tells of its node, so what it did is not known then.
+    """
+    return all(
+        part.ending is not None and part.ending.name in ("exited", "returned") and not _was_seen(part)
+        for part in parts
+    )
+
+
+def _was_seen(part: Part) -> bool:
+    return part.had_node or any(map(part.endpoints, _CLIENTS)) or any(map(part.of, _AT_WORK))
 
 
 def not_forgotten(

@@ -59,9 +59,13 @@ def test_a_number_that_is_an_input_by_chance_is_the_same_number_all_the_same() -
 
 
 def test_the_digits_of_a_patience_are_one_number() -> None:
-    parts = [_waits((4.0, "nobody within 6.3 s, try 3"), told=6.3, ends=4.0)]
-    assert gave_up(parts, _waits((4.0, "nobody within 5.8 s, try 3"), told=5.8, ends=4.0), has_asked)
-    assert not gave_up(parts, _waits((4.0, "nobody within 5.8 s, try 4"), told=5.8, ends=4.0), has_asked)
+    parts = [_waits((4.0, "nobody within 6.3 s, try 3"), told=6.3, ends=4.0, looks_at=0.1)]
+    assert gave_up(
+        parts, _waits((4.0, "nobody within 5.8 s, try 3"), told=5.8, ends=4.0, looks_at=0.1), has_asked
+    )
+    assert not gave_up(
+        parts, _waits((4.0, "nobody within 5.8 s, try 4"), told=5.8, ends=4.0, looks_at=0.1), has_asked
+    )
 
 
 def test_it_asked_once_it_had_met_the_server() -> None:
@@ -85,6 +89,35 @@ def test_a_client_that_looks_once_is_told_so_whenever_it_met_the_service(
         parts.append(Part(part.name, {"numbers": part.inputs.get("numbers", [1, 2, 3])}, events))
     diagnosis, _ = trial.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
     assert diagnosis.key == "gave_up_too_early"
+
+
+PATIENT = Event(0.0, "subject", "started", {"accepted": ["patience_sec"]})
+GREETS = Event(0.0, "output", "stdout", {"text": "I ask for the sum."})
+RETURNED = Event(0.01, "subject", "returned", {"value": "None"})
+
+
+@pytest.mark.parametrize("exercise_id", ["exercise_1_2.three_ints", "lab_1_3.client", "lab_1_4.client"])
+@pytest.mark.parametrize(
+    ("events", "key"),
+    [
+        pytest.param([GREETS, RETURNED], "nothing_on_the_graph", id="has no node, or one that is gone"),
+        pytest.param([PATIENT, GREETS, RETURNED], "nothing_on_the_graph", id="is told how long to wait"),
+        pytest.param([SEEN, GREETS, RETURNED], "gave_up_too_early", id="has a node"),
+        pytest.param(
+            [GREETS, Event(0.0, "spared", "a wait for a server", {"seconds": 0.01}), RETURNED],
+            "gave_up_too_early",
+            id="waits for a moment",
+        ),
+    ],
+)
+def test_of_a_function_that_was_not_seen_to_look_for_anybody_nobody_says_that_it_gave_up(
+    exercise_id: str, events: list[Event], key: str
+) -> None:
+    stored = reference.load(exercise_id)
+    inputs = {"numbers": [1, 2, 3], "patience_sec": 6.6}
+    parts = [Part(part.name, inputs, events) for part in stored.parts]
+    diagnosis, _ = trial.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
+    assert diagnosis.key == key
 
 
 def _waits(

@@ -8,6 +8,7 @@ from autograder import exercises
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.launch_report import Process, process_line
 from autograder.kit.recipes.launch_file import Launched
+from autograder.kit.workspace_report import PackageReport, WorkspaceReport, as_line
 
 STRING = "std_msgs/msg/String"
 NEW, OLD = "/robot/status_updates", "/chatter"
@@ -133,6 +134,31 @@ def test_what_is_no_packages_program_or_has_no_rule_is_not_started_again(argv: t
 
 
 @pytest.mark.parametrize(
+    ("started", "alone"),
+    [
+        (("-m", "my_robot_pkg.talker"), ("speak", "--ros-args")),
+        (("-u", "-m", "my_robot_pkg.talker", "7"), ("speak", "7", "--ros-args")),
+        (("/home/student/ros2_ws/src/my_robot_pkg/my_robot_pkg/hear.py",), ("hear", "--ros-args")),
+        (("my_robot_pkg/hear.py",), ("hear", "--ros-args")),
+        ((f"{PATH}/talker",), ("talker", "--ros-args")),
+    ],
+)
+def test_a_module_or_file_is_started_again_as_the_program_that_setup_py_makes_of_it(
+    started: tuple[str, ...], alone: tuple[str, ...]
+) -> None:
+    entries = ("speak=my_robot_pkg.talker:main", "hear = my_robot_pkg.hear:main [extra]")
+    assert _launched(("python3", *started, *RULES), entries).without_rules == [("my_robot_pkg", *alone)]
+
+
+@pytest.mark.parametrize(
+    "started", [("-m", "my_robot_pkg.other"), ("other.py",), ("-m", "talker"), ("talker",)]
+)
+def test_a_module_that_is_no_program_of_the_package_is_not_started_again(started: tuple[str, ...]) -> None:
+    entries = ("talker = my_robot_pkg.talker:main", "--prefix = my_robot_pkg.other:main")
+    assert _launched(("python3", *started, *RULES), entries).without_rules == []
+
+
+@pytest.mark.parametrize(
     ("names", "not_moved"),
     [
         ((OLD, OLD), []),
@@ -167,9 +193,11 @@ def test_who_is_there_without_a_rule_was_not_moved(names: tuple[str, str], not_m
     assert all(" and ".join(not_moved) in step for _, step in told)
 
 
-def _launched(argv: tuple[str, ...]) -> Launched:
-    """The one program of a launch, which publishes under the new name."""
+def _launched(argv: tuple[str, ...], programs: tuple[str, ...] = ()) -> Launched:
+    """The one program of a launch, which publishes under the new name, and the programs that setup.py names."""
+    report = WorkspaceReport("built", built=True, packages=[PackageReport("my_robot_pkg", "", programs)])
+    built = Event(0.0, "output", "report", {"text": as_line(report)})
     started = Event(0.0, "output", "report", {"text": process_line(Process(11, 1, argv))})
     ends = {"publisher": {NEW: STRING}, "subscription": {}, "ends": [["publisher", NEW, 11]]}
-    seen = Evidence([Part("launching", {}, [started, Event(1.0, "interface", "", ends)])], REFERENCE)
+    seen = Evidence([Part("launching", {}, [built, started, Event(1.0, "interface", "", ends)])], REFERENCE)
     return Launched(seen, "my_robot_pkg", "chatter")

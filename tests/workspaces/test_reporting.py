@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.kit.evidence import Event, Part
+from autograder import exercises
+from autograder.judge.verdicts import reference
+from autograder.kit.evidence import Event, Evidence, Part
 from autograder.kit.launch_report import Process, process_line, processes, remappings
 from autograder.kit.workspace_report import (
     MAX_LINE,
@@ -156,6 +158,37 @@ def test_a_definition_without_room_is_left_out_and_not_taken_for_missing(tmp_pat
     assert seen is not None
     assert not seen.complete
     assert list(seen.packages[0].interfaces) == [Interface("A.srv", None, True)]
+
+
+XML_DEPENDS = ("ament_cmake", "rosidl_default_generators", "rosidl_interface_packages")
+
+
+@pytest.mark.parametrize(
+    ("depends", "declares", "says"),
+    [
+        (XML_DEPENDS, False, "it does not name rosidl_default_runtime"),
+        ((*XML_DEPENDS, "rosidl_default_runtime"), True, "it does"),
+        (
+            (*XML_DEPENDS, *["std_msgs"] * 200, "rosidl_default_runtime"),
+            False,
+            "among its first 125 dependencies is no rosidl_default_runtime",
+        ),
+        ((*XML_DEPENDS, "rosidl_default_runtime", *["std_msgs"] * 200), True, "it does"),
+    ],
+)
+def test_what_a_package_declares_is_asked_of_its_dependencies_alone(
+    depends: tuple[str, ...], declares: bool, says: str, tmp_path: Path
+) -> None:
+    package = package_with(tmp_path, "a", AddTwoInts_srv="int64 a", setup_py="#" * 150_000)
+    found = Build(tmp_path, ok=True, packages=(replace(package, dependencies=depends),))
+    plan = Plan(lambda _: ["a"], lambda _: "", lambda _: [], definition="AddTwoInts.srv")
+    exercise = exercises.get("lab_1_3.interface")
+    seen = Evidence([part(built_line(found, plan))], reference.load(exercise.id))
+    point = next(criterion for criterion in exercise.criteria if criterion.name == "declares")
+    finding = point.judge(seen)
+    assert (finding.passed, finding.seen) == (declares, says)
+    told = [one for one in exercise.mistakes if one.key == "dependency_missing" and one.recognise(seen)]
+    assert bool(told) is not declares
 
 
 def test_entry_points_are_those_that_are_installed(tmp_path: Path) -> None:

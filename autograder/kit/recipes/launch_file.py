@@ -8,6 +8,7 @@ in whose code the topic has the new name is there all the same.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -20,7 +21,7 @@ from autograder.kit.evidence import Evidence
 from autograder.kit.launch_report import Process, processes, remappings
 from autograder.kit.model import Advice, Bench, Mistake, Pace
 from autograder.kit.runners import ALONE
-from autograder.kit.workspace_report import BUILDING
+from autograder.kit.workspace_report import BUILDING, report_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -204,12 +205,28 @@ class Launched:
         # A prefix, such as `python3 -u`, may stand before the program.
         own = argv[: argv.index("--ros-args")] if "--ros-args" in argv else argv
         for place, word in enumerate(own, 1):
-            if found := _OF_A_PACKAGE.search(word):
+            if found := _OF_A_PACKAGE.search(word) or _OF_A_PACKAGE.search(self._program(word)):
                 pairs = enumerate(pairwise(argv))
                 gone = {at for at, pair in pairs if pair[0] == "--params-file" or self._has_a_rule(pair)}
                 rest = [one for at, one in enumerate(argv) if at >= place and not {at, at - 1} & gone]
                 return (found[1], found[2], *rest)
         return ()
+
+    def _program(self, word: str) -> str:
+        """The end of the path of the program that setup.py makes of a module, or of its file; empty for none."""
+        file = word.removesuffix(".py") if word.endswith(".py") else word.replace(".", "/")
+        return next((path for module, path in self._programs if f"/{file}".endswith(f"/{module}")), "")
+
+    @cached_property
+    def _programs(self) -> list[tuple[str, str]]:
+        """The modules of the workspace's programs, with slashes for dots, and the ends of the programs' paths."""
+        report = report_of(self._part)
+        packages = report.packages if report is not None else ()
+        named = [(package.name, entry.partition("=")) for package in packages for entry in package.programs]
+        return [
+            (target.partition(":")[0].strip().replace(".", "/"), f"/lib/{package}/{name.strip()}")
+            for package, (name, _, target) in named
+        ]
 
     def _has_a_rule(self, argv: Sequence[str]) -> bool:
         return any(self._begins(old) and _leads_to(self.topic, new) for old, new in remappings(argv))

@@ -11,7 +11,7 @@ from autograder.kit import workspace_mistakes as workspace
 from autograder.kit.draft import OWN, SeenAsItIs
 from autograder.kit.model import Advice, Bench, Finding, Mistake
 from autograder.kit.runners import ServesInterface
-from autograder.kit.workspace_report import AMENT_PACKAGE, BUILDING, Interface, PackageReport, report_of
+from autograder.kit.workspace_report import AMENT_PACKAGE, BUILDING, MORE, Interface, PackageReport, report_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -73,7 +73,7 @@ class ServiceType(SeenAsItIs):
         """The file has the reference's fields: names, types and order."""
         expected, texts = _expected(evidence), self._texts(evidence)
         right = any(fields(text) == expected for _, text in texts) or (bool(texts) and not expected)
-        if not right and not _is_complete(evidence):
+        if not right and not self._is_read(evidence):
             # What a file says that was not reported shows in the type that is generated from it.
             wire = self.is_on_the_wire(evidence)
             return Finding(wire.passed, _shown(expected), wire.seen)
@@ -83,23 +83,25 @@ class ServiceType(SeenAsItIs):
     def declares(self, evidence: Evidence) -> Finding:
         """Its package.xml names what the package needs, so that it can be built and used elsewhere, too."""
         expected = f"package.xml names {' and '.join(NEEDED)}"
-        holders = self._holders(evidence)
-        if not holders:
+        package = self._most_thorough(evidence)
+        if package is None:
             return Finding(False, expected, f"no package with a file {self._file}")
-        undeclared = self._undeclared(evidence)
-        return Finding(
-            not undeclared,
-            expected,
-            f"it does not name {' and '.join(undeclared)}" if undeclared else "it does",
-        )
+        names = " and ".join(_undeclared(package))
+        if names and (read := _cut_after(package)):
+            return Finding(False, expected, f"among its first {read} dependencies is no {names}")
+        return Finding(not names, expected, f"it does not name {names}" if names else "it does")
 
-    def _undeclared(self, evidence: Evidence) -> list[str]:
-        """Dependencies that no package with such a file declares; none where not all of them was reported."""
-        if not _is_complete(evidence):
-            return []
-        declared = [package.dependencies for package, _ in self._holders(evidence)]
-        missing = ([name for name in NEEDED if name not in names] for names in declared)
-        return min(missing, key=len, default=[])
+    def _most_thorough(self, evidence: Evidence) -> PackageReport | None:
+        """Of the packages with such a file, the one that declares most of what it needs."""
+        packages = (package for package, _ in self._holders(evidence))
+        return min(packages, key=lambda package: len(_undeclared(package)), default=None)
+
+    def _is_read(self, evidence: Evidence) -> bool:
+        """True if no file of that name was left out of the report, nor what it says."""
+        if files := [file for _, file in self._holders(evidence)]:
+            return all(file.text is not None for file in files)
+        report = workspace.build_report(evidence.main)
+        return report is None or report.complete
 
     def builds(self, evidence: Evidence) -> Finding:
         """Colcon builds the package, and it generates the interface."""
@@ -155,7 +157,7 @@ class ServiceType(SeenAsItIs):
         """The fields are others."""
         finding = self.has_the_fields(evidence)
         texts = self._texts(evidence)
-        if finding.passed or not texts or not _is_complete(evidence) or len(fields(texts[0][1])) != 2:
+        if finding.passed or not texts or not self._is_read(evidence) or len(fields(texts[0][1])) != 2:
             return None
         return Advice(
             f"{texts[0][0]} has the fields {finding.seen}; the task asks for {finding.expected}.",
@@ -186,7 +188,7 @@ class ServiceType(SeenAsItIs):
         report = report_of(evidence.main)
         if report is None or report.built or GROUP not in report.line + report.log:
             return None
-        if not report.complete or any(GROUP in p.dependencies for p, _ in holders):
+        if any(GROUP in p.dependencies or _cut_after(p) for p, _ in holders):
             return None
         hidden = next((p for p, _ in holders if GROUP in p.commented), None)
         if hidden is not None:
@@ -228,12 +230,19 @@ class ServiceType(SeenAsItIs):
 
     def _dependency_missing(self, evidence: Evidence) -> Advice | None:
         """Everything works here, and package.xml does not name what that needs."""
-        undeclared = self._undeclared(evidence)
-        if not undeclared:
+        holder = self._most_thorough(evidence)
+        undeclared = _undeclared(holder) if holder is not None else []
+        if holder is None or not undeclared:
             return None
-        name, holder = undeclared[0], self._holders(evidence)[0][0]
+        name = undeclared[0]
         tag, reason = NEEDED[name]
         line = f"<{tag}>{name}</{tag}>"
+        if read := _cut_after(holder):
+            return Advice(
+                f"package.xml of {holder.name} names so many packages that only the first {read} were looked at, and "
+                f"{name} is none of them.",
+                f"Write {line} above the others: {reason}.",
+            )
         if name in holder.commented:
             return Advice(
                 f"package.xml of {holder.name} has {name} only inside a comment (<!-- … -->), where it does not count.",
@@ -280,10 +289,14 @@ def fields(text: str) -> list[Fields]:
     return sections
 
 
-def _is_complete(evidence: Evidence) -> bool:
-    """True if nothing of the packages with such a file was left out of the report."""
-    report = workspace.build_report(evidence.main)
-    return report is None or report.complete
+def _undeclared(package: PackageReport) -> list[str]:
+    """What a package needs and is not seen to declare."""
+    return [name for name in NEEDED if name not in package.dependencies]
+
+
+def _cut_after(package: PackageReport) -> int:
+    """How many of its dependencies are reported; 0 where all of them are."""
+    return len(package.dependencies) - 1 if MORE in package.dependencies else 0
 
 
 def _expected(evidence: Evidence) -> list[Fields]:

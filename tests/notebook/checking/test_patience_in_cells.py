@@ -161,6 +161,13 @@ def test_who_keeps_the_patience_is_right(wait: Any) -> None:
     assert verdict.passed, [f"{c.name}: {c.seen}" for c in verdict.criteria if not c.passed]
 
 
+def greets(a: int, b: int, patience_sec: float = 5.0) -> None:
+    """A function whose node is gone before the graph tells of it."""
+    node = rclpy.create_node("adder")
+    print(f"I ask for the sum of {a} and {b}.")
+    node.destroy_node()
+
+
 @pytest.mark.parametrize(
     ("function", "diagnosis"),
     [
@@ -169,6 +176,12 @@ def test_who_keeps_the_patience_is_right(wait: Any) -> None:
             adder(never_where_it_is_short), "waits_forever", id="gives up at once where patience is short"
         ),
         pytest.param(adder(lambda c, _: waits(c, 0.01)), "gave_up_too_early", id="a hundredth of a second"),
+        pytest.param(greets, "nothing_on_the_graph", id="is gone before the graph tells of its node"),
+        pytest.param(
+            adder(lambda c, _: c.service_is_ready()),
+            "gave_up_too_early",
+            id="looks once, and raises an error",
+        ),
         pytest.param(
             adder(waits, answer_within=0.01), "result_read_too_early", id="a hundredth for the answer"
         ),
