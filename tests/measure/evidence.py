@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from autograder import exercises
+from autograder import course, exercises
 from autograder.appeals.replaying import CannotReplay, replay
 from autograder.authoring.answers import Answer, answers, longest_first
 from autograder.authoring.judging import Turn, judge_all, warm_up
@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 
 FOLDER = Path(__file__).parents[1] / "evidence"
 COMMAND = "python -m tests.measure evidence"
+_ROOT = "/course"
+"""Stands in evidence for the folder of the clone."""
 
 
 class BadEvidence(ValueError):
@@ -106,7 +108,9 @@ def program(answer: Answer) -> str:
 
 
 def _line(record: Record) -> str:
-    content = plain(msgspec.to_builtins(record))
+    """The line of a record, without the place of the clone that it was made in."""
+    text = json.dumps(plain(msgspec.to_builtins(record)), ensure_ascii=False)
+    content = json.loads(text.replace(str(course.root()), _ROOT))
     return json.dumps({"mark": _mark(content), **content}, ensure_ascii=False)
 
 
