@@ -128,9 +128,12 @@ class Listed:
             hint = f"did you mean {like[0]}?" if like else f"there are {', '.join(there)}"
             raise self._bad(f"its base {self.base.name} is no file of {self.base.parent}; {hint}") from None
         try:
-            _, _, rest = edited(text, self.entry.change).partition("\n")
+            changed = edited(text, self.entry.change)
         except CannotEdit as error:
             raise self._bad(f"its change does not fit {self.base.name}: {error}") from None
+        if not text.startswith(("#", '"""')):
+            return f"# {shows}\n{changed}"  # its base begins with code, which stays
+        _, _, rest = changed.partition("\n")
         return (f"# {shows}" if text.startswith("#") else f'"""{shows}"""') + f"\n{rest}"
 
     def _bad(self, what: str) -> BadTable:

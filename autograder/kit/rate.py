@@ -12,10 +12,13 @@ from itertools import pairwise
 from statistics import mean, median
 from typing import TYPE_CHECKING
 
+from autograder.kit.in_words import counted
+from autograder.kit.model import Finding
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.kit.evidence import Event
+    from autograder.kit.evidence import Event, Part
 
 ROW = 7
 """Messages in a row that show a rate in real time."""
@@ -118,3 +121,19 @@ def confirmed(rate: Rate, before: Rate, wanted: float) -> bool:
     """
     wrong = abs(before.period - wanted) > SIMULATED_TOLERANCE * wanted
     return wrong and abs(rate.period - before.period) < abs(rate.period - wanted)
+
+
+def keeps_rate(seen: Part, expected: Part) -> Finding:
+    """A criterion for one topic: the messages come as often as the reference's."""
+    wanted = mean(later - earlier for earlier, later in pairwise(simulated(expected.of("message"))))
+    messages = seen.of("message")
+    rate = rate_of(messages, wanted)
+    heard = f"one every {rate.period:.2g} s" if rate else f"{counted(len(messages), 'message')} in all"
+    unevenly = " on average, but unevenly" if rate and not rate.even else ""
+    return Finding(rate is not None and rate.kept, f"one every {wanted:.2g} s", heard + unevenly)
+
+
+def another_rate(seen: Part, expected: Part) -> str:
+    """A mistake for one topic: how often it publishes, where that is not the reference's rate; else an empty text."""
+    rate = keeps_rate(seen, expected)
+    return rate.seen if not rate.passed and "every" in rate.seen else ""

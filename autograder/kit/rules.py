@@ -1,59 +1,192 @@
-"""Rules from all that a subject was given to all that it must make of that, and the wrong ones that students follow."""
+"""Rules from what a subject was given to what it must make of that, and the wrong ones that students follow.
+
+A :class:`Rule` is for a subject that answers what it is given; a :class:`StateRule` for one that says from time to time
+how things are.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Generic, TypeVar
+from math import isclose
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
+from autograder.kit.in_words import counted
 from autograder.kit.model import Finding
+from autograder.kit.rate import sent_times
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Iterator
 
-View = TypeVar("View")
-Given = TypeVar("Given")
+    from autograder.kit.draft import Judge
+    from autograder.kit.evidence import Event, Part
+
+Thing = TypeVar("Thing")
 Made = TypeVar("Made")
+Row = Sequence[Any]
+
+
+def value(event: Event) -> Any:
+    """The content of a message, a request or an answer: its field ``data``; all its fields where it has none."""
+    return event.data["fields"].get("data", event.data["fields"])
+
+
+def values(kind: str, name: str | None = None) -> Callable[[Part], list[Any]]:
+    """The contents of all events of a kind, in order; only those of ``name`` where one is given."""
+    return lambda seen: [value(event) for event in seen.of(kind, name)]
+
+
+SENT, HEARD = values("sent"), values("message")
+"""What the judge published, and what it heard."""
+
+
+def each(rule: Callable[[Thing], Made]) -> Callable[[Sequence[Thing]], list[Made]]:
+    """The rule that makes of each thing what ``rule`` makes of it alone."""
+    return lambda given: [rule(thing) for thing in given]
 
 
 @dataclass(frozen=True)
-class Rule(Generic[View, Given, Made]):
-    """A rule from all that a subject was given to all that it must make of that.
+class Rule:
+    """A rule from all that a subject was given to all that it must make of that, both in order.
 
     Attributes:
-        given: What it was given, in order, from what was seen.
-        made: What it made of that, in order, so that ``==`` compares it with what the rule makes.
-        rule: From all that was given to all that is to be made.
+        rule: From what was given to what is to be made.
+        given: What it was given, from what was seen.
+        made: What it made of that. Numbers with a point may differ by what is lost in rounding.
     """
 
-    given: Callable[[View], Sequence[Given]]
-    made: Callable[[View], Sequence[Made]]
-    rule: Callable[[Sequence[Given]], Sequence[Made]]
+    rule: Callable[[Row], Row]
+    given: Callable[[Part], Row] = SENT
+    made: Callable[[Part], Row] = HEARD
 
-    def finding(self, seen: View, expected: View) -> Finding:
+    def finding(self, seen: Part, expected: Part) -> Finding:
         """A criterion: it was given something, and made of it what the rule makes.
 
         Where it was given nothing, the card says what the reference solution makes, in place of "expected: nothing".
         """
-        given, made = self.given(seen), list(self.made(seen))
+        given, made = self.given(seen), self.made(seen)
         if not given:
             usual = self.rule(self.given(expected))
             return Finding(False, f"such as {_in_words(usual)}", _in_words(made))
-        due = list(self.rule(given))
-        return Finding(made == due, _in_words(due), _in_words(made))
+        due = self.rule(given)
+        return Finding(_same(made, due), _in_words(due), _in_words(made))
 
-    def taken_for(self, wrong: Callable[[Sequence[Given]], Sequence[Made]]) -> Callable[[View, View], bool]:
-        """A mistake: all that it made is what a wrong rule makes, and not what the right one does.
+    def taken_for(self, *wrong: Callable[[Row], Row]) -> Callable[[Part, Part], bool]:
+        """A mistake: all that it made is what one of these wrong rules makes, and not what the right one does.
 
         A subject that stopped on its way is compared as far as it came.
         """
 
-        def recognise(seen: View, _: View) -> bool:
-            given, made = self.given(seen), list(self.made(seen))
-            so_far = len(made)
-            return bool(made) and made == list(wrong(given))[:so_far] != list(self.rule(given))[:so_far]
+        def recognise(seen: Part, _: Part) -> bool:
+            given, made = self.given(seen), self.made(seen)
+            right, *others = (_same(made, rule(given)[: len(made)]) for rule in (self.rule, *wrong))
+            return bool(made) and not right and any(others)
 
         return recognise
 
 
-def _in_words(values: Sequence[object]) -> str:
-    return ", ".join(map(str, values)) or "nothing"
+class Given(NamedTuple):
+    """Something that a subject was given: how many seconds of its time ago, its :func:`value`, and on which name."""
+
+    age: float
+    value: Any
+    name: str
+
+
+State = Callable[[Sequence[Given]], Any]
+"""From all that a subject was given until a moment, in order, to what it says then, or to what holds then."""
+
+
+@dataclass(frozen=True)
+class StateRule:
+    """A rule for a subject that says from time to time how things are, by what it was given until then, and when.
+
+    Attributes:
+        rule: From what it was given to what it is to say.
+        slack: Seconds that anything may take: what was right so long before is right, too, and what is so long after.
+        given: The kind of the events in which it is given something.
+    """
+
+    rule: State
+    slack: float = 0.25
+    given: str = "sent"
+
+    def when(self, holds: State) -> Judge[Part]:
+        """A criterion: while something holds, what it says is right.
+
+        It has to say a quarter of what the reference solution says then: how fast it speaks is asked elsewhere.
+        """
+
+        def judge(seen: Part, expected: Part) -> Finding:
+            mine, theirs = (list(self._decided(part, holds)) for part in (seen, expected))
+            many, wrong = counted(len(mine), "message"), [pair for pair in mine if not _same(*pair)]
+            if wrong:
+                due, said = wrong[0]
+                return Finding(False, _in_words([due]), f"{_in_words([said])} in {len(wrong)} of {many}")
+            usual = _in_words(list(dict.fromkeys(_in_words([due]) for due, _ in mine or theirs)))
+            enough = bool(mine) and 4 * len(mine) >= len(theirs)
+            return Finding(enough, usual, usual if enough else f"{many} at such times")
+
+        return judge
+
+    def taken_for(self, *wrong: State) -> Callable[[Part, Part], bool]:
+        """A mistake: all that it says is what one of these wrong rules says, and not what the right one does."""
+
+        def recognise(seen: Part, _: Part) -> bool:
+            said = list(self._said(seen))
+            right, *others = (
+                all(any(_same(what, rule(given)) for given in views) for what, views in said)
+                for rule in (self.rule, *wrong)
+            )
+            return not right and any(others)
+
+        return recognise
+
+    def only_in_answer(self, seen: Part, _: Part) -> bool:
+        """A mistake: it speaks once for each thing that it is given, and never by itself."""
+        given = [len(later) for _, (*_, later) in self._said(seen)]
+        return bool(given) and all(number <= so_far for number, so_far in enumerate(given, 1))
+
+    def _decided(self, part: Part, holds: State) -> Iterator[tuple[Any, Any]]:
+        """What is due and what is said where only one thing is due, and something holds without a doubt."""
+        for what, views in self._said(part):
+            due, *others = map(self.rule, views)
+            if all(map(holds, views)) and all(_same(due, other) for other in others):
+                yield due, what
+
+    def _said(self, part: Part) -> Iterator[tuple[Any, list[list[Given]]]]:
+        """All that it says, each with what it was given: as of a little earlier, of then, and of a little later."""
+        given: list[Event] = []
+        for event in part.events:
+            if event.kind == self.given:
+                given.append(event)
+            if event.kind == "message":
+                now = _moment(event)
+                yield (
+                    value(event),
+                    [
+                        [Given(age, value(g), g.name) for g in given if (age := at - g.moment) >= 0.0]
+                        for at in (now - self.slack, now, now + self.slack)
+                    ],
+                )
+
+
+def _moment(event: Event) -> float:
+    """When something was said: in real time without what it took to arrive."""
+    on_its_way = float(event.data.get("arrived", event.t)) - sent_times([event])[0]
+    return event.moment - (on_its_way if event.sim is None else 0.0)
+
+
+def _same(one: Any, other: Any) -> bool:
+    """True if two contents, or rows of such, are the same but for rounding."""
+    if {type(one), type(other)} in ({float}, {float, int}):
+        return isclose(one, other, rel_tol=1e-6, abs_tol=1e-6)
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(_same(one[key], other[key]) for key in one)
+    if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):
+        return len(one) == len(other) and all(map(_same, one, other))
+    return bool(one == other)
+
+
+def _in_words(made: Sequence[object]) -> str:
+    return ", ".join(f"{one:.10g}" if isinstance(one, float) else str(one) for one in made) or "nothing"

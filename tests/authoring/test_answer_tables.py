@@ -53,6 +53,11 @@ def test_its_first_line_is_like_that_of_its_base_and_says_why(folder: Path) -> N
     assert texts(folder)["counter_start.py"].startswith("# Wrong: 1, 2, 3\ni = 1\n")
 
 
+def test_a_base_without_a_comment_loses_nothing(folder: Path) -> None:
+    (folder / "right" / "usual.py").write_text("import rclpy\ni = 0\n")
+    assert texts(folder)["counter_start.py"] == "# Wrong: counts from 1.\nimport rclpy\ni = 1\n"
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [

@@ -37,7 +37,7 @@ def test_each_endpoint_of_a_role_counts(services: dict[str, str], key: str, word
     found = [(mistake.key, advice) for mistake in RECIPE.ladder if (advice := mistake.recognise(evidence))]
     assert found[0][0] == key if key else not found
     assert not found or word in found[0][1].text
-    assert RECIPE.is_there(evidence).passed is not bool(key)
+    assert RECIPE.has("service")(evidence).passed is not bool(key)
 
 
 def test_what_is_expected_has_the_references_endpoints() -> None:

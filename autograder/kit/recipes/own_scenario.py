@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from autograder.kit import common_mistakes as common
@@ -12,21 +12,75 @@ from autograder.kit.hangs import HANGS
 from autograder.kit.model import Finding
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
+    from autograder.kit.counterparts import Caller, Speaker
     from autograder.kit.evidence import Evidence, Part
     from autograder.kit.model import Bench, Mistake
 
 _NOUN = {"publisher": "a publisher on", "subscription": "a subscription to", "client": "a client of"}
 _NOUN |= {"service": "a service", "action_client": "a client of the action", "action_server": "an action"}
+SERVED = 3.0
+"""Seconds of wall time in which a service that is on the graph may be called."""
+
+
+@dataclass(frozen=True)
+class Met:
+    """A subject that is met and spun, and whom it meets: a listener on each topic on which the reference publishes.
+
+    Attributes:
+        bench: Where it happens.
+        topics: These topics; in the order of their names, as the others.
+        speakers: A publisher of the judge's for each topic that the reference subscribes to.
+        callers: A client of the judge's for each of its services.
+    """
+
+    bench: Bench
+    topics: Sequence[str]
+    speakers: Sequence[Speaker]
+    callers: Sequence[Caller]
+
+    @property
+    def heard(self) -> int:
+        """The number of messages that arrived so far, on the one topic or the first."""
+        return self.bench.heard(self.topics[0])
+
+
+def once_met(happens: Callable[[Met], bool]) -> Callable[[Bench], None]:
+    """The scenario of one part: a subject is met at all of the reference's endpoints, and then something happens.
+
+    Args:
+        happens: Says whether all that it waited for came; where it did not, the judge asks whether the subject is spun.
+    """
+
+    def scenario(bench: Bench) -> None:
+        roles = {role: dict(sorted(ends.items())) for role, ends in bench.reference.interface.items()}
+        publishers, heard, services = (roles.get(r, {}) for r in ("publisher", "subscription", "service"))
+        bench.part("met")
+        for topic, kind in publishers.items():
+            bench.listen(topic, kind)
+        speakers = [bench.speak(topic, kind) for topic, kind in heard.items()]
+        callers = [bench.call(service, kind) for service, kind in services.items()]
+        bench.start()
+        if all(bench.await_endpoint(role, name) for role, ends in roles.items() for name in ends):
+            bench.release()
+            if speakers:
+                bench.await_attention()
+            called = all(caller.await_server(SERVED) for caller in callers)
+            if not (called and happens(Met(bench, tuple(publishers), speakers, callers))):
+                bench.note_whether_it_spins()
+        bench.stop()
+
+    return scenario
 
 
 class OwnScenario:
     """The recipe for a subject with endpoints of some roles. Its view is what was seen in the first part.
 
     Args:
-        scenario: Drives the bench. It takes name and type from ``bench.reference.only(role)``; where it has several,
-            their types by their names from ``bench.reference.interface[role]``.
+        scenario: Drives the bench, such as one of :func:`once_met`. One of your own takes name and type from
+            ``bench.reference.only(role)``; where it has several, their types by their names from
+            ``bench.reference.interface[role]``.
         roles: Such as ``"publisher"``, the most telling first.
     """
 
@@ -47,10 +101,6 @@ class OwnScenario:
             return evidence.main
         recorded, interface = evidence.reference.parts[0], evidence.reference.interface
         return replace(recorded, events=[Event(0.0, "interface", "graph", interface), *recorded.events])
-
-    def is_there(self, evidence: Evidence) -> Finding:
-        """The endpoints of the first role have the reference's names and types."""
-        return self.has(self.roles[0])(evidence)
 
     def has(self, role: str) -> Callable[[Evidence], Finding]:
         """For :meth:`autograder.kit.draft.Draft.asks`: the endpoints of a role have the reference's names and types."""

@@ -75,16 +75,13 @@ def keeps_telling(evidence: Evidence) -> Finding:
 first_move.asks("rate", 4, "Keeps telling it", keeps_telling)
 
 
-@first_move.mistake(
+first_move.knows(
     "no_movement",
+    lambda seen, _: commands(seen) and not any(any(command.values()) for command in commands(seen)),
+    "Your commands arrive, but all their numbers are 0: the robot is told not to move.",
+    "Set command.linear.x = 0.5 before you publish the command.",
     certain=True,
-    says="Your commands arrive, but all their numbers are 0: the robot is told not to move.",
-    next_step="Set command.linear.x = 0.5 before you publish the command.",
 )
-def no_movement(seen: Publisher, _: Publisher) -> bool:
-    """Commands arrive, and none of them moves the robot."""
-    told = commands(seen)
-    return bool(told) and not any(any(command.values()) for command in told)
 
 
 @first_move.mistake("wrong_movement", certain=True)

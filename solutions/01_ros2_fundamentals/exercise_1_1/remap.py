@@ -119,41 +119,36 @@ remap.knows(
 )
 
 
-@remap.mistake("renamed_in_code", certain=True)
-def renamed_beside_a_rule(seen: Launched, _: Launched) -> Advice | None:
-    """A program is on the topic without its rule, too."""
-    if not seen.not_moved:
-        return None
-    programs = " and ".join(seen.not_moved)
-    return Advice(
-        f"Without the rule of the launch file, {seen.topic} was still the topic of your {programs}: the new name is in "
-        "the code, so the rule moves nothing.",
-        f"Put the old name, {OLD_NAME}, back into the code of your {programs}, and build. The rule in the launch file "
-        "then moves it.",
-    )
-
-
-@remap.mistake(
+remap.knows(
     "renamed_in_code",
-    says="Both nodes are on {seen.topic}, but not by the launch file: the name was changed in the code of a program.",
-    next_step="Leave the programs as they are, with chatter in them, and remap the topic for each node in the launch "
-    "file.",
+    lambda seen, _: " and ".join(seen.not_moved),
+    "Without the rule of the launch file, {seen.topic} was still the topic of your {}: the new name is in the code, so "
+    "the rule moves nothing.",
+    f"Put the old name, {OLD_NAME}, back into the code of your {{}}, and build. The rule in the launch file then moves "
+    "it.",
+    certain=True,
 )
-def renamed_in_code(seen: Launched, expected: Launched) -> bool:
-    """Everything is on the topic, and no rule brought it there."""
-    arrived = bool(seen.heard) and seen.says_what_it_hears
-    return arrived and not by_the_launch(seen, expected).passed and not _missing(seen)
 
 
-@remap.mistake("someone_stayed", certain=True)
-def someone_stayed(seen: Launched, _: Launched) -> Advice | None:
-    """Besides the two there is one more under another name."""
-    if not seen.elsewhere or seen.topic not in seen.publishers & seen.subscriptions:
-        return None
-    return Advice(
-        f"Both ends are on {seen.topic}, but something is still on {', '.join(seen.elsewhere)}.",
-        "Start each of the two programs once, each with its remapping.",
-    )
+remap.knows(
+    "renamed_in_code",
+    lambda seen, expected: (
+        seen.heard
+        and seen.says_what_it_hears
+        and not (by_the_launch(seen, expected).passed or _missing(seen))
+    ),
+    "Both nodes are on {seen.topic}, but not by the launch file: the name was changed in the code of a program.",
+    "Leave the programs as they are, with chatter in them, and remap the topic for each node in the launch file.",
+)
+
+
+remap.knows(
+    "someone_stayed",
+    lambda seen, _: seen.topic in seen.publishers & seen.subscriptions and ", ".join(seen.elsewhere),
+    "Both ends are on {seen.topic}, but something is still on {}.",
+    "Start each of the two programs once, each with its remapping.",
+    certain=True,
+)
 
 
 def _is_there(seen: Launched, has_one: bool) -> bool:

@@ -123,17 +123,16 @@ def first_answer_ignored(seen: Client, _: Client) -> Advice | None:
     )
 
 
-@adder.mistake("wrong_arguments", certain=True)
-def wrong_arguments(seen: Client, expected: Client) -> Advice | None:
-    """Two calls with other numbers."""
-    finding = chain(seen, expected)
-    if finding.passed or not seen.called(expected.calls):
-        return None
-    return Advice(
-        f"The calls carry the wrong numbers ({finding.seen}).",
-        "The first call adds a and b, the second adds the first answer and c: the numbers that your code was given, "
-        "with their minus signs, and no numbers of your own. If you use one request object twice, fill it anew.",
-    )
+adder.knows(
+    "wrong_arguments",
+    lambda seen, expected: (
+        seen.called(expected.calls) and not (found := chain(seen, expected)).passed and found.seen
+    ),
+    "The calls carry the wrong numbers ({}).",
+    "The first call adds a and b, the second adds the first answer and c: the numbers that your code was given, with "
+    "their minus signs, and no numbers of your own. If you use one request object twice, fill it anew.",
+    certain=True,
+)
 
 
 @adder.mistake("one_call_only", late=True, certain=Client.called_each_time)
@@ -162,17 +161,14 @@ def wrong_sum_reported(seen: Client, expected: Client) -> Advice | None:
     )
 
 
-@adder.mistake(
+adder.knows(
     "sum_not_reported",
+    lambda seen, expected: (part := unreported(seen, expected)) and (service_calls.braces_left(part) or True),
+    "Both calls are right, but the final sum is never said.",
+    "Log or print the sum of the second answer. In a notebook, return it, too.",
     late=True,
     certain=Client.ended_each_time,
-    says="Both calls are right, but the final sum is never said.",
-    next_step="Log or print the sum of the second answer. In a notebook, return it, too.",
 )
-def sum_not_reported(seen: Client, expected: Client) -> bool | Advice:
-    """The calls are right, and the last answer is never said."""
-    part = unreported(seen, expected)
-    return part is not None and (service_calls.braces_left(part) or True)
 
 
 def unreported(seen: Client, expected: Client) -> Part | None:

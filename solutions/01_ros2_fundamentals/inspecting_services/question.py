@@ -318,30 +318,23 @@ def wrong_service(seen: Evidence, _: Evidence) -> Advice | None:
     return None
 
 
-@question.mistake("name_filtered")
-def name_filtered(seen: Evidence, _: Evidence) -> Advice | None:
-    """It finds a service by its type, but not one that has a certain word in its name."""
-    part = seen.part(OTHER)
-    if not names_it(seen.part(LATE)) or not gave_up_with_nothing(part):
-        return None
-    return Advice(
-        f"Your code finds a service that comes late, but not {part.inputs['right']}, which is of the type "
-        f"{part.inputs['type']} and was there from the start.",
-        "Does it leave out services by their names, as the demonstration does with “parameter”? Only the type counts.",
-    )
-
-
-@question.mistake("not_returned", certain=True)
-def not_returned(seen: Evidence, _: Evidence) -> Advice | None:
-    """It names the right service, and returns something else."""
-    part = next((part for part in seen if names_it(part) and not returns_it(part)), None)
-    if part is None:
-        return None
-    return Advice(
-        f"Your function found {part.inputs['right']}, but what it returns is {part.returned}: code that calls it "
-        "cannot go on with the name.",
-        "End your function with `return` and the name itself, as get_service_names_and_types() gives it.",
-    )
+question.knows(
+    "name_filtered",
+    lambda seen, _: (
+        names_it(seen.part(LATE)) and gave_up_with_nothing(other := seen.part(OTHER)) and other.inputs
+    ),
+    "Your code finds a service that comes late, but not {0[right]}, which is of the type {0[type]} and was there from "
+    "the start.",
+    "Does it leave out services by their names, as the demonstration does with “parameter”? Only the type counts.",
+)
+question.knows(
+    "not_returned",
+    lambda seen, _: next((part for part in seen if names_it(part) and not returns_it(part)), None),
+    "Your function found {0.inputs[right]}, but what it returns is {0.returned}: code that calls it cannot go on with "
+    "the name.",
+    "End your function with `return` and the name itself, as get_service_names_and_types() gives it.",
+    certain=True,
+)
 
 
 def _crashed(part: Part) -> bool:
@@ -394,16 +387,13 @@ def silent_end(seen: Evidence, _: Evidence) -> Advice | None:
     )
 
 
-@question.mistake("patience_not_kept", late=True)
-def patience_not_kept(seen: Evidence, _: Evidence) -> Advice | None:
-    """Without such a service it looks by a limit of its own."""
-    wrong = giving_up.broken_patience(seen.part(ABSENT))
-    if not wrong:
-        return None
-    return Advice(
-        f"When no service has the type, your function {wrong}.",
-        "Note the time at the start, give_up_at = time.monotonic() + patience_sec, and look until that moment.",
-    )
+question.knows(
+    "patience_not_kept",
+    lambda seen, _: giving_up.broken_patience(seen.part(ABSENT)),
+    "When no service has the type, your function {}.",
+    "Note the time at the start, give_up_at = time.monotonic() + patience_sec, and look until that moment.",
+    late=True,
+)
 
 
 EXERCISE = question.exercise(

@@ -232,17 +232,14 @@ def invented_answer(seen: Evidence, _: Evidence) -> bool:
     return None not in given and all(one == given[0] for one in given)
 
 
-@mismatched.mistake(
+mismatched.knows(
     "not_written",
+    lambda seen, _: seen.parts and all(part.returned == "None" and not part.said() for part in seen),
+    "Your function ends and returns nothing: a step is not written yet.",
+    "If you make a dictionary, write return before it. Otherwise find the TODO in your solution cell and write that "
+    "step; the hints below the cell open one at a time.",
     certain=True,
-    says="Your function ends and returns nothing: a step is not written yet.",
-    next_step="If you make a dictionary, write return before it. Otherwise find the TODO in your "
-    "solution cell and write that step; the hints below the cell open one at a time.",
 )
-def not_written(seen: Evidence, _: Evidence) -> bool:
-    """Each time it returned, with nothing."""
-    parts = list(seen)
-    return bool(parts) and all(part.returned == "None" and not part.said() for part in parts)
 
 
 @mismatched.mistake("gave_up")

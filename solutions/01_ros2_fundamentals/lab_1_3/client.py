@@ -80,16 +80,15 @@ client.asks("late", 1, "Waits for a service that comes late", recipe.waits)
 client.asks("limit", 1, "Ends clearly when there is no service", service_calls.gives_up_in_time)
 
 
-@client.mistake("wrong_arguments", certain=True)
-def wrong_arguments(seen: Client, expected: Client) -> Advice | None:
-    """One call with other numbers."""
-    finding = call(seen, expected)
-    if finding.passed or not seen.called(expected.calls):
-        return None
-    return Advice(
-        f"The call carries the wrong numbers ({finding.seen}).",
-        "The request's a is the first number, its b the second. On a command line, sys.argv[0] is the program itself.",
-    )
+client.knows(
+    "wrong_arguments",
+    lambda seen, expected: (
+        seen.called(expected.calls) and not (found := call(seen, expected)).passed and found.seen
+    ),
+    "The call carries the wrong numbers ({}).",
+    "The request's a is the first number, its b the second. On a command line, sys.argv[0] is the program itself.",
+    certain=True,
+)
 
 
 @client.mistake(
@@ -120,17 +119,14 @@ def wrong_sum_reported(seen: Client, _: Client) -> Advice | None:
     )
 
 
-@client.mistake(
+client.knows(
     "sum_not_reported",
+    lambda seen, _: (part := recipe.unreported(seen)) and (service_calls.braces_left(part) or True),
+    "The call is right, but the sum is never said.",
+    "Log or print the field sum of the answer that the service gave. In a notebook, return it, too.",
     late=True,
     certain=Client.ended_each_time,
-    says="The call is right, but the sum is never said.",
-    next_step="Log or print the field sum of the answer that the service gave. In a notebook, return it, too.",
 )
-def sum_not_reported(seen: Client, _: Client) -> bool | Advice:
-    """The call is right, and the answer is never said."""
-    part = recipe.unreported(seen)
-    return part is not None and (service_calls.braces_left(part) or True)
 
 
 EXERCISE = client.exercise(

@@ -104,18 +104,19 @@ def result_never_filled(seen: Evidence, _: Evidence) -> bool:
     return bool(good) and not any(one.sequence for one in good)
 
 
-@server.mistake("older_goal_ended", certain=True)
-def older_goal_ended(seen: Evidence, _: Evidence) -> Advice | None:
-    """A goal ended when a younger one came."""
-    older = ended_by_a_younger(seen.part(GOALS))
-    if older is None or traceback_of(seen):
-        return None
-    return Advice(
-        f"When a second goal came, your server ended the older one as {status_text(older.status)}. The task asks it to "
-        "serve both, each with its own sequence.",
-        "Leave out what aborts the goal that is at work when another one is accepted; or let the new one wait until "
-        "the older one has ended.",
-    )
+server.knows(
+    "older_goal_ended",
+    lambda seen, _: (
+        not traceback_of(seen)
+        and (older := ended_by_a_younger(seen.part(GOALS)))
+        and status_text(older.status)
+    ),
+    "When a second goal came, your server ended the older one as {}. The task asks it to serve both, each "
+    "with its own sequence.",
+    "Leave out what aborts the goal that is at work when another one is accepted; or let the new one wait until the "
+    "older one has ended.",
+    certain=True,
+)
 
 
 @server.mistake("goals_mixed_up")

@@ -81,6 +81,28 @@ def test_what_was_doubtful_each_time_is_not_recorded(monkeypatch: pytest.MonkeyP
         _record(monkeypatch, _Looks(*(None,) * record.LOOKS))
 
 
+def test_an_endpoint_that_is_announced_after_the_first_one_is_recorded_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class Bench:
+        """Shows the service only to who waits until all is made."""
+
+        def __init__(self, *_: Any) -> None:
+            pass
+
+        def __getattr__(self, _: str) -> Any:
+            return lambda *_: Part("interface")
+
+        def await_any_endpoint(self, roles: tuple[str, ...]) -> dict[str, dict[str, str]]:
+            return {"publisher": {"/blink": "a type"}, "service": {} if roles else {"/lamp": "another"}}
+
+    monkeypatch.setattr(record, "TestBench", Bench)
+    monkeypatch.setattr(record, "look", _Looks(1))
+    exercise = replace(EXERCISE, roles=("publisher", "service"))
+    taken = record.record(exercise, cast("Any", Bench()), domain_id=1)
+    assert taken.interface == {"publisher": {"/blink": "a type"}, "service": {"/lamp": "another"}}
+
+
 def _record(monkeypatch: pytest.MonkeyPatch, look: _Looks, exercise: Exercise = EXERCISE) -> Reference:
     class Subject:
         def begin(self, _: int) -> None:

@@ -41,7 +41,7 @@ map_server = Draft(
     "Publish the name of the map once, for late listeners too.",
     subject := OwnScenario(scenario, "publisher"),
 )
-map_server.asks("topic", 2, "Publishes on the right topic and type", subject.is_there)
+map_server.asks("topic", 2, "Publishes on the right topic and type", subject.has("publisher"))
 
 
 def messages(seen: Part) -> list[str]:

@@ -48,16 +48,14 @@ odometer.asks("sum", 4, "Reports the sum that the service answered", service_cal
 odometer.asks("limit", 2, "Ends clearly when there is no service", service_calls.gives_up_in_time)
 
 
-@odometer.mistake(
+odometer.knows(
     "sum_not_reported",
+    lambda seen, _: recipe.unreported(seen),
+    "The call is right, but the sum is never said.",
+    "Log or print the sum of the answer: future.result().sum. In a notebook, return it, too.",
     late=True,
     certain=Client.ended_each_time,
-    says="The call is right, but the sum is never said.",
-    next_step="Log or print the sum of the answer: future.result().sum. In a notebook, return it, too.",
 )
-def sum_not_reported(seen: Client, _: Client) -> bool:
-    """The call is right, and the answer is never said."""
-    return recipe.unreported(seen) is not None
 
 
 EXERCISE = odometer.exercise(

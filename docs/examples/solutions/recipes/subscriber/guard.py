@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.draft import Draft
-from autograder.kit.model import Bench, Finding, Pace
-from autograder.kit.recipes.own_scenario import OwnScenario
+from autograder.kit.model import Finding, Pace
+from autograder.kit.recipes.own_scenario import Met, OwnScenario, once_met
+from autograder.kit.rules import SENT
 
 if TYPE_CHECKING:
     from random import Random
@@ -21,20 +22,11 @@ PATIENCE = {Pace.FAST: 1.5, Pace.REAL_TIME: 5.0}
 """Seconds of wall time in which the last warning must have come."""
 
 
-def scenario(bench: Bench) -> None:
+def listening(met: Met) -> bool:
     """Publish charges on both sides of the limit; the last one is low, so that its warning shows the end."""
-    topic, type_name = bench.reference.only("subscription")
-    bench.part("listening", charges=charges(bench.random))
-    speaker = bench.speak(topic, type_name)
-    bench.start()
-    if bench.await_endpoint("subscription", topic):
-        bench.release()
-        bench.await_attention()
-        for charge in bench.seen().inputs["charges"]:
-            speaker.send(data=charge)
-        if not bench.wait_until(lambda evidence: not missing(evidence.main), PATIENCE[bench.pace]):
-            bench.note_whether_it_spins()
-    bench.stop()
+    for charge in charges(met.bench.random):
+        met.speakers[0].send(data=charge)
+    return met.bench.wait_until(lambda evidence: not missing(evidence.main), PATIENCE[met.bench.pace])
 
 
 def charges(random: Random) -> list[int]:
@@ -48,20 +40,20 @@ guard = Draft(
     "subscriber.guard",
     "A subscriber · The battery's guard",
     "Warn of each charge below 20 percent, and of no other.",
-    subject := OwnScenario(scenario, "subscription"),
+    subject := OwnScenario(once_met(listening), "subscription"),
 )
-guard.asks("topic", 2, "Subscribes to the right topic, with the right type", subject.is_there)
+guard.asks("topic", 2, "Subscribes to the right topic, with the right type", subject.has("subscription"))
 
 
 def named(seen: Part) -> list[set[int]]:
     """For each line that was said, which of the charges are in it."""
-    sent = set(seen.inputs.get("charges", ()))
+    sent = set(SENT(seen))
     return [sent & {int(number) for number in re2.findall(r"\d{1,3}", line)} for line in seen.said()]
 
 
 def missing(seen: Part) -> list[int]:
     """The low charges of which nobody was warned."""
-    return [c for c in seen.inputs["charges"] if c < LIMIT and not any(c in line for line in named(seen))]
+    return [c for c in SENT(seen) if c < LIMIT and not any(c in line for line in named(seen))]
 
 
 def needless(seen: Part) -> list[int]:
@@ -73,9 +65,7 @@ def needless(seen: Part) -> list[int]:
 def warns(seen: Part, _: Part) -> Finding:
     """Each low charge is in something that was said."""
     silent = [f"no word of {charge}" for charge in missing(seen)]
-    return Finding(
-        bool(seen.of("sent")) and not silent, "a line for each", ", ".join(silent) or "a line for each"
-    )
+    return Finding(bool(SENT(seen)) and not silent, "a line for each", ", ".join(silent) or "a line for each")
 
 
 @guard.criterion("only", 4, "Says nothing of any other charge")

@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from autograder.kit.draft import Draft
-from autograder.kit.model import Bench, Finding
-from autograder.kit.recipes.own_scenario import OwnScenario
+from autograder.kit.model import Finding
+from autograder.kit.recipes.own_scenario import Met, OwnScenario, once_met
 
 if TYPE_CHECKING:
-    from autograder.kit.counterparts import Caller
     from autograder.kit.evidence import Part
 
 PHASES = ("before it was switched on", "on", "off again", "on again")
@@ -19,39 +18,29 @@ PATIENCE, ENOUGH = 3.0, 3
 """Seconds of the subject's time in which so many messages must have come while it is on."""
 
 
-def scenario(bench: Bench) -> None:
+def switching(met: Met) -> bool:
     """Listen before it is switched on, while it is on, off, and on again."""
-    topic, type_name = bench.reference.only("publisher")
-    service, service_type = bench.reference.only("service")
-    bench.part("switching")
-    bench.listen(topic, type_name)
-    caller = bench.call(service, service_type)
-    bench.start()
-    there = bench.await_endpoint("publisher", topic) and bench.await_endpoint("service", service)
-    bench.release()
-    if there and caller.await_server(PATIENCE):
-        bench.run_time(LISTENS)
-        if not all(is_switched(bench, caller, topic, on) for on in (True, False, True)):
-            bench.note_whether_it_spins()
-    bench.stop()
+    met.bench.run_time(LISTENS)
+    return all(is_switched(met, on) for on in (True, False, True))
 
 
-def is_switched(bench: Bench, caller: Caller, topic: str, on: bool) -> bool:
+def is_switched(met: Met, on: bool) -> bool:
     """Switch it and listen; whether it answered, and published where it is on."""
+    (caller,) = met.callers
     caller.ask({"data": on})
     answered = caller.await_answers(PATIENCE)
-    enough = bench.heard(topic) + ENOUGH
-    bench.run_time(PATIENCE if on else LISTENS, until=lambda: on and bench.heard(topic) >= enough)
-    return answered and (not on or bench.heard(topic) >= enough)
+    enough = met.heard + ENOUGH
+    met.bench.run_time(PATIENCE if on else LISTENS, until=lambda: on and met.heard >= enough)
+    return answered and (not on or met.heard >= enough)
 
 
 lamp = Draft(
     "switch.lamp",
     "A switch · The lamp",
     "Publish only while the service lamp has switched it on.",
-    subject := OwnScenario(scenario, "publisher", "service"),
+    subject := OwnScenario(once_met(switching), "publisher", "service"),
 )
-lamp.asks("topic", 1, "Publishes on the right topic and type", subject.is_there)
+lamp.asks("topic", 1, "Publishes on the right topic and type", subject.has("publisher"))
 
 
 def heard(seen: Part) -> list[int]:
