@@ -279,7 +279,7 @@ EXERCISE = server.exercise(
         "publish the list as feedback": "feedback",
         "sleep for `PERIOD` seconds, in place of hard work.": "cancel",
         "After the loop say how the goal ended: call `canceled()` or `succeed()`.": "sequence cancel",
-        "Each of two goals has to end with its own sequence, side by side or one after the other.": "two",
+        "Each of two goals has to end with its own sequence": "two",
         "Let your node offer the action `fibonacci`.": "action",
     },
 )
