@@ -199,11 +199,19 @@ def wrong_feedback(seen: Evidence, _: Evidence) -> Advice | None:
             "Call publish_feedback(...) of the goal handle inside the loop, in each turn, right after you have "
             "appended the number and before you sleep.",
         )
-    wrong = [text for one in told if (text := feedback_objection(seen, one))]
+    wrong = [(one, text) for one in told if (text := feedback_objection(seen, one))]
     if not wrong:
         return None
+    one, text = wrong[0]
+    longest, order = max(map(len, one.partials), default=0), int(one.order or 0)
+    if longest > max(2, order + 1):
+        return Advice(
+            f"The feedback for order {order} goes up to {longest} numbers; the sequence of this order has {order + 1}.",
+            "The list begins with two numbers, so the loop has fewer turns than the order says: "
+            "`while len(numbers) <= goal_handle.request.order:` ends it in time.",
+        )
     return Advice(
-        f"The feedback does not grow by one number each time ({wrong[0]}).",
+        f"The feedback does not grow by one number each time ({text}).",
         "Publish once for each number that you append, with all numbers found so far in partial_sequence.",
     )
 
