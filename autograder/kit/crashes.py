@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.evidence import is_cut_off
-from autograder.kit.known_crashes import KNOWN
+from autograder.kit.known_crashes import KNOWN, NOT_SPUN_WHILE_CALLING
 from autograder.kit.model import Advice, Mistake
 from autograder.kit.python_errors import meaning
+from autograder.kit.python_names import MARKS
 from autograder.kit.quoted_names import FRAME_WITH_CODE, Name, is_a_library, names
 
 if TYPE_CHECKING:
@@ -104,6 +105,37 @@ def _cut_off(evidence: Evidence) -> Advice | None:
     )
 
 
+_NONE_FOR_AN_ANSWER = re2.compile(
+    rf"\.sum\b.*{MARKS}AttributeError: 'NoneType' object has no attribute 'sum'"
+)
+LEFT_LYING = 0.3
+"""Seconds for which an answer was there, before somebody is said not to have taken it."""
+
+
+def _answer_not_taken(evidence: Evidence) -> Advice | None:
+    """It goes on without an answer that was there for a while: it waited, as in a call with a limit, and did not spin.
+
+    The answer to a future is another matter: what is read from that may be one that was never waited for.
+    """
+    for part in evidence:
+        given, found = part.first("response"), _NONE_FOR_AN_ANSWER.search(part.traceback)
+        if given is None or found is None or "result()" in found[0] or part.ending is None:
+            continue
+        if "rclpy/executors.py" in part.traceback:
+            continue  # it waited in a callback: the spinning was not what was missing
+        told = next(
+            (e for e in part.of("output") if last_line_of(part.traceback) in e.data["text"]), part.ending
+        )
+        if told.t > given.t + LEFT_LYING:
+            return Advice(
+                "The service answered, and your client went on without the answer: nothing spun its node while it "
+                "waited. A call(..., timeout_sec=...) gives None when its time is over.",
+                NOT_SPUN_WHILE_CALLING,
+                part.traceback,
+            )
+    return None
+
+
 _NO_PACKAGE = re2.compile(r"^Package (?:'(?P<name>[^']*)' )?not found")
 
 
@@ -129,6 +161,7 @@ def _only_slips(mistake: Mistake) -> Mistake:
 
 
 CRASHES: tuple[Mistake, ...] = (
+    Mistake("call_never_spun", _answer_not_taken, certain=True),
     *map(_recogniser, KNOWN),
     Mistake("cut_off", _cut_off, certain=True),
     Mistake("module_not_found", _package_not_found, certain=True),

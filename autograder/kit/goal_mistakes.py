@@ -31,7 +31,7 @@ from autograder.kit.goal_reports import (
     unshown_feedback,
 )
 from autograder.kit.model import Advice, Mistake, mistake
-from autograder.kit.texts_said import mentions
+from autograder.kit.texts_said import mentions, not_filled_in
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
@@ -326,13 +326,18 @@ def _result_not_reported(evidence: Evidence) -> Advice | None:
 RESULT_NOT_REPORTED = Mistake("result_not_reported", _result_not_reported)
 
 
-ABORT_NOT_REPORTED = mistake(
-    "abort_not_reported",
-    lambda evidence: evidence.part(ABORTED).first("result_request") and aborted_as_seen(evidence),
-    "The goal was aborted (status 6), and your client does not say so: {}.",
-    "Look at the status that comes with the result: say its name, ABORTED, or compare it with "
-    "GoalStatus.STATUS_SUCCEEDED (from action_msgs.msg).",
-)
+def _abort_not_reported(evidence: Evidence) -> Advice | None:
+    part, wrong = evidence.part(ABORTED), aborted_as_seen(evidence)
+    if part.first("result_request") is None or not wrong:
+        return None
+    return not_filled_in(said_of_result(part)) or Advice(
+        f"The goal was aborted (status 6), and your client does not say so: {wrong}.",
+        "Look at the status that comes with the result: say its name, ABORTED, or compare it with "
+        "GoalStatus.STATUS_SUCCEEDED (from action_msgs.msg).",
+    )
+
+
+ABORT_NOT_REPORTED = Mistake("abort_not_reported", _abort_not_reported)
 SILENT_END = mistake(
     "silent_end",
     lambda evidence: given_up(evidence) == SILENT and asked_for(_successful_run(evidence)),

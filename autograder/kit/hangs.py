@@ -19,7 +19,7 @@ from autograder.kit.model import Advice, Mistake
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
 
-_FRAME = re2.compile(r'^\s*File "(?P<file>[^"]*)", line \d+,? in (?P<function>\S+)')
+_FRAME = re2.compile(r'^\s*File "(?P<file>[^"]*)", line (?P<line>\d+),? in (?P<function>\S+)')
 _BLOCKING = {
     "client.py": {"call"},
     "action/client.py": {"send_goal", "cancel_goal", "get_result", "_cancel_goal"},
@@ -37,10 +37,11 @@ _SPINS = {
 
 @dataclass(frozen=True)
 class Frame:
-    """One call: rclpy's file, or an empty text for anybody else's, and the function."""
+    """One call: rclpy's file, or an empty text for anybody else's, the function, and the line in its file."""
 
     rclpy: str
     function: str
+    line: str = ""
 
 
 Stack = Sequence[Frame]
@@ -54,7 +55,7 @@ def stacks(part: Part) -> list[Stack]:
             if "most recent call first" in line:
                 found.append([])
             elif (match := _FRAME.match(line)) and found:
-                found[-1].append(Frame(_rclpy_file(match["file"]), match["function"]))
+                found[-1].append(Frame(_rclpy_file(match["file"]), match["function"], match["line"]))
     return [stack for stack in found if stack]
 
 
@@ -106,6 +107,21 @@ def _stuck_callback(found: list[Stack]) -> str:
     return ""
 
 
+def _waiting(found: list[Stack]) -> str:
+    """The blocking call of rclpy that a thread waits in, as the student has written it; empty where there is none."""
+    calls = [frame for stack in found for frame in stack if frame.function in _BLOCKING.get(frame.rclpy, ())]
+    return calls[-1].function if calls else ""
+
+
+def _place(found: list[Stack], waits: Callable[[Stack], bool]) -> str:
+    """The student's line that has led to a wait, in brackets; empty where there is none."""
+    for stack in filter(waits, found):
+        own = next((frame for frame in stack if not frame.rclpy and frame.function != "wait"), None)
+        if own is not None:
+            return f" (line {own.line}, in {own.function})"
+    return ""
+
+
 def _executes_a_goal(stack: Stack) -> bool:
     """True if code of the student's was called by an action server to execute a goal."""
     return bool(_stuck_callback([stack])) and any(frame.rclpy == "action/server.py" for frame in stack)
@@ -117,22 +133,22 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
     (
         "nested_spin",
         lambda found: any(map(_spins_in_callback, found)),
-        "A callback of yours spins, and waits inside that spin for ever: the executor that called it cannot go on.",
+        "{who} spins, and waits inside that spin for ever: the executor that called it cannot go on.",
         "Leave the spin out of the callback. If you wait for an answer there, go on in a function that you give to the "
         "add_done_callback(...) of its future.",
     ),
     (
         "call_in_same_group",
         lambda found: any(_blocks(stack) and _in_callback(stack) for stack in found),
-        "A callback of yours makes a blocking call and waits for ever: the answer would have to come through the same "
-        "callback group, which is busy with this very callback.",
-        "Use the asynchronous call, whose name ends in _async, and go on in a function that you give to the "
-        "add_done_callback(...) of the future that it returns.",
+        "{who} makes the blocking call {call}(){called} and waits for ever: the answer would have to come through the "
+        "same callback group, which is busy with this very callback.",
+        "Write {call}_async in place of {call}, and go on in a function that you give to the add_done_callback(...) of "
+        "the future that it returns.",
     ),
     (
         "rate_never_spun",
         lambda found: any(map(_sleeps_on_rate, found)),
-        "The sleep() of your rate waits for ever: a rate is a timer, and no thread is free to let it fire.",
+        "The sleep() of your rate{slept} waits for ever: a rate is a timer, and no thread is free to let it fire.",
         "Use create_timer and rclpy.spin in place of the loop. Where the loop has to stay, spin the node in a second "
         "thread; where it is inside a callback, with a MultiThreadedExecutor.",
     ),
@@ -157,15 +173,16 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
         lambda found: (
             any(map(_blocks, found)) and any(_spins(stack) and not _blocks(stack) for stack in found)
         ),
-        "A blocking call waits for ever although a thread of yours spins: that executor no longer has the node.",
+        "The blocking call {call}(){called} waits for ever although a thread of yours spins: that executor no longer "
+        "has the node.",
         "Spin a node in one place only. rclpy.spin_once or spin_until_future_complete, called beside another executor, "
         "takes the node away from it.",
     ),
     (
         "call_never_spun",
         lambda found: any(map(_blocks, found)),
-        "A blocking call waits for ever: the answer has come, but nothing spins the node, so the node "
-        "does not take it.",
+        "The blocking call {call}(){called} waits for ever: the answer has come, but nothing spins the node, so the "
+        "node does not take it.",
         "Use the call whose name ends in _async (call_async, send_goal_async, get_result_async) and wait for the "
         "future that it returns with rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0), or "
         "spin the node in a background executor while you use call().",
@@ -186,7 +203,15 @@ def _mistake(key: str, fits: Recognise, text: str, next_step: str) -> Mistake:
         found = [stack for part in evidence for stack in stacks(part)]
         if not found or not fits(found):
             return None
-        return Advice(text.format(callback=_stuck_callback(found)), next_step)
+        callback = _stuck_callback(found)
+        words = {
+            "callback": callback,
+            "who": f"Your callback {callback}()" if callback else "A callback of yours",
+            "call": _waiting(found),
+            "called": _place(found, _blocks),
+            "slept": _place(found, _sleeps_on_rate),
+        }
+        return Advice(text.format(**words), next_step.format(**words))
 
     return Mistake(key, recognise)
 

@@ -5,25 +5,18 @@ The patterns are what rclpy 7.1 and Python say; each was reproduced. The order m
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from autograder.kit.field_crashes import FIELDS, Crash
+from autograder.kit.python_names import MARKS
+
+__all__ = ["KNOWN", "NOT_SPUN_WHILE_CALLING", "Crash"]
 
 
-@dataclass(frozen=True)
-class Crash:
-    """A known traceback.
-
-    Attributes:
-        key: The mistake's name.
-        pattern: Found in the traceback (multi-line search); its groups may be named in ``text``.
-        text: What happened and why.
-        next_step: What to do now.
-    """
-
-    key: str
-    pattern: str
-    text: str
-    next_step: str
-
+NOT_SPUN_WHILE_CALLING = (
+    "Write call_async(...) in place of call, and wait for the future that it returns: "
+    "rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0) spins the node while it waits. Or spin "
+    "the node in the background while you use call."
+)
+"""What to do where a call waits for its answer, and nothing spins its node."""
 
 KNOWN = (
     Crash(
@@ -52,6 +45,12 @@ KNOWN = (
         "The node was made before ROS was started, or after it was shut down.",
         "In a notebook, call start_ros() before you make a node. In a program, call rclpy.init() before you make "
         "the node.",
+    ),
+    Crash(
+        "super_init_missing",
+        rf"\bsuper\.__init__\(.*{MARKS}TypeError: descriptor '__init__'",
+        "The parentheses after super are missing.",
+        "Write super().__init__('your_node_name'): one pair of parentheses after super, and one with the name.",
     ),
     Crash(
         "super_init_missing",
@@ -96,6 +95,12 @@ KNOWN = (
         r"property '(?P<name>\w+)' of '\w+' object has no setter|can't set attribute '?(?P<other>\w*)",
         "Your class assigns to a name that Node already uses for something else ({name}).",
         "Give your attribute another name, for example my_{name} or {name}_.",
+    ),
+    Crash(
+        "field_type",
+        r"^ +.*[,=] *(?P<depth>[\"']\d+[\"'])\).*\n(?:.*\n)*.*Expected QoSProfile or int",
+        "The depth, how many messages wait in the queue, is a number, and {depth} is a string.",
+        "Write it without quotation marks, as in create_publisher(Type, 'topic', 10).",
     ),
     Crash(
         "qos_arguments_swapped",
@@ -178,6 +183,13 @@ KNOWN = (
     ),
     Crash(
         "message_type",
+        r"AttributeError: type object 'type' has no attribute '_TYPE_SUPPORT'",
+        "The type of a message or a service is needed here, and your code gives a class that is none, such as Python's "
+        "own str or int.",
+        "Import the type of ROS, and write its name there: String of std_msgs.msg in place of str.",
+    ),
+    Crash(
+        "message_type",
         r"AttributeError: type object '(?P<got>\w+)' has no attribute '_TYPE_SUPPORT'",
         "The type of a message or a service is needed here, and your code gives a value of the type {got}.",
         "Import the type, and write its name without quotation marks, before that of the topic, service or action: "
@@ -233,103 +245,7 @@ KNOWN = (
         "The execute callback of an action server returned no result.",
         "End it with `return result`, a Fibonacci.Result() with its field filled, also where the goal is canceled.",
     ),
-    Crash(
-        "field_type",
-        r"(?:^ +(?P<part>(?:\w+\.)+(?:linear|angular)) *=[^=].*\n(?:.*\n)*)?"
-        r".*field must be a sub message of type 'Vector3'"
-        r"|publish\(msg\)\n(?:[ ~^]*\n)?AttributeError: '(?:float|int)' object has no attribute 'x'",
-        "A part of a message that has three numbers got a single one.",
-        "Name the number that you mean: x, y or z, as in {part:command.linear}.x = 0.5.",
-    ),
-    Crash(
-        "field_type",
-        r"The '(?P<field>\w+)' field must be of type 'float'",
-        "The field {field} of a message takes a decimal number, and got something else.",
-        "Write the number with a point and without quotation marks: 0.5, and 1.0 in place of 1. "
-        "float(...) makes a number of a string.",
-    ),
-    Crash(
-        "field_type",
-        r"The '(?P<field>\w+)' (?:field|numpy\.ndarray) must|bad argument type for built-in operation"
-        r"|must be an integer in \[|AssertionError: The '"
-        r"|SystemError: <(?:function|class|built-in).*returned (?:a result with an exception|NULL)",
-        "A field of a message got a value of the wrong type.",
-        "Convert it before you assign: int(...) for an int64, str(...) for a string. Command-line arguments "
-        "are strings.",
-    ),
-    Crash(
-        "field_typo",
-        r"^NameError: name '(?P<name>linear|angular)' is not defined",
-        "{name} is a part of your message, and Python knows it only together with this message.",
-        "Write your message before it, with a dot, as in command.linear.x = 0.5.",
-    ),
-    Crash(
-        "field_typo",
-        r"AttributeError: 'Twist' object has no attribute '(?P<name>\w+)'",
-        "A Twist has no field called {name}: it has two parts, linear and angular, and each has the numbers x, y "
-        "and z.",
-        "Name the part, too: {owner:command}.linear.x is the speed straight ahead, {owner:command}.angular.z the turn "
-        "to the left.",
-    ),
-    Crash(
-        "field_typo",
-        r"AttributeError: '\w+_FeedbackMessage' object has no attribute '(?P<name>\w+)'",
-        "The message has no field called {name}.",
-        "In an action's feedback callback the fields are one level down: {owner:message}.feedback.partial_sequence.",
-    ),
-    Crash(
-        "field_typo",
-        r"AttributeError: '\w+_Goal' object has no attribute 'request'",
-        "Your goal_callback is given the goal itself; only a goal handle has the goal in its attribute request.",
-        "Write {owner:goal}.order there; in the execute_callback the order is in .request.order of the goal handle.",
-    ),
-    Crash(
-        "field_typo",
-        r"AttributeError: '\w+_GetResult_Response' object has no attribute '(?P<name>\w+)'",
-        "The answer to get_result_async() has two parts, result and status, and no {name}.",
-        "The fields of the result are one level down: {owner:answer}.result.sequence. The number of the status is "
-        "{owner:answer}.status.",
-    ),
-    Crash(
-        "field_typo",
-        r"(?:(?P<answer>[A-Za-z_][\w.]*(?:\(\))?)\.result\.status\b.*\n(?:[ ~^]*\n)?)?"
-        r"AttributeError: '\w+_Result' object has no attribute 'status'",
-        "The status is not in the result: it comes beside it.",
-        "Take it from what the wait gave you: {answer:answer}.status, and {answer:answer}.result.sequence for the "
-        "numbers.",
-    ),
-    Crash(
-        "field_type",
-        r"AttributeError: '(?P<type>\w+)_(?P<part>Request|Response|Goal|Result|Feedback)' object attribute "
-        r"'(?P<field>\w+)' is read-only",
-        "The field {field} was set on the type {type}.{part} itself, by this code or by an older version of it. Now no "
-        "object of this type can be filled any more.",
-        "Write parentheses after each {type}.{part} that makes an object: {type}.{part}(). Then choose Kernel, Restart "
-        "Kernel and Run All Cells: only this makes the type whole again.",
-    ),
-    Crash(
-        "field_type",
-        r"AttributeError: '(?P<type>\w+)' object attribute '(?P<field>\w+)' is read-only",
-        "The field {field} was set on the type {type} itself, by this code or by an older version of it. Now no "
-        "message of this type can be filled any more.",
-        "Write parentheses after each {type} that makes a message: {owner:message} = {type}(). Then choose Kernel, "
-        "Restart Kernel and Run All Cells: only this makes the type whole again.",
-    ),
-    Crash(
-        "field_typo",
-        r"AttributeError: '(?P<type>\w+)_(?P<part>Request|Response|Goal|Result|Feedback)' object has no attribute "
-        r"'(?P<name>\w+)'",
-        "The {part} of {type} has no field called {name}.",
-        "`ros2 interface show` lists the fields: write the name exactly as it is there, and look whether it belongs to "
-        "another part.",
-    ),
-    Crash(
-        "field_typo",
-        r"AttributeError: '(?:String|U?Int\d+|Vector3)' object has no attribute '(?P<name>\w+)'"
-        r"|Invalid arguments passed to constructor: '?(?P<keyword>\w+(?:, \w+)*)",
-        "The message has no field called {name}{keyword}.",
-        "`ros2 interface show` lists the fields of a type: write the name exactly as it is there.",
-    ),
+    *FIELDS,
     Crash(
         "callback_returned_none",
         r"(?:send_response|service_send_response)(?:.*\n)+TypeError",
@@ -368,6 +284,13 @@ KNOWN = (
         "the answer had arrived, or the function that should give it returns nothing.",
         "Wait until the future of send_goal_async is done, then keep its result in {owner:it}. Where another function "
         "keeps the handle, such as the send_goal of a lab, call that one first, and read the handle where it keeps it.",
+    ),
+    Crash(
+        "call_never_spun",
+        rf"\.call\(.*\btimeout_sec\b.*{MARKS}AttributeError: 'NoneType' object has no attribute",
+        "A call with timeout_sec gives None when its time is over: no answer came in this time, or nothing spun the "
+        "node while it waited, so that the node did not take the answer.",
+        NOT_SPUN_WHILE_CALLING,
     ),
     Crash(
         "result_read_too_early",

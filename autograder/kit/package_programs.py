@@ -45,7 +45,7 @@ class Entry:
         return f"'{self.program} = {self.package}.{self.module}:main'"
 
 
-FORM = "a string of this form: program = package.module:function"
+FORM = "a string of this form: program = package.module:function, with no slash and no parentheses"
 
 
 def await_build(bench: Bench) -> None:
@@ -70,7 +70,11 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
         # Who has written none yet is told the form: the line itself is the answer.
         return Advice(
             f"The package is built, but it has no program {entry.program}: "
-            + (f"setup.py names only {named}." if named else "setup.py names no entry point."),
+            + (
+                f"setup.py names only {named}."
+                if named
+                else "setup.py names no entry point of the right form."
+            ),
             f"In setup.py, the list 'console_scripts' has to contain {entry.line if named else FORM}. "
             f"{_again(evidence)}",
         )

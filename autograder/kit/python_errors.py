@@ -41,6 +41,11 @@ RUNNING: Sequence[Row] = (
         "has for the message, as in message.data.",
     ),
     (
+        r'^TypeError: can only concatenate str \(not "(?P<kind>list|tuple|dict|array|NoneType)"\)',
+        "A string and a value of the type {kind} are joined with +, which joins strings only.",
+        "Put the value into an f-string, in braces, as in f'... {{number}}'.",
+    ),
+    (
         r"^TypeError: (?:can only concatenate str|unsupported operand type\(s\) for \+=?: '(?:int|float|str)' and "
         r"'(?:int|float|str)')",
         "A string and a number are added.",
@@ -87,9 +92,19 @@ RUNNING: Sequence[Row] = (
         "Write parentheses after its name: that calls it.",
     ),
     (
+        rf"\bsum\(.*{MARKS}TypeError: '(?P<kind>int|float|\w+_Request)' object is not iterable",
+        "Python's own sum adds up the numbers of a list, and what it got is of the type {kind}.",
+        "Two numbers are added with +, as in response.sum = request.a + request.b.",
+    ),
+    (
         r"^TypeError: '(?P<kind>[A-Z]\w*_?\w*)' object is not (?:subscriptable|iterable)",
         "An object of the type {kind} is no list and no dictionary.",
         "Take its field, with a dot, as in message.data, request.a or answer.result.sequence.",
+    ),
+    (
+        r"^TypeError: type '(?P<kind>\w+)' is not subscriptable",
+        "{kind} is a type, and no list and no dictionary.",
+        "Take the list or the dictionary that you mean, as in STATUS_NAMES[answer.status].",
     ),
     (
         r"^TypeError: '(?P<kind>int|float|bool)' object is not (?:subscriptable|iterable)",
@@ -116,6 +131,13 @@ RUNNING: Sequence[Row] = (
         r"timer period must be non-negative",
         "The period of a timer is less than 0.",
         "Give it in seconds, as in create_timer(0.5, self.your_method).",
+    ),
+    (
+        # Raised where rclpy calls the callback; a notebook's traceback leaves rclpy's own lines out.
+        r"(?:\A|rclpy/(?:executors|task)\.py\".*\n(?: .*\n){1,2})TypeError: '(?P<kind>\w+)' object is not callable",
+        "ROS was to call a method of yours, and was given a value of the type {kind} in its place.",
+        "Look at what create_timer(...), or whatever takes a callback, has in this place: the name of the method, with "
+        "self. before it, and without quotation marks or parentheses, as in create_timer(0.5, self.say_hello).",
     ),
     (
         r"^TypeError: '(?P<kind>int|float|str|bool|list|dict|array|String|Publisher|Timer|Client|Service)' object "
@@ -201,9 +223,24 @@ RUNNING: Sequence[Row] = (
         "Put the field into a goal first, as in send_goal_async(Fibonacci.Goal(order=10), feedback_callback=...).",
     ),
     (
+        r"^TypeError: ActionServer\.__init__\(\) got an unexpected keyword argument '(?P<name>\w+)'",
+        "An ActionServer takes no argument called {name}.",
+        "Its functions are called goal_callback=, execute_callback= and cancel_callback=: write one of these.",
+    ),
+    (
+        r"^TypeError: (?:ActionClient\.)?send_goal(?:_async)?\(\) got an unexpected keyword argument '(?P<name>\w+)'",
+        "send_goal_async takes the goal and feedback_callback=, and nothing called {name}.",
+        "Write feedback_callback= before the name of the method that is given the feedback, or leave it out.",
+    ),
+    (
         r"^TypeError: ActionServer\.__init__\(\) takes .* positional arguments? but",
         "After the node, the type and the name, an ActionServer takes its functions by their keywords.",
         "Write goal_callback=, execute_callback= or cancel_callback= before each of them.",
+    ),
+    (
+        r"^TypeError: Node\.__init__\(\) takes .* positional arguments? but",
+        "super().__init__ hands over self by itself, and takes the name of the node.",
+        "Write super().__init__('your_node_name'), with nothing but the name between the second parentheses.",
     ),
     (
         r"^TypeError: (?:\w+\.)*?(?P<what>\w+)(?:\.__init__)?\(\) takes (?P<takes>.*\d) positional arguments? but "
@@ -242,7 +279,7 @@ RUNNING: Sequence[Row] = (
     ),
     (
         r"Invalid(?:Topic|Service|Node|Namespace)\w*NameException|InvalidNamespaceException",
-        "A name in ROS has letters, digits and underscores only, and no digit at its beginning.",
+        "A name in ROS has letters, digits and underscores only, no digit at its beginning, and no slash at its end.",
         "Change the name: my_topic, in place of `my topic` or `my-topic`.",
     ),
     (
@@ -329,7 +366,8 @@ RUNNING: Sequence[Row] = (
     (
         r"^TypeError: (?:\w+\.)*?(?P<what>\w+)(?:\.__init__)?\(\) got an unexpected keyword argument '(?P<name>\w+)'",
         "{what} takes no argument called {name}.",
-        "Compare the name with the lab's text, letter by letter, or leave it out.",
+        "Its first line, def ..., or the lab's text names its arguments: compare the name, letter by letter, or leave "
+        "it out.",
     ),
     (
         r"",

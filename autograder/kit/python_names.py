@@ -85,8 +85,9 @@ NAMES: Sequence[Row] = (
     ),
     (
         r"AttributeError: '(?:function|method)' object has no attribute 'add_done_callback'",
-        "A method is waited for here, and not the future that it returns.",
-        "Write parentheses after the method where you hand it over, as in get_result_async().",
+        "{owner:What is waited for here} is a method that was not called, and not the future that it returns.",
+        "Write parentheses after the method's name, in the line that sets {owner:it} or hands it over, as in "
+        "cancel_goal_async() or get_result_async().",
     ),
     (
         r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute 'add_done_callback'",
@@ -116,6 +117,19 @@ NAMES: Sequence[Row] = (
         "If it is the value that you want, leave .{name} out. If not, look at the line that sets it.",
     ),
     (
+        rf"^ +.*\bself\.(?:request|response|message|msg|future)\b.*{MARKS}"
+        r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute "
+        r"'(?P<name>request|response|message|msg|future)'",
+        "{class} has nothing called {name}.",
+        "If {name} stands between the parentheses after def, ROS hands it to this method: leave out self. before it. "
+        "If it is a value that the node is to keep, set self.{name} above this line.",
+    ),
+    (
+        r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>sleep|monotonic)'",
+        "{name} is a function of the module time, and not of {owner:the node}.",
+        "Write time.{name} in place of {owner:node}.{name}.",
+    ),
+    (
         rf"^{_OWN}\. Did you mean: '(?P<meant>\w+)'",
         "{class} has nothing called {name}, and has {meant}.",
         "If that is what you mean, write {meant}. If {name} is a value of your own, set self.{name} in __init__.",
@@ -133,11 +147,16 @@ NAMES: Sequence[Row] = (
         "Write {owner:your_goal_handle}.request.order.",
     ),
     (
+        r"AttributeError: 'dict' object has no attribute '(?P<name>\w+)'",
+        "{owner:The value before .{name}} is a dictionary, and what is in it is not read with a dot.",
+        "Write the key in square brackets: {owner:names}[...], as in STATUS_NAMES[answer.status].",
+    ),
+    (
         r"AttributeError: '(?P<class>list|dict|tuple|set|str|bytes|bool|int|float|\w+GoalHandle|Publisher|Subscription"
         r"|Timer|Client|Service|ActionClient|ActionServer|RcutilsLogger)' object has no attribute '(?P<name>\w+)'",
         "{owner:The value before .{name}} is of the type {class} here, which has nothing called {name}.",
         "Look at the line that sets it: it may be another value than you mean. If it is the right one, compare the "
-        "name, letter by letter.",
+        "name, letter by letter. If {name} is a function of the notebook or the program, write it alone: {name}(...).",
     ),
     (
         r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>(?:create|declare|get)_\w+)'",
@@ -161,14 +180,16 @@ NAMES: Sequence[Row] = (
         r"|send_goal_async)'",
         "A node has no method {name}: its client has.",
         "Call it on what create_client(...) or ActionClient(...) gave you. Where a node keeps that in an attribute, "
-        "name both: if the attribute is called actions, write {owner:client}.actions.{name}(...).",
+        "name both: if the attribute is called actions, write {owner:client}.actions.{name}(...). If this line is in a "
+        "function that is given a node and a client, compare their order where you call it.",
     ),
     (
         rf"^{_OWN}",
         "{class} has nothing called {name} so far.",
         "If it is a value, set it in __init__, above the line that needs it, with self. before it there, too: without "
         "self. it is forgotten at the end of the method. If it is a method, compare its name and its indentation. If "
-        "it is a function outside of the class, call it by its name alone: {name}(...).",
+        "it is a variable of this function, leave out what is before the dot. If it is a function outside of the "
+        "class, call it by its name alone: {name}(...).",
     ),
     (
         rf"^ +.*\.result\.\w+.*{MARKS}AttributeError: '(?:function|method)' object has no attribute '(?P<name>\w+)'",
@@ -181,6 +202,11 @@ NAMES: Sequence[Row] = (
         r"AttributeError: '(?:builtin_function_or_method|function|method)' object has no attribute '(?P<name>\w+)'",
         "{owner:What is before .{name}} is a method without its parentheses, so it was not called.",
         "Write the parentheses after the method's name: {owner:self.get_logger}().{name}.",
+    ),
+    (
+        r"AttributeError: type object 'GoalStatus' has no attribute 'STATUS_REJECTED'",
+        "A goal that is rejected gets no status: there is no such constant.",
+        "Ask its handle in place of the status: `if not goal_handle.accepted:`.",
     ),
     (
         r"^AttributeError: (?:type object '\w+' has no attribute ')?(?P<name>\w+)'?(?:\.|$)",
@@ -229,9 +255,21 @@ NAMES: Sequence[Row] = (
         "Write the module before it, with a dot: rclpy.{name}(...).",
     ),
     (
+        r"^NameError: name '(?P<name>get_logger|get_clock|create_(?:publisher|subscription|timer|service|client))' "
+        r"is not defined",
+        "{name} is a method of the node.",
+        "Write self. before it: self.{name}. In a function there is no self: write the name that the node has there, "
+        "as in node.{name}.",
+    ),
+    (
         r"^NameError: name '(?P<name>sleep|monotonic)' is not defined",
         "{name} is a function of the module time.",
         "Write the module before it, with a dot: time.{name}(...).",
+    ),
+    (
+        rf"\bself\.(?P<name>sleep|monotonic)\b.*{MARKS}NameError: name 'self' is not defined",
+        "{name} is a function of the module time, and not of a node.",
+        "Write time.{name} in place of self.{name}.",
     ),
     (
         r"^NameError: name 'self' is not defined",
@@ -257,9 +295,21 @@ NAMES: Sequence[Row] = (
     ),
     (
         r"^NameError: name '(?P<name>request|response|message|msg)' is not defined",
-        "There is no {name} here: ROS hands it to a callback, under the name in the callback's first line.",
-        "Look between the parentheses after def, and use the name that is there, or write {name} there. In an action "
-        "the request is a part of the goal handle, as in goal_handle.request.",
+        "There is no {name} here: nothing above this line has set it.",
+        "In a callback, ROS hands it over between the parentheses after def: use the name that is there. In a client, "
+        "make the request yourself, request = AddTwoInts.Request(), and take the response from the future: "
+        "future.result(). In an action the request is a part of the goal handle, as in goal_handle.request.",
+    ),
+    (
+        rf"^ +class \w+\(node\).*{MARKS}NameError: name 'node' is not defined",
+        "The class of rclpy is called Node, with a capital letter.",
+        "Write Node between the parentheses.",
+    ),
+    (
+        r"^NameError: name '(?P<name>node|client)' is not defined",
+        "There is no {name} here.",
+        "In a method, the node itself is called self: write self in place of {name}, or self.{name} if it is a value "
+        "that the node keeps. In a function, make it above this line, or write it between the parentheses after def.",
     ),
     (
         r"^NameError: name 'goal_handle' is not defined",
@@ -282,6 +332,12 @@ NAMES: Sequence[Row] = (
         "request.{name}, or goal_handle.request.{name} in an action. Otherwise give {name} a value above that line.",
     ),
     (
+        r"^NameError: name '(?P<name>status|sequence)' is not defined",
+        "Python does not know {name}.",
+        "If {name} is a part of what the server has sent, write what it belongs to before it, with a dot, as in "
+        "answer.status or answer.result.sequence. Otherwise give {name} a value above that line.",
+    ),
+    (
         r"^NameError: name '(?P<name>\w+)' is not defined\. Did you mean: '(?P<meant>\w+)'",
         "Python does not know {name}, and knows {meant}.",
         "If that is what you mean, write {meant}. If {name} belongs to your node, write self.{name}. In a notebook, "
@@ -301,9 +357,10 @@ NAMES: Sequence[Row] = (
     (
         r"^NameError: name '(?P<name>\w+)' is not defined",
         "Python does not know {name}.",
-        "If it belongs to your node, as a value or a method, write self.{name}; in a function, which has no self, "
-        "write the node's name in place of self. In a notebook, run the cell that defines it, if there is one. In a "
-        "program, write or copy its definition into this file, above the line. If it is neither, compare the spelling.",
+        "If it belongs to your node, as a value or a method, write self.{name}, also in the line that sets it; in a "
+        "function, which has no self, write the node's name in place of self. In a notebook, run the cell that defines "
+        "it, if there is one. In a program, write or copy its definition into this file, above the line. If it is "
+        "neither, compare the spelling.",
     ),
 )
 """Python's words about names and attributes; the first row that fits wins."""

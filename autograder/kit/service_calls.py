@@ -6,15 +6,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import re2
-
 from autograder.kit import giving_up
 from autograder.kit.in_words import counted
-from autograder.kit.model import Advice, Finding
-from autograder.kit.texts_said import mentions, said_first_after
+from autograder.kit.model import Finding
+from autograder.kit.texts_said import mentions, not_filled_in, said_first_after
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part, Reference
+    from autograder.kit.model import Advice
 
 LATE = "the service comes late"
 BIASED = "the answers are surprising"
@@ -23,8 +22,6 @@ ABSENT = "there is no service"
 CALLED = (LATE, BIASED, EXTREME)
 """The parts in which the service answers."""
 
-_BRACES = re2.compile(r"\{[\pL_][^{}]*\}")
-"""The part of a text that an f-string would have filled in."""
 HANGS_AFTER = 8.0
 """Seconds without any event after which a client that has its answer is taken to hang."""
 
@@ -131,13 +128,7 @@ def new_words(part: Part, given: Event | None = None) -> list[str]:
 
 def braces_left(part: Part) -> Advice | None:
     """It said the name of a variable in braces where the sum was to be: Python fills them only in an f-string."""
-    line = next((line for line in new_words(part) if _BRACES.search(line)), None)
-    if line is None:
-        return None
-    return Advice(
-        f"Your program said “{line}”: Python did not fill in the braces, because there is no f in front of the string.",
-        'Write f directly before the quotation mark: f"...". Python then puts the number where the braces are.',
-    )
+    return not_filled_in(new_words(part))
 
 
 def reports_the_sum(evidence: Evidence) -> Finding:

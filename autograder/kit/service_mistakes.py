@@ -59,10 +59,13 @@ def _spins_and_awaits(evidence: Evidence) -> bool:
 AWAITS_IN_VAIN = mistake(
     "await_in_same_group",
     _spins_and_awaits,
-    "The service answered, and your node spins, but the code that awaits the answer is never resumed: it awaits inside "
-    "a callback of the same callback group that the answer needs.",
-    "Give the client a callback group of its own (ReentrantCallbackGroup or another MutuallyExclusive one), or go on "
-    "in a function that you give to the add_done_callback(...) of the future.",
+    "The service answered, and your node spins, but the code that waits for the answer never goes on: it waits for "
+    "rclpy.spin(...), which does not come back, or it awaits inside a callback of the same callback group that the "
+    "answer needs.",
+    "Outside of callbacks, write rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0) in place of "
+    "rclpy.spin(your_node): it comes back with the answer. In a callback, give the client a callback group of its own "
+    "(ReentrantCallbackGroup or another MutuallyExclusive one), or go on in a function that you give to the "
+    "add_done_callback(...) of the future.",
     certain=True,
 )
 
@@ -194,7 +197,8 @@ GAVE_UP_TOO_EARLY = mistake(
     ),
     "The service was there, or started a moment late, and your client had already given up (or it called before it had "
     "discovered the service).",
-    "Wait for the service with wait_for_service and a few seconds of patience before the first call.",
+    "Wait for the service before the first call, with a few seconds of patience: wait_for_service(timeout_sec=5.0). "
+    "Without its parentheses it waits for nothing.",
 )
 PATIENCE_NOT_KEPT = giving_up.patience_not_kept(ABSENT)
 
@@ -203,6 +207,12 @@ def _silent_end(evidence: Evidence) -> Advice | None:
     found = giving_up.hides_its_end(evidence.part(ABSENT), gives_up_in_time(evidence))
     if not found:
         return None
+    if (value := str(evidence.part(ABSENT).returned)) and re2.match(r"\w+(?:Error|Exception)\(", value):
+        return Advice(
+            f"When the service is not there, your function returns the exception {value}, and does not raise it.",
+            "Write raise in place of return before it: only an exception that is raised reaches who called your "
+            "function.",
+        )
     if found != giving_up.SILENT:
         return Advice(
             f"When the service is not there, your function returns {found}: who calls it takes that for the sum.",

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.evidence import spoken_by
+from autograder.kit.model import Advice
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -24,6 +25,8 @@ _A_TALKERS = re2.compile(r"\W*[Hh]ello,? [Ww]orld!?\W*\d+\W*")
 """The texts of the talkers of this course and of the official tutorials."""
 _TWO_WORDS = re2.compile(r"\b([a-z]+) ([a-z]+) \d{4}\b")
 """The special parts of the judge's texts, see :func:`autograder.kit.recipes.subscriber.random_texts`."""
+_BRACES = re2.compile(r"\{[\pL_][^{}]*\}")
+"""The part of a text that an f-string would have filled in."""
 _BYTE = ("\\x00", "\0")
 """A zero byte, as Python shows it or as it is. A serialized text has them before and behind it."""
 MUCH = 5
@@ -55,6 +58,17 @@ def said_first_after(event: Event | None, part: Part) -> list[str]:
     later, everything = part.said(after=event), part.said()
     before = everything[: len(everything) - len(later)]
     return [line for line in later if line not in before]
+
+
+def not_filled_in(lines: Sequence[str]) -> Advice | None:
+    """The advice for the first line with the name of a variable in braces: Python fills them only in an f-string."""
+    line = next((line for line in lines if _BRACES.search(line)), None)
+    if line is None:
+        return None
+    return Advice(
+        f"Your program said “{line}”: Python did not fill in the braces, because there is no f in front of the string.",
+        'Write f directly before the quotation mark: f"...". Python then puts the value where the braces are.',
+    )
 
 
 def has_much_of(line: str, text: str) -> bool:

@@ -144,7 +144,8 @@ def one_call_only(seen: Client, expected: Client) -> Advice | None:
     how_often = "once" if len(requests(part)) == 1 else "not at all"
     return Advice(
         f"Your client called the service {how_often}; the task asks for two calls.",
-        "Call once with a and b, then again with the first answer and c.",
+        "Call once with a and b, then again with the first answer and c. Lines below a raise or a return, and indented "
+        "like it, are never reached.",
     )
 
 

@@ -24,7 +24,7 @@ from exercise_1_3._cancel_words import HAS_SUCCEEDED, false_claim, says_canceled
 
 from autograder.kit import goal_mistakes
 from autograder.kit.common_mistakes import only_if_ended
-from autograder.kit.crashes import meant, what_and_where
+from autograder.kit.crashes import last_line_of, meant, what_and_where
 from autograder.kit.hangs import HANGS
 from autograder.kit.in_words import counted
 from autograder.kit.model import Advice, Mistake
@@ -124,8 +124,9 @@ def cancel_missing(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         "Your client sent its goal and got its feedback, but it never asked to cancel.",
-        "Count in the feedback callback, and at the third message call cancel_goal_async() of the goal handle. The "
-        "handle is the answer to the goal: keep it.",
+        "Count in the feedback callback, once for each message, compare the count with a number, as in "
+        "`if self.feedback_count == 3:`, and call cancel_goal_async() of the goal handle there. The handle is the "
+        "answer to the goal: keep it.",
     )
 
 
@@ -192,7 +193,13 @@ def status_not_reported(evidence: Evidence) -> Advice | None:
         return Advice(
             "Your client asked to cancel, but it never asked for the result, so it cannot know how the goal ended.",
             "Call get_result_async() of the goal handle once the goal is accepted, and read the status of its result() "
-            "when that future is done.",
+            "when that future is done. Leave out an rclpy.spin(...) before that: it does not come back.",
+        )
+    if part.first("result") and last_line_of(part.traceback).startswith("TimeoutError"):
+        return Advice(
+            f"The server sent the result, and your client ended without it: {last_line_of(part.traceback)}.",
+            "Where on_feedback, or another callback, waits or spins, leave that out: it takes the node away from the "
+            "spin that waits for the result. Go on in a function that you give to the future's add_done_callback(...).",
         )
     return Advice(
         "The goal ended with the status CANCELED (5), but your client said neither its name nor its number after it "

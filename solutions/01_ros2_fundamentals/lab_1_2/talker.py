@@ -97,8 +97,9 @@ talker.knows(
     "counter_stuck",
     lambda seen, _: len(seen.counters) >= 3 and len(set(seen.counters)) == 1,
     "Every message carries the number {seen.counters[0]}.",
-    "Add 1 to your counter at the end of the method, as in self.count += 1, and put it into the string with an "
-    "f-string. Without self. in front, another variable is changed, not the node's.",
+    "In the method that the timer calls, make the string anew, with the counter in an f-string, and add 1 to the "
+    "counter below that, as in self.count += 1, with no return above it. Set it to 0 in __init__ only. Without self. "
+    "in front, another variable is changed, not the node's.",
     certain=True,
 )
 
@@ -110,10 +111,11 @@ def wrong_text(seen: Publisher, expected: Publisher) -> Advice | None:
     odd = next((form for form in seen.templates if form not in expected.templates), None)
     if odd is None:
         return None
-    if blank := re2.search(r"\{[^{}]*\}|%[ds]", finding.seen):
+    if blank := re2.search(r"\{[^{}]*\}|%[ds]|\(?\bself\.\w+\)?", finding.seen):
         return Advice(
             f"Your talker says {finding.seen}: {blank[0]} is sent as it is, Python put no number in its place.",
-            "Put an f in front of the opening quotation mark, as in f'Hello, world! {self.count}'.",
+            "Put an f in front of the opening quotation mark, and braces around what Python is to fill in, as in "
+            "f'Hello, world! {self.count}'.",
         )
     if re2.search(r"\d[.,]\d", finding.seen):
         return Advice(
@@ -169,7 +171,8 @@ def counter_step(seen: Publisher, _: Publisher) -> Advice | None:
         )
     return Advice(
         f"{came} The numbers must go up by one with each message.",
-        "Count once for each published message: one line as self.count += 1 at the end of the method, and one timer.",
+        "Count once for each published message: one line as self.count += 1 at the end of the method, no loop, and one "
+        "timer.",
     )
 
 

@@ -96,6 +96,7 @@ client.knows(
     late=True,
     says="Your client never called the service.",
     next_step="Make a request, fill a and b, and send it with call_async. "
+    "Lines below a raise or a return, and indented like it, are never reached. "
     "What you add up yourself is not the answer of the server.",
 )
 def no_call(seen: Client, _: Client) -> bool:

@@ -32,6 +32,8 @@ EXERCISE = Programs(
         "Then it runs `add_server`, calls it, and presses <kbd>Ctrl</kbd>+<kbd>C</kbd>.": "ctrl_c",
         "once there is none: the client then does what step 3 says.": "add_client ctrl_c",
         "if it still spins after its report, <kbd>Ctrl</kbd>+<kbd>C</kbd> has to end it.": "ctrl_c",
-        "A program has its points only if its node does all that the steps above ask of it.": "add_server add_client",
+        "A program gets its points only if its node does everything that the steps above ask for.": (
+            "add_server add_client"
+        ),
     },
 )

@@ -200,11 +200,19 @@ def wrong_feedback(seen: Evidence, _: Evidence) -> Advice | None:
             "Call publish_feedback(...) of the goal handle inside the loop, in each turn, right after you have "
             "appended the number and before you sleep.",
         )
-    wrong = [text for one in told if (text := feedback_objection(seen, one))]
+    wrong = [(one, text) for one in told if (text := feedback_objection(seen, one))]
     if not wrong:
         return None
+    one, text = wrong[0]
+    longest, order = max(map(len, one.partials), default=0), int(one.order or 0)
+    if longest > max(2, order + 1):
+        return Advice(
+            f"The feedback for order {order} goes up to {longest} numbers; the sequence of this order has {order + 1}.",
+            "The list begins with two numbers, so the loop has fewer turns than the order says: "
+            "`while len(numbers) <= goal_handle.request.order:` ends it in time.",
+        )
     return Advice(
-        f"The feedback does not grow by one number each time ({wrong[0]}).",
+        f"The feedback does not grow by one number each time ({text}).",
         "Publish once for each number that you append, with all numbers found so far in partial_sequence.",
     )
 
@@ -280,7 +288,7 @@ EXERCISE = server.exercise(
         "publish the list as feedback": "feedback",
         "sleep for `PERIOD` seconds, in place of hard work.": "cancel",
         "After the loop say how the goal ended: call `canceled()` or `succeed()`.": "sequence cancel",
-        "Each of two goals has to end with its own sequence, side by side or one after the other.": "two",
+        "Each of two goals has to end with its own sequence": "two",
         "Let your node offer the action `fibonacci`.": "action",
     },
 )
