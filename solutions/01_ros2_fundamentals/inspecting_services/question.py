@@ -405,7 +405,6 @@ EXERCISE = question.exercise(
         "returns the name as soon as it sees a service of the type": "late other",
         "After `patience_sec` seconds without such a service it raises `TimeoutError`.": "none",
         "You may also raise another exception, or log that there is no such service and return `None`.": "none",
-        "Without such a service it must say so and end within 12 seconds, "
-        "or say at least every three seconds that it still looks.": "none",
+        "it must say so and end within 12 seconds, or say at least every three seconds that it still looks.": "none",
     },
 )
