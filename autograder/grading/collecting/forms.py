@@ -69,18 +69,22 @@ def read_path(parts: Sequence[str], form: str, is_notebook: Callable[[str], bool
 
 def read_at(parts: Sequence[str], place: int, form: str, is_notebook: Callable[[str], bool]) -> Found | None:
     """The same by one name of the path alone; its accents are composed."""
+    is_folder = place < len(parts) - 1
     found = _READERS[form](parts, place)
     if found is None or form not in ("canvas", "google"):
         return found
+    if form == "google" and is_folder:
+        return None
     if form == "google" and is_notebook(found.identity.name):
         found = _with_the_name_last(found)
     if found.file != parts[-1] and is_notebook(parts[-1]):
         return None  # lab_1_2_3.ipynb and "lab_1_2 - Copy.ipynb" are a student's own names
-    # lab_1_2_submissions, lab_1_2_ada_attempt_...: Canvas counts the people and the files of its whole site. Nobody is
-    # both among the first nine people there and has sent one of the first nine files; no folder has so small a number.
-    if form == "canvas" and place < len(parts) - 1:
-        return found if found.order >= 100 else None
-    if form == "canvas" and len(found.identity.number) == 1 and found.order < 10:
+    if form == "canvas" and is_folder:
+        return found if found.order >= 100 else None  # lab_1_2_submissions is an instructor's
+    # lab_1_2_ada_attempt_...: Canvas writes names in small letters, and counts the people and files of its whole site:
+    # nobody is both among its first nine people and has sent one of its first nine files.
+    login, number = found.identity.login, found.identity.number
+    if form == "canvas" and (login != login.lower() or (len(number) == 1 and found.order < 10)):
         return None if _READERS["blackboard"](parts, place) else found
     return found
 
@@ -193,7 +197,7 @@ def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader
     Args:
         pattern: The name's pattern; its groups ``file``, ``when``, ``order`` and ``late`` are those of :class:`Found`.
         who: Tells from the groups the student, and the students of all ways to read the name.
-        says_file: Whether a name with the group ``file`` is a file's, and one without it a folder's.
+        says_file: Whether a name without the group ``file`` is a folder's.
     """
     expression = re2.compile(pattern)
 
@@ -201,7 +205,7 @@ def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader
         match = expression.match(parts[place])
         found = match.groupdict() if match else {}
         is_file = place == len(parts) - 1
-        if not match or (says_file and (found.get("file") is None) == is_file):
+        if not match or (says_file and is_file and found.get("file") is None):
             return None
         identity, readings = who(found)
         file, time = found.get("file") if is_file else parts[-1], found.get("when") or ""
@@ -268,7 +272,7 @@ _READERS = {
         _canvas,
     ),
     # Ada Lovelace - lab_1_2.ipynb
-    "google": _in_one_part(r"^(?P<name>[^/]*?\S) - (?P<file>.+)$", _google, says_file=True),
+    "google": _in_one_part(r"^(?P<name>[^/]*?\S) - (?P<file>.+)$", _google),
     "github": _github,
     # assignment_123_export/submission_456/lab_1_2.ipynb
     "gradescope": _in_one_part(r"^submission_(?P<number>\d+)$", _gradescope, says_file=True),

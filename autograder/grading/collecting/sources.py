@@ -30,7 +30,7 @@ _EXPORT = re2.compile(r"^assignment_\d+_export(?: ?\(\d+\)|-\d+)?$")
 _SUBMISSION = re2.compile(r"^submission_\d+$")
 # Names of downloads that look like those of Canvas's files: gradebook_ROS_101_2_2025-10-03-14-05-06.zip, as Blackboard
 # makes them, and lab_1_2_submissions.zip.
-_DOWNLOAD = re2.compile(r"^(?:gradebook_.*_\d{4}(?:-\d\d){5}(?: ?\(\d+\))?|\D+_\d_\d_\D.*)\.zip$")
+_DOWNLOAD = re2.compile(r"^(?:gradebook_.*_\d{4}(?:-\d\d){5}(?: ?\(\d+\))?|\D+_\d_\d_[^_]+)\.zip$")
 
 
 @dataclass(frozen=True)
@@ -72,13 +72,15 @@ class Source:
 def own_of(paths: Sequence[Path], student_of: StudentOf) -> set[Path]:
     """Those of the files and folders of one command that are one student's own."""
     beside = {path: path.absolute().parent for path in paths}
-    loose = set(filter(_is_loose, paths))
-    with_files = {beside[path] for path in loose}
-    downloads = {path for path in paths if _DOWNLOAD.match(path.name) and beside[path] not in with_files}
-    by_system = set(filter(student_of.has_form, paths)) - downloads
+    by_system, loose = set(filter(student_of.has_form, paths)), set(filter(_is_loose, paths))
+    # Beside a student's own file, such a name is one that a student may have chosen.
+    downloads = {path for path in paths if _DOWNLOAD.match(path.name)}
+    downloads -= {
+        path for path in downloads if beside[path] in {beside[one] for one in (by_system | loose) - downloads}
+    }
     called = (loose | set(filter(student_of.is_called, paths))) - downloads - by_system
     chosen = {beside[path] for path in called}
-    return by_system | {path for path in paths if beside[path] in chosen}
+    return (by_system - downloads) | {path for path in paths if beside[path] in chosen}
 
 
 def source_of(path: Path, *, is_own: bool) -> Source:

@@ -186,17 +186,28 @@ def test_honest_names_of_one_system_are_not_read_as_anothers(
 def test_a_download_that_is_called_as_a_file_of_canvas_is_one(
     klass: TinyClass, tmp_path: Path, name: str
 ) -> None:
-    file = "Lab_ada_attempt_2025-10-03-14-05-06_lab_1_2.ipynb"
-    download = write_zip(tmp_path / name, {file: work(klass)})
-    assert placed(collect(klass.path, [download])).keys() == {"ada"}
-    (tmp_path / "d").mkdir()
-    beside = folder(tmp_path / "d", {"zusezoe_105_9003_lab_1_2.ipynb": work(klass, 1)})
-    write_zip(
-        beside / "gradebook_777_5003_x_2025-10-03-14-05-06.zip", {file.replace("ada", "ben"): work(klass)}
-    )
-    assert placed(collect(klass.path, sorted(beside.iterdir()))).keys() == {"zoe"}, (
-        "a student's, called Gradebook"
-    )
+    files = {"Lab_ada_attempt_2025-10-03-14-05-06_lab_1_2.ipynb": work(klass)}
+    assert placed(collect(klass.path, [write_zip(tmp_path / name, files)])).keys() == {"ada"}
+
+
+@pytest.mark.parametrize(
+    ("hers", "others"),
+    [
+        ("gradebook_777_5003_x_2025-10-03-14-05-06.zip", "zusezoe_105_9003_x.zip"),
+        ("lab_1_2_mal_attempt_2025-10-03-14-05-06_x.zip", "lab_1_2_zoe_attempt_2025-10-03-14-05-06_x.zip"),
+    ],
+)
+def test_beside_a_students_archive_no_name_makes_another_a_download(
+    klass: TinyClass, tmp_path: Path, hers: str, others: str
+) -> None:
+    forged = {"Lab_ben_attempt_2025-10-03-14-05-06_lab_1_2.ipynb": work(klass)}
+    sources = [
+        write_zip(tmp_path / hers, forged),
+        write_zip(tmp_path / others, {"lab_1_2.ipynb": work(klass)}),
+    ]
+    report = collect(klass.path, sources)
+    assert placed(report).keys() == {"zoe"}
+    assert placed(collect(klass.path, sources[:1])).keys() == ({"ben"} if "gradebook" in hers else set())
 
 
 def test_googles_names_say_whose_a_file_is_only_where_the_instructor_says_so(
