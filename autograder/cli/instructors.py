@@ -89,7 +89,7 @@ def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
     "form",
     type=click.Choice(["moodle", "canvas", "blackboard", "brightspace", "google", "github", "gradescope"]),
     default=None,
-    help="Which system it is from; told from the names where not given.",
+    help="Which system it is from, where names do not show it. Google's names are read only with it.",
 )
 @click.option(
     "--times",

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import functools
 import io
+import itertools
 import os
 import stat
 import zipfile
@@ -203,7 +204,9 @@ def _of_zip(outer: File, data: BinaryIO, largest_list: int, room: Room | None = 
         reason = _reason_against(entry, name, parts)
         # The archive stays open as long as any of its files may be read.
         read = _refusing(reason) if reason else functools.partial(_read_entry, archive, entry)
-        parts = (name[:_LONGEST_NAME],) if reason in (_LEADS_OUT, _TOO_LONG) else parts
+        if reason in (_LEADS_OUT, _TOO_LONG):  # the system's own folders in front of it stay what they are
+            above = itertools.takewhile(lambda part: part != "..", parts[:-1][:2])
+            parts = (*(part[:_LONGEST_NAME] for part in above), name[:_LONGEST_NAME])
         if outer.parts:
             yield File(outer.source, outer.parts, read, (*outer.inner, *parts))
         else:

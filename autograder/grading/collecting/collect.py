@@ -10,12 +10,12 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.collecting.archives import EMPTY, File, NotTaken, Room, files_of, is_zip, within
+from autograder.grading.collecting.archives import File, NotTaken, Room, files_of, is_zip, within
 from autograder.grading.collecting.assignment_of import AssignmentOf, NoTarget, is_notebook, stem_of
-from autograder.grading.collecting.forms import is_download, plain, read_alone, read_path
-from autograder.grading.collecting.lists import GRADESCOPE, Entry, is_unread, read_list
+from autograder.grading.collecting.lists import GRADESCOPE, LARGEST_OF_GRADESCOPE, Entry, is_unread, read_list
 from autograder.grading.collecting.outcomes import CollectReport, Outcome, State, WaitingList
 from autograder.grading.collecting.records import Collected, CollectedRecords
+from autograder.grading.collecting.sources import Source, note_on, own_of, source_of
 from autograder.grading.collecting.student_of import Owners, StudentOf
 from autograder.grading.collecting.submitted_files import Candidate, Placing
 from autograder.grading.errors import GradingError, check_known, course_command
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 _PAGES = ("index.html", GRADESCOPE)
 """Files that an LMS itself adds to a download."""
 _NOBODY = Owners(None)
+_MOST_NAMED = 5
 _CAME = (State.PLACED, State.UNCHANGED, State.EARLIER)
 _OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".tgz", ".tar", ".bz2", ".xz", ".zst")
 
@@ -97,37 +98,37 @@ class _Collecting:
         self._form = form
         self._handed_in = self._in_utc(handed_in)
         self._roster: Roster = read_roster(directory)
-        self._student_of = StudentOf(self._roster)
         self._assignment_from = AssignmentOf(directory, assignment)
-        self._is_notebook = self._assignment_from.is_notebook
+        self._student_of = self._knowing([], [])
         self._candidates: list[Candidate] = []
         self._outcomes: list[Outcome] = []
-        self._handed_in_alone: set[Path] = set()
         self._unread: list[str] = []
 
     def run(self, sources: Sequence[Path], times: Sequence[Path]) -> CollectReport:
         """Read everything that is there, put it in its place, and write down what has none."""
-        self._handed_in_alone = {source for source in sources if self._is_handed_in(source)}
-        downloads = {
-            source: list(files_of(source, opened=source not in self._handed_in_alone)) for source in sources
-        }
-        self._learn(downloads, times)
-        for source, files in downloads.items():
-            depth = _depth(files)
-            self._take([file for file in files if not self._is_list(source, file, depth)], source, depth)
+        read = self._learn(sources, times)
+        for source in read:
+            self._take(source)
         placing = Placing(self._directory)
         self._outcomes += placing.place(self._candidates)
         work = {(one.student, one.assignment) for one in self._directory.submissions()[0]}
         asked = [key for key in sorted(work) if self._assignment in ("", key[1])]
         told = (
-            (student, name, self._in_utc(self._student_of.time_of(student, name))) for student, name in asked
+            (student, name, self._in_utc(self._student_of.time(student, name))) for student, name in asked
         )
         noted = placing.note_times((student, name, when) for student, name, when in told if when is not None)
         notes = [f"{student}/{name} was handed in {when:%Y-%m-%d %H:%M} UTC" for student, name, when in noted]
         notes += [
             f"{name} is in the list of times, and nobody is called so" for name in self._student_of.strangers
         ]
-        notes += [note for source, files in downloads.items() if (note := self._taken_for(source, files))]
+        if several := self._student_of.of_several_times:
+            named = ", ".join(several[:_MOST_NAMED]) + (" …" if several[_MOST_NAMED:] else "")
+            notes.append(
+                f"lists have several times for {named}, and nothing says which is of what, so none counts: collect "
+                "each assignment in a command of its own, with its list"
+            )
+        notes += self._roster.excused_from_nothing(self._directory.assignments(), self._roster.students)
+        notes += [note for one in read if (note := note_on(one, self._student_of, self._form))]
         came = {(one.student, one.assignment) for one in self._outcomes if one.state in _CAME}
         came |= {(student, "") for student, _ in came}
         self._outcomes = [
@@ -162,15 +163,14 @@ class _Collecting:
             tuple(notes),
         )
 
-    def _learn(self, downloads: dict[Path, list[File]], times: Sequence[Path]) -> None:
-        """Read the lists: those that were named, and the one that Gradescope puts into its export."""
-        entries: list[Entry] = []
-        told: list[Entry] = []
-        for source, files in downloads.items():
-            depth = _depth(files)
-            for file in files:
-                if self._is_list(source, file, depth):
-                    entries += self._entries(file)
+    def _learn(self, paths: Sequence[Path], times: Sequence[Path]) -> list[Source]:
+        """Read the lists, those that were named and the one of Gradescope's export; give back all else."""
+        own = own_of(paths, self._student_of)
+        tables = [path for path in paths if path.suffix.lower() == ".csv" and path.is_file()]
+        # In Google's names nothing tells a list of the instructor's from a student's.
+        lists = [path for path in tables if path not in own and self._form != "google"]
+        entries = [entry for path in lists for file in files_of(path) for entry in self._entries(file)]
+        told = [one for one in entries if not one.lms]
         for path in times:
             try:
                 found = read_list(path.name, read_bytes(path))
@@ -182,56 +182,28 @@ class _Collecting:
                     "handed_in, and assignment where it is about several; or it is a list of the LMS's own."
                 )
             told += found
-        told += [one for one in entries if not one.lms]
+        self._student_of = self._knowing(entries, told)
+        others = [path for path in paths if path not in lists]
+        own = {*own_of(others, self._student_of), *tables}
+        sources = [source_of(path, is_own=path in own) for path in others]
+        for source in sources:
+            for file in source.files:
+                if source.is_list(file, self._form):
+                    entries += self._entries(file)
         self._unread += [one.time for one in (*entries, *told) if is_unread(one)]
-        self._student_of = StudentOf(self._roster, entries, told)
+        self._student_of = self._knowing(entries, told)
+        return sources
 
-    def _is_list(self, source: Path, file: File, depth: int) -> bool:
-        """True if a file is a list of the instructor's: no student's of that name is ever opened as one."""
-        if file.name == GRADESCOPE and len(file.parts) <= depth:
-            return read_path(file.parts, "gradescope", self._is_notebook) is None
-        is_csv = source.suffix.lower() == ".csv" and file.parts == (source.name,)
-        return is_csv and source not in self._handed_in_alone
-
-    def _is_handed_in(self, source: Path) -> bool:
-        """True if a file that the instructor names is one student's: it has a student's name, or one that systems give.
-
-        As with ``download/*``, or what came by mail: who hands in an archive or a table must not have it read as the
-        instructor's, in which names say whose work it is. Google's form is that of many other names, as in
-        ``Grades - ROS 2.csv``: there, somebody of the class must be meant.
-        """
-        if not source.is_file() or is_download(source.name):
-            return False
-        by_a_system = any(way.identity.lms not in ("", "google") for way in self._ways(source))
-        return by_a_system or self._is_known(source)
-
-    def _ways(self, source: Path) -> list[Found]:
-        return read_alone(source, self._is_notebook)
-
-    def _is_known(self, source: Path) -> bool:
-        return any(map(self._student_of.find, self._ways(source)))
-
-    def _taken_for(self, source: Path, files: Sequence[File]) -> str:
-        """What a file was taken for, where its name leaves that open; empty where nobody has to know."""
-        if not files:
-            return f"{source} {EMPTY}"
-        suffix = source.suffix.lower()
-        if source not in self._handed_in_alone and suffix == ".zip" and not self._form:
-            return (
-                f"{source} was taken for a download, in which names say whose work it is: if one student sent it, "
-                "rename it to the student's id"
-            )
-        is_sure = self._roster.students and self._is_known(source)
-        if source in self._handed_in_alone and suffix in (".zip", ".csv") and not is_sure:
-            return (
-                f"{source} was taken for one student's work, as a system gives it such a name: if it is a download "
-                "or a list, rename it to submissions.zip or list.csv"
-            )
-        return ""
+    def _knowing(self, entries: list[Entry], told: list[Entry]) -> StudentOf:
+        """Who is who, by the roster and by lists."""
+        return StudentOf(self._roster, self._assignment_from.is_notebook, self._form, entries, told)
 
     def _entries(self, file: File) -> list[Entry]:
         try:
-            found = read_list(file.name, file.read())
+            data = file.read()
+            if file.name == GRADESCOPE and len(data) > LARGEST_OF_GRADESCOPE:
+                raise NotTaken(f"Gradescope's list may have {LARGEST_OF_GRADESCOPE / 1e6:.0f} MB")
+            found = read_list(file.name, data)
         except NotTaken as error:
             self._refuse(file, str(error))
             return []
@@ -247,39 +219,29 @@ class _Collecting:
             self._outcomes.append(Outcome(file.label, State.BESIDE, "it was read as a list"))
         return found or []
 
-    def _take(self, files: list[File], source: Path, depth: int) -> None:
-        paths = [file.parts for file in files]
-        form, *rivals = (
-            [self._form] if self._form else self._student_of.likely_forms(paths, depth, self._is_notebook)
-        )
-        by_its_own_name = self._ways(source) if source in self._handed_in_alone else []
+    def _take(self, source: Source) -> None:
         rooms: dict[tuple[str, ...], Room] = defaultdict(Room)
-        for file in files:
-            found = read_path(file.parts, form, self._is_notebook) if form and file.parts else None
-            if found and (other := self._student_of.rival(file.parts, found, rivals, self._is_notebook)):
-                names = " and as ".join(one.capitalize() for one in (form, other))
-                self._refuse(
-                    file, f"its name can be read as {names} gives it, of another student or time: say --from"
-                )
+        levels = source.levels
+        for file in source.files:
+            if source.is_list(file, self._form):
                 continue
-            in_folders = plain(file.parts)[:depth] if file.parts else []
-            ways = [found] if found else [*in_folders, *by_its_own_name]
-            known = (owners for way in ways if (owners := self._student_of.find(way)) is not None)
-            owners = next(known, Owners(found))
+            owners = self._student_of.owners(file.parts, levels, is_alone=source.is_own)
             try:
                 data = file.read()
             except NotTaken as error:
                 self._not_taken(file, str(error), owners)
                 continue
             if not is_zip(file.name, data):
-                self._take_file(file, data, owners, source)
-                continue
-            ids = tuple(one.id for students in owners.members for one in students)
-            for inner, held in within(file, data, rooms[ids or file.parts[:depth]]):
-                if isinstance(held, NotTaken):
-                    self._not_taken(inner, str(held), owners)
-                else:
-                    self._take_file(inner, held, owners, source)
+                self._take_file(file, data, owners, source.download)
+            elif reason := self._student_of.reason_against(owners):
+                self._refuse(file, reason, owners)
+            else:
+                ids = tuple(one.id for students in owners.members for one in students)
+                for inner, held in within(file, data, rooms[ids]):
+                    if isinstance(held, NotTaken):
+                        self._not_taken(inner, str(held), owners)
+                    else:
+                        self._take_file(inner, held, owners, source.download)
 
     def _not_taken(self, file: File, reason: str, owners: Owners) -> None:
         """Say why a file cannot be read."""
@@ -288,7 +250,7 @@ class _Collecting:
         else:
             self._outcomes.append(self._soft(file, reason, owners))
 
-    def _take_file(self, file: File, data: bytes, owners: Owners, source: Path) -> None:
+    def _take_file(self, file: File, data: bytes, owners: Owners, download: Path) -> None:
         """Take a file, or say why not."""
         if not is_notebook(file.name, data):
             self._outcomes.append(self._no_notebook(file, owners))
@@ -297,9 +259,9 @@ class _Collecting:
         if found is None or reason:
             self._refuse(file, reason, owners)
         else:
-            self._take_notebook(file, data, owners, found, source)
+            self._take_notebook(file, data, owners, found, download)
 
-    def _take_notebook(self, file: File, data: bytes, owners: Owners, found: Found, source: Path) -> None:
+    def _take_notebook(self, file: File, data: bytes, owners: Owners, found: Found, download: Path) -> None:
         """Note a notebook for each of its students, or say why it is for no assignment."""
         # Of what is in a student's own zip the name says which notebook it is, though not whose.
         name = file.name if file.inner else found.file
@@ -328,11 +290,21 @@ class _Collecting:
             )
             number = stem_of(name)[1]
             self._candidates.append(
-                Candidate(student.id, assignment, collected, found, source, packed, number, is_named)
+                Candidate(
+                    student.id,
+                    assignment,
+                    collected,
+                    found,
+                    download,
+                    packed,
+                    number,
+                    is_named,
+                    owners.is_sure,
+                )
             )
 
     def _when(self, way: Found, student: str, assignment: str) -> datetime | None:
-        when = way.when or self._student_of.time(way.identity, student, assignment)
+        when = way.when or self._student_of.time(student, assignment, way.identity)
         return self._in_utc(when) or self._handed_in
 
     def _no_notebook(self, file: File, owners: Owners) -> Outcome:
@@ -386,11 +358,3 @@ def _alone(one: Outcome) -> Outcome:
     """The outcome of a file that came without its student's notebook of that assignment: it needs a place."""
     reason = f"{one.reason}: {one.what_to_do}" if one.what_to_do else one.reason
     return replace(one, state=State.NOT_PLACED, reason=reason)
-
-
-def _depth(files: Sequence[File]) -> int:
-    """The number of folders, from the top, with names that may say a student: two where all files are in one folder.
-
-    Below them, students have chosen the names.
-    """
-    return 2 if len({file.parts[0] for file in files if file.parts}) == 1 else 1

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import itertools
 import unicodedata
 from dataclasses import dataclass, replace
 from datetime import datetime
@@ -16,10 +15,11 @@ from autograder.regular_files import name_as_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
-    from pathlib import Path
 
     _Who = Callable[[Mapping[str, str]], tuple[Identity, tuple[Identity, ...]]]
     """Tells from the groups of a pattern the student, and the student of each way to read the name."""
+    _Reader = Callable[[Sequence[str], int], "Found | None"]
+    """Tells the facts in the name at one place of a path."""
 
 _MOST_MARKS = 10
 """In a name that can be read in several ways; no real name has more."""
@@ -28,7 +28,6 @@ _COPY_OF = "Copy of "
 _MARK = r" ?\((\d{1,6})\)|-(\d{1,6})| - [Cc]opy"
 _MARKED = re2.compile(rf"^(?P<base>.+?)(?P<marks>(?:{_MARK})+)$")
 _MARKS = re2.compile(_MARK)
-_DOWNLOADS = re2.compile(r"^gradebook_.*\.zip$|-\d{8}T\d{6}Z(?:-\d+)+(?: \(\d+\))?\.zip$")
 
 
 @dataclass(frozen=True)
@@ -56,7 +55,7 @@ class Found:
 
 
 def read_path(parts: Sequence[str], form: str, is_notebook: Callable[[str], bool]) -> Found | None:
-    """The facts in a path of the form of one LMS; None where it is not of that form.
+    """The facts in a path of the form of one LMS, by its topmost name of that form; None where it has none.
 
     Args:
         parts: The path's folders and the file, of which none leads upwards.
@@ -64,11 +63,29 @@ def read_path(parts: Sequence[str], form: str, is_notebook: Callable[[str], bool
         is_notebook: Whether a file of this name is a notebook of the class, for forms that other names resemble.
     """
     parts = [unicodedata.normalize("NFC", part) for part in parts]
-    found = _READERS[form](parts)
-    if found and form == "google" and is_notebook(found.identity.name):
+    ways = (read_at(parts, place, form, is_notebook) for place in range(len(parts)))
+    return next((way for way in ways if way is not None), None)
+
+
+def read_at(parts: Sequence[str], place: int, form: str, is_notebook: Callable[[str], bool]) -> Found | None:
+    """The same by one name of the path alone; its accents are composed."""
+    is_folder = place < len(parts) - 1
+    found = _READERS[form](parts, place)
+    if found is None or form not in ("canvas", "google"):
+        return found
+    if form == "google" and is_folder:
+        return None
+    if form == "google" and is_notebook(found.identity.name):
         found = _with_the_name_last(found)
-    if found and form in ("canvas", "google") and found.file != parts[-1] and is_notebook(parts[-1]):
+    if found.file != parts[-1] and is_notebook(parts[-1]):
         return None  # lab_1_2_3.ipynb and "lab_1_2 - Copy.ipynb" are a student's own names
+    if form == "canvas" and is_folder:
+        return found if found.order >= 100 else None  # lab_1_2_submissions is an instructor's
+    # lab_1_2_ada_attempt_...: Canvas writes names in small letters, and counts the people and files of its whole site:
+    # nobody is both among its first nine people and has sent one of its first nine files.
+    login, number = found.identity.login, found.identity.number
+    if form == "canvas" and (login != login.lower() or (len(number) == 1 and found.order < 10)):
+        return None if _READERS["blackboard"](parts, place) else found
     return found
 
 
@@ -83,40 +100,20 @@ def base_and_number(stem: str) -> tuple[str, int]:
     return stem, number
 
 
-def plain(parts: Sequence[str]) -> list[Found]:
-    """The facts in a path with folders that are students' ids or names, or end with a user name of GitHub's.
+def plain(name: str, file: str) -> Found:
+    """The facts in a name that is a student's id or name, or ends with a user name of GitHub's.
 
     Repositories that were downloaded one by one are called ``lab-1-2-adalove-main``; Classroom Assistant makes
     folders with user names.
     """
-    parts = [unicodedata.normalize("NFC", part) for part in parts]
-    found = Found(Identity(), parts[-1])
-    ways = []
-    for part in parts[:-1]:
-        bare = without_branch(part)
-        repository = [Identity("github", number=login) for login in (bare, *_ends(bare, "-"))]
-        ways.append(replace(found, readings=(Identity(login=part, name=part), *repository)))
-    return ways
+    bare = without_branch(name)
+    repository = (Identity("github", number=login) for login in (bare, *_ends(bare, "-")))
+    return Found(Identity(), file, readings=(Identity(login=name, name=name), *repository))
 
 
 def without_branch(repository: str) -> str:
     """The name of a repository, without the branch that GitHub adds to it in a download."""
     return next((repository.removesuffix(end) for end in _BRANCHES if repository.endswith(end)), repository)
-
-
-def read_alone(file: Path, is_notebook: Callable[[str], bool]) -> list[Found]:
-    """The ways to read the name of a file that an instructor names: as a system gives it, or called as a student is."""
-    ways = (read_path((file.name,), form, is_notebook) for form in FORMS)
-    return [way for way in ways if way is not None] + plain((file.stem, file.name))
-
-
-def is_download(name: str) -> bool:
-    """True of an archive with a name that a system gives to a download, and that looks like one of a student's file.
-
-    Google Drive: ``ROS 2 - Lab 1.2-20251003T140506Z-1-001.zip``; Blackboard:
-    ``gradebook_ROS_lab_1_2_2025-10-03-14-05-06.zip``.
-    """
-    return _DOWNLOADS.search(name) is not None
 
 
 def read_time(text: str) -> datetime | None:
@@ -194,48 +191,47 @@ def _gradescope(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...
     return Identity("gradescope", found["number"]), ()
 
 
-def _in_one_part(
-    pattern: str, who: _Who, *, where: slice = slice(None), says_file: bool = False
-) -> Callable[[Sequence[str]], Found | None]:
+def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader:
     """A reader of names in which one folder, or the file, has all facts.
 
     Args:
         pattern: The name's pattern; its groups ``file``, ``when``, ``order`` and ``late`` are those of :class:`Found`.
         who: Tells from the groups the student, and the students of all ways to read the name.
-        where: The parts of a path that may have such a name.
-        says_file: Whether a name with the group ``file`` is a file's, and one without it a folder's.
+        says_file: Whether a name without the group ``file`` is a folder's.
     """
     expression = re2.compile(pattern)
 
-    def read(parts: Sequence[str]) -> Found | None:
-        for place, part in list(enumerate(parts))[where]:
-            match = expression.match(part)
-            found = match.groupdict() if match else {}
-            is_file = place == len(parts) - 1
-            if not match or (says_file and (found.get("file") is None) == is_file):
-                continue
-            identity, readings = who(found)
-            file, time = found.get("file") if is_file else parts[-1], found.get("when") or ""
-            order, late = int(found.get("order") or 0), bool(found.get("late"))
-            return Found(
-                identity, part if file is None else file, read_time(time), order, late, readings, time
-            )
-        return None
+    def read(parts: Sequence[str], place: int) -> Found | None:
+        match = expression.match(parts[place])
+        found = match.groupdict() if match else {}
+        is_file = place == len(parts) - 1
+        if not match or (says_file and is_file and found.get("file") is None):
+            return None
+        identity, readings = who(found)
+        file, time = found.get("file") if is_file else parts[-1], found.get("when") or ""
+        order, late = int(found.get("order") or 0), bool(found.get("late"))
+        file = parts[place] if file is None else file
+        return Found(identity, file, read_time(time), order, late, readings, time)
 
     return read
 
 
-def _github(parts: Sequence[str]) -> Found | None:
+def _github(parts: Sequence[str], place: int) -> Found | None:
     """``lab-1-2-submissions/lab-1-2-adalove/lab_1_2.ipynb``, as ``gh classroom clone`` makes it."""
-    for above, part in itertools.pairwise(parts[:-1]):
-        slug, dash, _ = above.rpartition("-")
-        if dash and above == f"{slug}-submissions" and part.startswith(f"{slug}-"):
-            login = part.removeprefix(f"{slug}-")
-            # Where somebody had a repository of that name already, GitHub Classroom adds a number.
-            logins = dict.fromkeys((login, base_and_number(login)[0]))
-            readings = tuple(Identity("github", login=one) for one in logins)
-            return Found(readings[0], parts[-1], readings=readings)
-    return None
+    above, part = parts[place - 1] if place else "", parts[place]
+    slug, dash, _ = above.rpartition("-")
+    if (
+        place == len(parts) - 1
+        or not dash
+        or above != f"{slug}-submissions"
+        or not part.startswith(f"{slug}-")
+    ):
+        return None
+    login = part.removeprefix(f"{slug}-")
+    # Where somebody had a repository of that name already, GitHub Classroom adds a number.
+    logins = dict.fromkeys((login, base_and_number(login)[0]))
+    readings = tuple(Identity("github", login=one) for one in logins)
+    return Found(readings[0], parts[-1], readings=readings)
 
 
 def _with_the_name_last(found: Found) -> Found:
@@ -268,16 +264,21 @@ _READERS = {
         _brightspace,
         says_file=True,
     ),
-    # lovelaceada_LATE_123_456_lab_1_2-1.ipynb: the student's number, then the file's
+    # lovelaceada_LATE_123_456_lab_1_2-1.ipynb: the student's number, then the file's. Canvas leaves of the name only
+    # what is part of a word (github.com/instructure/canvas-lms, content_zipper.rb).
     "canvas": _in_one_part(
-        r"^(?P<login>.*?[^\d_].*?)_(?i:(?P<late>LATE)_)?(?P<number>\d+)_(?P<order>\d+)_(?P<file>.+)$", _canvas
+        r"^(?P<login>[\pL\pM\pN_-]*?[\pL\pM-][\pL\pM\pN_-]*?)_(?i:(?P<late>LATE)_)?"
+        r"(?P<number>\d+)_(?P<order>\d+)_(?P<file>.+)$",
+        _canvas,
     ),
     # Ada Lovelace - lab_1_2.ipynb
-    "google": _in_one_part(r"^(?P<name>[^/]*?\S) - (?P<file>.+)$", _google, where=slice(-1, None)),
+    "google": _in_one_part(r"^(?P<name>[^/]*?\S) - (?P<file>.+)$", _google),
     "github": _github,
     # assignment_123_export/submission_456/lab_1_2.ipynb
-    "gradescope": _in_one_part(r"^submission_(?P<number>\d+)$", _gradescope, where=slice(2), says_file=True),
+    "gradescope": _in_one_part(r"^submission_(?P<number>\d+)$", _gradescope, says_file=True),
 }
 FORMS = tuple(_READERS)
-"""In the order in which they are tried: the form with the most particular names goes first."""
+TOLD_APART = tuple(form for form in FORMS if form != "google")
+"""The forms in which the system's own part is in front of the student's. Google's has none: a student may call a file
+as another's is called, so it is read only where the instructor says so."""
 _BRANCHES = ("-main", "-master")

@@ -3,21 +3,33 @@
 from __future__ import annotations
 
 import functools
+import unicodedata
+from collections import defaultdict
 from dataclasses import dataclass, replace
+from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import reason_against_name
-from autograder.grading.collecting.forms import FORMS, plain, read_path
+from autograder.grading.collecting.forms import TOLD_APART, plain, read_at
 from autograder.grading.table.roster import Identity, Roster, Student
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
     from datetime import datetime
+    from pathlib import Path
 
     from autograder.grading.collecting.forms import Found
     from autograder.grading.collecting.lists import Entry
 
-_NO_ID = "its name does not say whose it is: say --from, or put it into a folder with the student's id and collect that"
+_NO_ID = (
+    "its name does not say whose it is: say --from google where Google Classroom gave it, or put it into a folder with "
+    "the student's id and collect that"
+)
+_NOBODY = Identity()
+_BY_NUMBER, _BY_LOGIN = ("canvas", "brightspace"), ("github", "blackboard", "google")
+"""The systems whose names have one person's number, or one person's user name, whatever is handed in."""
+_LISTED = ("canvas", "github")
+"""Those of them whose lists say so, too. A number of Moodle's or Gradescope's is of one work."""
 
 
 @dataclass(frozen=True)
@@ -27,10 +39,14 @@ class Owners:
     Attributes:
         found: The facts in the name; None where it has no known form.
         members: For each member of the group, the students who may be meant; empty where nobody is known.
+        is_sure: Whether the system's number says so, and not a name that students may choose.
+        rivals: The systems that may have given the name, where each would mean another student or time by it.
     """
 
     found: Found | None
     members: tuple[tuple[Student, ...], ...] = ()
+    is_sure: bool = False
+    rivals: tuple[str, ...] = ()
 
     @property
     def only(self) -> Student | None:
@@ -44,84 +60,130 @@ class StudentOf:
 
     Args:
         roster: The students of the class.
+        is_notebook: Whether a file of this name is a notebook of the class.
+        form: The system that the instructor says all is from; empty where names say it.
         entries: Entries of lists that came with a download; each is about the files that have its number.
         told: Entries of lists that the instructor gives for their times; they count for work from any system.
     """
 
-    def __init__(self, roster: Roster, entries: Iterable[Entry] = (), told: Iterable[Entry] = ()) -> None:
+    def __init__(
+        self,
+        roster: Roster,
+        is_notebook: Callable[[str], bool],
+        form: str = "",
+        entries: Iterable[Entry] = (),
+        told: Iterable[Entry] = (),
+    ) -> None:
         self._roster = roster
+        self._is_notebook = is_notebook
+        self._form = form
         self._told = list(told)
-        self._by_number = {(one.lms, one.number): one for one in (*entries, *self._told) if one.number}
+        self._entries = [*entries, *self._told]
+        self._by_number = {(one.lms, one.number): one for one in self._entries if one.number}
+        self._of = functools.cache(self._who)  # many files have one folder
+
+    def owners(self, parts: Sequence[str], levels: int, *, is_alone: bool = False) -> Owners:
+        """The students whose file it is, as the topmost of the path's names says that says anything.
+
+        Whatever a student calls a file, the system's own part is above it or in front of it. Where two systems may have
+        given a name, all of them have to mean the same by it: nobody is not the same as somebody.
+
+        Args:
+            parts: The path's folders and the file.
+            levels: The number of names from the top that no student has chosen.
+            is_alone: Whether the instructor has named this very file, so that it may be called as its student is.
+        """
+        parts = [unicodedata.normalize("NFC", part) for part in parts]
+        forms = [self._form] if self._form else TOLD_APART
+        names = [*parts[:-1], PurePath(parts[-1]).stem if is_alone and self._form != "google" else ""]
+        # Google's names are the student's own at any place.
+        for place in range(len(parts) if self._form == "google" else min(levels, len(parts))):
+            if ways := [way for form in forms if (way := read_at(parts, place, form, self._is_notebook))]:
+                return self._agreed(ways)
+            if place < levels and (owners := self.find(plain(names[place], parts[-1]))):
+                return owners
+        return Owners(None)
+
+    def has_form(self, path: Path) -> bool:
+        """True if a file or folder is called as a system names one student's work, with a part that is its own."""
+        owners = self._of_name(path)
+        lms = owners.found.identity.lms if owners.found else ""
+        return bool(owners.rivals) or lms not in ("", "google", "github")  # these have none
+
+    def is_called(self, path: Path) -> bool:
+        """True if a file or folder is called as somebody in the list of students is."""
+        return bool(self._roster.students and self._of_name(path).members)
+
+    def _of_name(self, path: Path) -> Owners:
+        name = path.absolute().name
+        return self.owners((name, "") if path.is_dir() else (name,), 1, is_alone=True)
 
     def find(self, way: Found) -> Owners | None:
         """The students who may be meant, by the first way of reading the name that names one."""
         readings = way.readings if self._roster.students and way.readings else (way.identity,)
         for identity in readings:
-            if members := self._of(identity):
-                return Owners(replace(way, identity=identity), members)
+            members, is_sure = self._of(identity)
+            if members:
+                return Owners(replace(way, identity=identity), members, is_sure)
         return None
 
-    def likely_forms(
-        self, paths: Iterable[Sequence[str]], depth: int, is_notebook: Callable[[str], bool]
-    ) -> list[str]:
-        """The form that most names of a download have, and those that as many have; empty where more are plain folders.
+    def _agreed(self, ways: Sequence[Found]) -> Owners:
+        read = [self.find(way) or Owners(way) for way in ways]
+        meant = [(one.members, one.members and way.when) for one, way in zip(read, ways, strict=True)]
+        if any(one != meant[0] for one in meant):
+            return Owners(None, rivals=tuple(way.identity.lms for way in ways))
+        return read[0]
 
-        Whatever a student calls a file, the system's own part is in front of it: no other form fits more names. And a
-        student chooses the names of files in a folder that is called as a student is, and might choose one that another
-        system would give to somebody else's.
-
-        Args:
-            paths: Of its files.
-            depth: The number of folders with names that may say a student.
-            is_notebook: Whether a file of this name is a notebook of the class.
-        """
-        votes: dict[str, set[tuple[str, ...]]] = {form: set() for form in FORMS}
-        in_folders = set()
-        for path in filter(None, paths):
-            folder = tuple(path[:depth])  # which has one vote, however many files its student puts into it
-            if any(map(self.find, plain(path)[:depth])):
-                in_folders.add(folder)
-            for form in FORMS:
-                if read_path(path, form, is_notebook) is not None:
-                    votes[form].add(folder)
-        most = max(map(len, votes.values()))
-        return [form for form in FORMS if len(votes[form]) == most] if most > len(in_folders) else [""]
-
-    def rival(
-        self, path: Sequence[str], found: Found, forms: Iterable[str], is_notebook: Callable[[str], bool]
-    ) -> str:
-        """The form by which a name means another known student, or another time; empty where none does."""
-        owners = self.find(found)
-        if owners is None or not self._roster.students:  # without a list, each reading is somebody's
-            return ""
-        for form in forms:
-            # Google's form is that of many other names.
-            other = read_path(path, form, is_notebook) if form != "google" else None
-            meant = self.find(other) if other is not None else None
-            if other and meant and (owners.members, found.when) != (meant.members, other.when):
-                return form
-        return ""
-
-    def _of(self, identity: Identity) -> tuple[tuple[Student, ...], ...]:
-        """The students who may be meant; in a class without a list of students, the one that the LMS names."""
+    def _who(self, identity: Identity) -> tuple[tuple[tuple[Student, ...], ...], bool]:
+        """The students who may be meant, and whether that is sure; without a list, the one that the LMS names."""
         known = self._by_number.get((identity.lms, identity.number or identity.login))
         if known is not None:
-            sure = tuple(student for names in known.members if (student := self._first(names)))
-            if sure and len(sure) == len(known.members):
-                return tuple((student,) for student in sure)
+            hits = [hit for names in known.members if (hit := self._first(names))]
+            hits = [hit for hit in hits if hit[1] or not self._is_another(hit[0], identity)]
+            if hits and len(hits) == len(known.members):
+                return tuple((student,) for student, _ in hits), all(is_sure for _, is_sure in hits)
         # What students.csv has of Moodle is another number: this one is one student's in one assignment.
-        found = self._roster.find(replace(identity, number="") if identity.lms == "moodle" else identity)
+        asked = replace(identity, number="") if identity.lms == "moodle" else identity
+        found = self._roster.find(asked)
+        is_sure = bool(found and asked.number) and found[0].lms.get(identity.lms) == asked.number
+        found = tuple(one for one in found if is_sure or not self._is_another(one, identity))
         called = identity.login or identity.name
-        if not found and not self._roster.students and identity.lms and called:
+        if not self._roster.students and identity.lms and called:
             found = (Student(called),)
-        return (found,) if found else ()
+        return ((found,) if found else ()), is_sure
 
-    def _first(self, names: Iterable[Identity]) -> Student | None:
-        """The student of the first of several names that is one student's alone."""
-        return next((hit[0] for name in names if len(hit := self._roster.find(name)) == 1), None)
+    def _is_another(self, student: Student, identity: Identity) -> bool:
+        """True if a student is known there by another number: who takes another's name there is not the other."""
+        lms = identity.lms
+        theirs = (lms in _BY_NUMBER and identity.number) or (lms in _BY_LOGIN and identity.login) or ""
+        known = {
+            student.lms.get(lms, ""),
+            *(number for one, id_, number in self._listed if (one, id_) == (lms, student.id)),
+        }
+        # The column of a system with numbers may have a user name.
+        known = {one.casefold() for one in known if one and (one.isdigit() or lms not in _BY_NUMBER)}
+        return bool(theirs and known) and theirs.casefold() not in known
+
+    @functools.cached_property
+    def _listed(self) -> set[tuple[str, str, str]]:
+        """The systems, students and numbers by which lists know a student surely."""
+        entries = (
+            (entry, names) for entry in self._entries if entry.lms in _LISTED for names in entry.members
+        )
+        hits = ((entry, self._first(names)) for entry, names in entries if entry.number)
+        return {(entry.lms, hit[0].id, entry.number) for entry, hit in hits if hit and hit[1]}
+
+    def _first(self, names: Iterable[Identity]) -> tuple[Student, bool] | None:
+        """The student of the first of several names that is one student's alone, and whether it is no mere name."""
+        hits = ((self._roster.find(name), bool(name.login)) for name in names)
+        return next(((found[0], is_sure) for found, is_sure in hits if len(found) == 1), None)
 
     def reason_against(self, owners: Owners) -> str:
         """The reason why a file cannot be taken as a student's, and what to do; empty where it can."""
+        if owners.rivals:
+            read = " and as ".join(form.capitalize() for form in owners.rivals)
+            say = " or ".join(f"--from {form}" for form in owners.rivals)
+            return f"its name can be read as {read} gives it, of another student or time each: say {say}"
         if owners.found is None:
             return _NO_ID
         identity = owners.found.identity
@@ -145,17 +207,20 @@ class StudentOf:
             f"{nobody} the id that {identity.lms.capitalize()} uses ({number}) to the column {identity.lms}"
         )
 
-    def time(self, identity: Identity, student: str, assignment: str) -> datetime | None:
-        """The time at which a list says that somebody handed in, in its own time zone; None where none says so."""
-        known = self._by_number.get((identity.lms, identity.number or identity.login))
-        if known is not None and known.when is not None:
-            return known.when
-        return self.time_of(student, assignment)
+    def time(self, student: str, assignment: str, identity: Identity = _NOBODY) -> datetime | None:
+        """The only time at which lists say that somebody handed in, in their own time zone; None where they say none.
 
-    def time_of(self, student: str, assignment: str) -> datetime | None:
-        """The same of a student, by whatever name a list has."""
-        times = self._times
-        return times.get((student, assignment), times.get((student, "")))
+        What the instructor says of a student goes before what a system's list says of a number.
+        """
+        number = (identity.lms, identity.number or identity.login)
+        keys = ((*whose, name) for whose in (("", student), number) for name in (assignment, ""))
+        times = next((self._times[key] for key in keys if key in self._times), ())
+        return next(iter(times)) if len(times) == 1 else None
+
+    @property
+    def of_several_times(self) -> list[str]:
+        """Those of whom lists have several times, so that none counts."""
+        return sorted({number for (_, number, _), times in self._times.items() if len(times) > 1})
 
     @property
     def strangers(self) -> list[str]:
@@ -168,13 +233,17 @@ class StudentOf:
         ]
 
     @functools.cached_property
-    def _times(self) -> dict[tuple[str, str], datetime]:
-        return {
-            (student.id, entry.assignment): entry.when
-            for entry in self._told
-            for names in entry.members
-            if entry.when is not None and (student := self._first(names))
-        }
+    def _times(self) -> dict[tuple[str, str, str], set[datetime]]:
+        """The times by system, number and assignment; by student and assignment where the instructor gives them."""
+        times: dict[tuple[str, str, str], set[datetime]] = defaultdict(set)
+        for entry in self._entries:
+            if entry.when is not None and entry.number:
+                times[entry.lms, entry.number, entry.assignment].add(entry.when)
+        for entry in self._told:
+            for names in entry.members:
+                if entry.when is not None and (hit := self._first(names)):
+                    times["", hit[0].id, entry.assignment].add(entry.when)
+        return times
 
 
 def _of_several(identity: Identity, students: Iterable[Student]) -> str:

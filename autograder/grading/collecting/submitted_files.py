@@ -40,12 +40,13 @@ class Candidate:
         assignment: The assignment's name.
         collected: The record of it, if it counts.
         found: The facts in its name.
-        download: The file or folder that it came in: files of one download that have the same time were handed in
-            together.
+        download: The file or folder that it came in, or its own where it was named alone: files of one download that
+            have the same time were handed in together.
         packed: Its bytes, compressed: all files of a download are held at once, and a few bytes of a student's archive
             may unpack to gigabytes.
         number: The number that a browser or a system has added to its name.
         is_named: Whether it is called as the notebook is.
+        is_sure: Whether the system's number says whose it is, and not a name that students may choose.
     """
 
     student: str
@@ -56,6 +57,7 @@ class Candidate:
     packed: bytes
     number: int
     is_named: bool
+    is_sure: bool
 
     @property
     def data(self) -> bytes:
@@ -197,18 +199,19 @@ def _newest(group: list[Candidate]) -> tuple[Candidate | None, _Others]:
     another name, from which the student may only have been guessed, is not together with it: no number that its owner
     gave to a file puts it before.
     """
-    if people := _people(group):
-        student = group[0].student
+    outcomes: _Others = []
+    by_name = [one for one in group if one.collected.lms in _ONE_NUMBER and not one.is_sure]
+    if by_name and (people := _people(group)):
         reason = (
-            f"there are several people who are read as {student}, of the numbers {people}: put the number of each "
-            "into students.csv, or collect it together with that system's list"
+            f"there are several people who are read as {group[0].student}, of the numbers {people}: put the number of "
+            "each into students.csv, or collect it together with that system's list"
         )
-        return None, [(one, one.outcome(State.NOT_PLACED, reason)) for one in group]
+        outcomes = [(one, one.outcome(State.NOT_PLACED, reason)) for one in by_name]
+        group = [one for one in group if one not in by_name]
     together: dict[tuple[Path, datetime | None, tuple[Identity, ...]], list[Candidate]] = defaultdict(list)
     for one in group:
         together[one.download, one.collected.when, one.found.readings[:1]].append(one)
     firsts: list[Candidate] = []
-    outcomes: _Others = []
     for files in together.values():
         first, others = _best(files, lambda one: (one.is_named, one.collected.order, one.number))
         outcomes += others
@@ -227,11 +230,14 @@ def _newest(group: list[Candidate]) -> tuple[Candidate | None, _Others]:
 
 
 def _people(group: Iterable[Candidate]) -> str:
-    """The numbers of several people in one download who are all read as one student; empty where it is one person."""
-    numbers: dict[Path, set[str]] = defaultdict(set)
+    """The numbers of several people who are read as one student; empty where it is one person.
+
+    In Canvas a person has one number; in Moodle one in each download.
+    """
+    numbers: dict[Path | None, set[str]] = defaultdict(set)
     for one in group:
         if one.collected.lms in _ONE_NUMBER:
-            numbers[one.download].add(one.collected.number)
+            numbers[None if one.collected.lms == "canvas" else one.download].add(one.collected.number)
     return next((", ".join(sorted(several)) for several in numbers.values() if len(several) > 1), "")
 
 
@@ -239,7 +245,7 @@ def _best(
     files: list[Candidate], rank: Callable[[Candidate], tuple[float, ...]]
 ) -> tuple[Candidate | None, _Others]:
     """The file of the highest rank, and what becomes of the others; None where several different ones have it."""
-    best = max(files, key=rank, default=None)
+    best = max(files, key=lambda one: (rank(one), one.collected.when is not None), default=None)
     if best is None:
         return None, []
     if any(rank(one) == rank(best) and one.content != best.content for one in files):
@@ -278,6 +284,12 @@ def _older(newest: Candidate, known: Collected, history: History) -> Outcome | N
             State.NOT_PLACED,
             f"the one that is there came from another repository, {known.source}, and only the end of this one's name "
             f"is {newest.student}'s: if it counts, put it into submitted/ yourself",
+        )
+    if new.lms == known.lms == "canvas" and new.number != known.number and not newest.is_sure:
+        return newest.outcome(
+            State.NOT_PLACED,
+            f"the one that is there is of number {known.number} in Canvas, and this one of {new.number}: put the "
+            f"number of {newest.student} into the column canvas of students.csv",
         )
     if new.when is not None and known.when is not None and new.when != known.when:
         if new.when < known.when:

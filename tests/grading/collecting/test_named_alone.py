@@ -82,7 +82,8 @@ def test_what_a_zip_was_taken_for_is_said_where_its_name_leaves_that_open(
 
 def test_drives_own_name_of_an_archive_is_no_students(tiny: TinyClass, tmp_path: Path) -> None:
     files = {f"Lab/{student} - lab_1_2.ipynb": work(tiny, 1) for student in ("Ada Lovelace", "Ben Bar")}
-    report = collect(tiny.path, [write_zip(tmp_path / "ROS 2 - Lab-20251003T140506Z-1-001.zip", files)])
+    download = write_zip(tmp_path / "ROS 2 - Lab-20251003T140506Z-1-001.zip", files)
+    report = collect(tiny.path, [download], form="google")
     assert placed(report).keys() == {"Ada Lovelace", "Ben Bar"}
 
 
@@ -205,9 +206,13 @@ def test_no_names_that_one_student_chooses_say_which_system_a_download_is_of(
     for number, whose in enumerate(("ada", "ben", "zoe")):
         name = f"oneilleve_104_600{number}_x_{whose}_attempt_2025-12-31-00-00-00_lab_1_2.ipynb"
         files[name] = work(klass, 5 + number)
-    report = collect(klass.path, [write_zip(tmp_path / "submissions.zip", files)])
+    download = write_zip(tmp_path / "submissions.zip", files)
+    report = collect(klass.path, [download])
     assert (lies(klass, "ada"), lies(klass, "ben")) == (work(klass, 1), work(klass, 2))
-    assert {one.student for one in report.outcomes} <= {"ada", "ben", "eve"}
+    assert placed(report).keys() == {"ada", "ben"}
+    assert why(report).count("say --from blackboard or --from canvas") == 3
+    report = collect(klass.path, [download], form="canvas")
+    assert {one.student for one in report.outcomes} == {"ada", "ben", "eve"}
 
 
 def test_a_repository_whose_name_only_ends_as_a_students_replaces_nothing(
