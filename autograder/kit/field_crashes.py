@@ -1,4 +1,4 @@
-"""Mistakes with the fields of a message that a traceback of rclpy gives away: the rows of ``known_crashes`` about them.
+"""Mistakes with a message, its type and its fields that a traceback gives away: these rows of ``known_crashes``.
 
 The order matters: the first that fits wins.
 """
@@ -8,6 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from autograder.kit.python_names import MARKS
+
+_CALLED = r"\n(?: .*\n)*"
+"""From a line of code to what Python says of it: a program's traceback has the lines of the message's own module."""
 
 
 @dataclass(frozen=True)
@@ -66,22 +69,23 @@ FIELDS = (
         "Write your message before it, with a dot, as in command.linear.x = 0.5.",
     ),
     Crash(
+        "callback_signature",
+        # What each node has, and no message.
+        rf"\bself\.(?:get_logger|get_clock|create_\w+)\b.*{MARKS}AttributeError: '(?P<type>String|Twist|U?Int\d+"
+        r"|\w+_(?:Request|Response|Goal|FeedbackMessage)|ServerGoalHandle|Future)' object has no attribute "
+        r"'(?:get_logger|get_clock|create_\w+)'",
+        "self is of the type {type} here: ROS hands it over behind the node itself, and Python gives the node to the "
+        "first name between the parentheses after def.",
+        "Write self first, and then the others, as in def on_message(self, message) or def add(self, request, "
+        "response).",
+    ),
+    Crash(
         "field_typo",
         r"AttributeError: 'Twist' object has no attribute '(?P<name>\w+)'",
         "A Twist has no field called {name}: it has two parts, linear and angular, and each has the numbers x, y "
         "and z.",
         "Name the part, too: {owner:command}.linear.x is the speed straight ahead, {owner:command}.angular.z the turn "
         "to the left.",
-    ),
-    Crash(
-        "callback_signature",
-        # What each node has, and no message.
-        r"AttributeError: '(?P<type>String|Twist|U?Int\d+|\w+_(?:Request|Response|Goal|FeedbackMessage)"
-        r"|ServerGoalHandle|Future)' object has no attribute '(?:get_logger|get_clock|create_\w+|publisher\w*)'",
-        "{owner:self} is of the type {type} here: ROS hands it over behind the node itself, and Python gives the node "
-        "to the first name between the parentheses after def.",
-        "Write self first, and then the others, as in def on_message(self, message) or def add(self, request, "
-        "response).",
     ),
     Crash(
         "field_typo",
@@ -133,7 +137,7 @@ FIELDS = (
     Crash(
         "field_typo",
         r"AttributeError: 'AddTwoInts_(?P<part>Request|Response)' object has no attribute '(?P<name>\w+)'"
-        rf"|AddTwoInts\.(?P<made>Request|Response)\(.*{MARKS}.*Invalid arguments passed to constructor: "
+        rf"|AddTwoInts\.(?P<made>Request|Response)\(.*{_CALLED}.*Invalid arguments passed to constructor: "
         r"'?(?P<keyword>\w+(?:, \w+)*)",
         "The {part}{made} of AddTwoInts has no field called {name}{keyword}.",
         "Its Request has the fields a and b, and its Response has the field sum: write the name exactly so. A "
@@ -142,7 +146,7 @@ FIELDS = (
     Crash(
         "field_typo",
         r"AttributeError: 'Fibonacci_(?P<part>Goal|Result|Feedback)' object has no attribute '(?P<name>\w+)'"
-        rf"|Fibonacci\.(?P<made>Goal|Result|Feedback)\(.*{MARKS}.*Invalid arguments passed to constructor: "
+        rf"|Fibonacci\.(?P<made>Goal|Result|Feedback)\(.*{_CALLED}.*Invalid arguments passed to constructor: "
         r"'?(?P<keyword>\w+(?:, \w+)*)",
         "The {part}{made} of Fibonacci has no field called {name}{keyword}.",
         "Its Goal has the field order, its Result has sequence, and its Feedback has partial_sequence: write the name "
@@ -159,7 +163,7 @@ FIELDS = (
     Crash(
         "field_typo",
         r"AttributeError: '(?P<type>String|U?Int\d+|Float\d+|Bool)' object has no attribute '(?P<name>\w+)'"
-        rf"|\b(?P<made>String|U?Int\d+|Float\d+|Bool)\(.*{MARKS}.*Invalid arguments passed to constructor: "
+        rf"|\b(?P<made>String|U?Int\d+|Float\d+|Bool)\(.*{_CALLED}.*Invalid arguments passed to constructor: "
         r"'?(?P<keyword>\w+(?:, \w+)*)",
         "The message has no field called {name}{keyword}: a {type}{made} has a single one, data.",
         "Write data in its place, as in {owner:message}.data, or {type}{made}(data=...).",

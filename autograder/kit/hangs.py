@@ -70,10 +70,13 @@ def _blocks(stack: Stack) -> bool:
 
 def _in_callback(stack: Stack) -> bool:
     """True if the innermost code of the student's was called by an executor."""
-    own = next(
-        (i for i, frame in enumerate(stack) if not frame.rclpy and frame.function != "wait"), len(stack)
-    )
-    return any(frame.rclpy == "executors.py" for frame in stack[own:])
+    return any(frame.rclpy == "executors.py" for frame in stack[_innermost_own(stack) :])
+
+
+def _innermost_own(stack: Stack) -> int:
+    """The place of the innermost call of the student's; the length where there is none."""
+    own = (i for i, frame in enumerate(stack) if not frame.rclpy and frame.function != "wait")
+    return next(own, len(stack))
 
 
 def _spins(stack: Stack) -> bool:
@@ -107,19 +110,22 @@ def _stuck_callback(found: list[Stack]) -> str:
     return ""
 
 
-def _waiting(found: list[Stack]) -> str:
+def _that(found: list[Stack], waits: Callable[[Stack], bool]) -> Stack:
+    """The stack of the thread that waits in such a way, in a callback where one does; empty where none does."""
+    waiting = sorted(filter(waits, found), key=_in_callback, reverse=True)
+    return waiting[0] if waiting else ()
+
+
+def _waiting(stack: Stack) -> str:
     """The blocking call of rclpy that a thread waits in, as the student has written it; empty where there is none."""
-    calls = [frame for stack in found for frame in stack if frame.function in _BLOCKING.get(frame.rclpy, ())]
-    return calls[-1].function if calls else ""
+    calls = [frame.function for frame in stack if frame.function in _BLOCKING.get(frame.rclpy, ())]
+    return calls[-1] if calls else ""
 
 
-def _place(found: list[Stack], waits: Callable[[Stack], bool]) -> str:
+def _place(stack: Stack) -> str:
     """The student's line that has led to a wait, in brackets; empty where there is none."""
-    for stack in filter(waits, found):
-        own = next((frame for frame in stack if not frame.rclpy and frame.function != "wait"), None)
-        if own is not None:
-            return f" (line {own.line}, in {own.function})"
-    return ""
+    own = stack[_innermost_own(stack) :]
+    return f" (line {own[0].line}, in {own[0].function})" if own else ""
 
 
 def _executes_a_goal(stack: Stack) -> bool:
@@ -203,13 +209,14 @@ def _mistake(key: str, fits: Recognise, text: str, next_step: str) -> Mistake:
         found = [stack for part in evidence for stack in stacks(part)]
         if not found or not fits(found):
             return None
-        callback = _stuck_callback(found)
+        blocked = _that(found, _blocks)
+        callback = _stuck_callback([blocked]) or _stuck_callback(found)
         words = {
             "callback": callback,
             "who": f"Your callback {callback}()" if callback else "A callback of yours",
-            "call": _waiting(found),
-            "called": _place(found, _blocks),
-            "slept": _place(found, _sleeps_on_rate),
+            "call": _waiting(blocked),
+            "called": _place(blocked),
+            "slept": _place(_that(found, _sleeps_on_rate)),
         }
         return Advice(text.format(**words), next_step.format(**words))
 

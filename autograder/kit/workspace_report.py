@@ -3,8 +3,7 @@
 The judge sees a workspace's programs on the wire. What no wire can tell (which line the build stumbled over) is
 reported by the program that built it, before the student's own program says anything: only the first report counts.
 A line holds less than a workspace does. So the packages that the exercise needs come first, and a report says of itself
-whether all of them is in it, and of each list of dependencies whether it was cut: what was left out is never judged as
-missing or wrong, nor as there.
+whether all of them is in it: what was left out is never judged as missing or wrong.
 """
 
 from __future__ import annotations
@@ -29,8 +28,6 @@ AMENT_PACKAGE = "ament_package()"
 """The missing thing, in a report, of a package that was built and that ROS does not find."""
 BUILDING = 180.0
 """Seconds of wall time that a build may take: a Python package needs one, an interface package ten."""
-MORE = "…"
-"""The last one of the dependencies of a package that has more of them than there is room for."""
 _FEW = 10
 """Packages beside the needed ones that are named where there is no room for all."""
 
@@ -135,15 +132,14 @@ def _shortened(package: PackageReport, limit: int) -> PackageReport:
         package,
         programs=package.programs[:few],
         interfaces=[_left_out(i) if len(i.text or "") > limit else i for i in package.interfaces[:few]],
-        dependencies=_begun(package.dependencies, few),
+        # Those that a task may ask for come first: what generates interfaces.
+        dependencies=sorted(package.dependencies, key=lambda name: not name.startswith("rosidl_"))[
+            : max(few, 5)
+        ],
         modules=package.modules[: limit // 60],  # none where all else needs the room
         commented=package.commented[: limit // 60],
         installed=package.installed[:few],
     )
-
-
-def _begun(names: Sequence[str], few: int) -> Sequence[str]:
-    return names if len(names) <= few else [*names[:few], MORE]
 
 
 def _left_out(interface: Interface) -> Interface:

@@ -33,7 +33,7 @@ NOTEBOOK_SECONDS = 100.0
 LIMITS = {"memory_bytes": 800_000_000, "scratch_bytes": 200_000_000, "processes": 200, "cpu_seconds": 60}
 """Small, so that filling them takes seconds."""
 GRADING_LIMIT = 3600.0
-"""Seconds after which the batch is taken to hang. Four minutes are usual, and a quarter of an hour at a load of sixty."""
+"""Seconds after which the batch is taken to hang. Four minutes are usual, a quarter of an hour at a load of sixty."""
 _CORES = os.cpu_count() or 1
 MARK = "attack_canary"
 """In the name of every file and process that an attack leaves behind."""

@@ -56,6 +56,16 @@ def test_a_callback_that_does_not_come_back_is_named(where: str) -> None:
         assert "work()" in advice.text
 
 
+def test_call_line_and_callback_are_those_of_one_thread() -> None:
+    """Two threads wait: the one in a callback is told, and nothing of the other one."""
+    asks = _stack((f"{RCLPY}/action/client.py", "send_goal"), ("/home/student/client.py", "asks"))
+    text = f"{asks}\n\n{_stack(CALL, OWN, CALLS_BACK, CALLBACK, SPIN)}"
+    part = Part("part", {}, [Event(9.0, "stack", "subject", {"text": text})])
+    evidence = Evidence([part], Reference("x", {}))
+    advice = next(filter(None, (mistake.recognise(evidence) for mistake in HANGS)))
+    assert "Your callback work() makes the blocking call call() (line 7, in work)" in advice.text
+
+
 def test_no_stack_names_nothing() -> None:
     evidence = Evidence([Part("part")], Reference("x", {}))
     assert not any(mistake.recognise(evidence) for mistake in HANGS)

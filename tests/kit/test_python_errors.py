@@ -120,7 +120,6 @@ SAID = {
     "AssertionError: The 'data' field must be of type 'str'": "str(...)",
     "AssertionError: The 'sum' field must be of type 'int'": "takes one whole number",
     "AttributeError: type object 'type' has no attribute '_TYPE_SUPPORT'": "String of std_msgs.msg in place of str",
-    "AttributeError: 'String' object has no attribute 'get_logger'": "Write self first",
     "AttributeError: 'String' object has no attribute 'date'": "has a single one, data",
     "AttributeError: 'AddTwoInts_Response' object has no attribute 'a'": "the request first, then the response",
     "AttributeError: 'Fibonacci_Feedback' object has no attribute 'sequence'": "its Feedback has partial_sequence",
@@ -399,6 +398,56 @@ def test_only_a_line_of_the_students_own_tells_a_name(file: str, future: str) ->
     lines = f'  File "{file}", line 3, in f\n    print(fut.sum)\n'
     last = "AttributeError: 'Future' object has no attribute 'sum'"
     assert f"Read {future}.result().sum" in told(f"Traceback (most recent call last):\n{lines}{last}")
+
+
+def test_a_program_s_traceback_has_lines_of_the_generated_module_in_it() -> None:
+    frames = (
+        'Traceback (most recent call last):\n  File "talker.py", line 3, in tick\n    message = String(dat="x")\n'
+        '              ^^^^^^^^^^^^^^^\n  File "/ros/std_msgs/msg/_string.py", line 68, in __init__\n'
+        "    assert all('_' + key in self.__slots__ for key in kwargs.keys()), \\\n"
+    )
+    assert "has a single one, data" in told(
+        f"{frames}AssertionError: Invalid arguments passed to constructor: dat"
+    )
+
+
+@pytest.mark.parametrize(
+    ("code", "last", "says"),
+    [
+        ("self.get_logger()", "'Twist' object has no attribute 'get_logger'", "Write self first"),
+        ("msg.get_logger()", "'String' object has no attribute 'get_logger'", "no field called get_logger"),
+        ("self.msg.publisher_count", "'String' object has no attribute 'publisher_count'", "no field called"),
+    ],
+)
+def test_self_is_the_message_only_where_the_line_says_self(code: str, last: str, says: str) -> None:
+    frames = f'Traceback (most recent call last):\n  File "talker.py", line 3, in tick\n    {code}\n'
+    assert says in told(f"{frames}AttributeError: {last}")
+
+
+NONE_HAS_NO_SUM = (
+    'Traceback (most recent call last):\n  File "client.py", line 9, in main\n    print(node.answer.sum)\n'
+    "AttributeError: 'NoneType' object has no attribute 'sum'"
+)
+
+
+@pytest.mark.parametrize(("late", "is_told"), [((1.0, 1.0), True), ((0.05, 1.0), False)])
+def test_an_answer_was_left_lying_only_if_it_was_so_in_each_run(
+    late: tuple[float, ...], is_told: bool
+) -> None:
+    """In one run of several a busy machine may be why the client ended so late."""
+    runs = [
+        Part(
+            f"run {number}",
+            {},
+            [
+                Event(1.0, "response", "/add", {"fields": {"sum": 3}}),
+                Event(1.0 + seconds, "subject", "raised", {"traceback": NONE_HAS_NO_SUM}),
+            ],
+        )
+        for number, seconds in enumerate(late)
+    ]
+    first = next(mistake for mistake in CRASHES if mistake.key == "call_never_spun")
+    assert (first.recognise(Evidence(runs, Reference("x", {}))) is not None) == is_told
 
 
 def told(traceback: str) -> str:

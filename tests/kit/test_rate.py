@@ -27,3 +27,8 @@ def test_the_references_rate_is_expected(seen: Part, passes: bool, says: str, mi
     finding = keeps_rate(seen, heard(0.5))
     assert (finding.passed, finding.expected, finding.seen) == (passes, "one every 0.5 s", says)
     assert another_rate(seen, heard(0.5)) == mistake
+
+
+def test_an_author_is_told_that_the_reference_is_too_short_for_a_rate() -> None:
+    with pytest.raises(ValueError, match="let more time run"):
+        keeps_rate(heard(0.5), heard(0.5, number=2))

@@ -54,7 +54,7 @@ def collect(
         sources: Zips, folders, notebooks, and lists that say who a number is.
         assignment: The assignment that all of it is for; told from names and contents by default.
         zone: The time zone of times in names and lists; this machine's by default.
-        form: The LMS that it is from, one of :data:`FORMS`; told from the names by default.
+        form: The LMS that it is from, as in ``--from``; told from the names by default.
         times: Lists of times; they count for all work of the students in them, also for work that was collected before.
         handed_in: The time of all work for which nothing else says one; in ``zone`` where it has no zone.
 

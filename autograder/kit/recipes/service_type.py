@@ -11,7 +11,7 @@ from autograder.kit import workspace_mistakes as workspace
 from autograder.kit.draft import OWN, SeenAsItIs
 from autograder.kit.model import Advice, Bench, Finding, Mistake
 from autograder.kit.runners import ServesInterface
-from autograder.kit.workspace_report import AMENT_PACKAGE, BUILDING, MORE, Interface, PackageReport, report_of
+from autograder.kit.workspace_report import AMENT_PACKAGE, BUILDING, Interface, PackageReport, report_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -87,8 +87,6 @@ class ServiceType(SeenAsItIs):
         if package is None:
             return Finding(False, expected, f"no package with a file {self._file}")
         names = " and ".join(_undeclared(package))
-        if names and (read := _cut_after(package)):
-            return Finding(False, expected, f"among its first {read} dependencies is no {names}")
         return Finding(not names, expected, f"it does not name {names}" if names else "it does")
 
     def _most_thorough(self, evidence: Evidence) -> PackageReport | None:
@@ -188,7 +186,7 @@ class ServiceType(SeenAsItIs):
         report = report_of(evidence.main)
         if report is None or report.built or GROUP not in report.line + report.log:
             return None
-        if any(GROUP in p.dependencies or _cut_after(p) for p, _ in holders):
+        if any(GROUP in p.dependencies for p, _ in holders):
             return None
         hidden = next((p for p, _ in holders if GROUP in p.commented), None)
         if hidden is not None:
@@ -237,12 +235,6 @@ class ServiceType(SeenAsItIs):
         name = undeclared[0]
         tag, reason = NEEDED[name]
         line = f"<{tag}>{name}</{tag}>"
-        if read := _cut_after(holder):
-            return Advice(
-                f"package.xml of {holder.name} names so many packages that only the first {read} were looked at, and "
-                f"{name} is none of them.",
-                f"Write {line} above the others: {reason}.",
-            )
         if name in holder.commented:
             return Advice(
                 f"package.xml of {holder.name} has {name} only inside a comment (<!-- … -->), where it does not count.",
@@ -292,11 +284,6 @@ def fields(text: str) -> list[Fields]:
 def _undeclared(package: PackageReport) -> list[str]:
     """What a package needs and is not seen to declare."""
     return [name for name in NEEDED if name not in package.dependencies]
-
-
-def _cut_after(package: PackageReport) -> int:
-    """How many of its dependencies are reported; 0 where all of them are."""
-    return len(package.dependencies) - 1 if MORE in package.dependencies else 0
 
 
 def _expected(evidence: Evidence) -> list[Fields]:

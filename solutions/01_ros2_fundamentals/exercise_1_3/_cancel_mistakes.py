@@ -24,7 +24,7 @@ from exercise_1_3._cancel_words import HAS_SUCCEEDED, false_claim, says_canceled
 
 from autograder.kit import goal_mistakes
 from autograder.kit.common_mistakes import only_if_ended
-from autograder.kit.crashes import last_line_of, meant, what_and_where
+from autograder.kit.crashes import LEFT_LYING, last_line_of, meant, what_and_where
 from autograder.kit.hangs import HANGS
 from autograder.kit.in_words import counted
 from autograder.kit.model import Advice, Mistake
@@ -195,7 +195,9 @@ def status_not_reported(evidence: Evidence) -> Advice | None:
             "Call get_result_async() of the goal handle once the goal is accepted, and read the status of its result() "
             "when that future is done. Leave out an rclpy.spin(...) before that: it does not come back.",
         )
-    if part.first("result") and last_line_of(part.traceback).startswith("TimeoutError"):
+    result, ending = part.first("result"), part.ending
+    was_there = result is not None and ending is not None and result.t + LEFT_LYING < ending.t
+    if was_there and last_line_of(part.traceback).startswith("TimeoutError"):
         return Advice(
             f"The server sent the result, and your client ended without it: {last_line_of(part.traceback)}.",
             "Where on_feedback, or another callback, waits or spins, leave that out: it takes the node away from the "

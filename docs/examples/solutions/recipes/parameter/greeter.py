@@ -50,7 +50,7 @@ def text_set(asked: Sequence[Given]) -> str:
     return str(asked[-1].value["parameters"][0]["value"]["string_value"]) if asked else "Hello"
 
 
-text = StateRule(text_set, given="asked")
+text = StateRule(text_set, slack=1.0, given="asked")
 greeter.criterion("default", 3, "Says Hello until somebody sets the parameter")(
     text.when(lambda asked: not asked)
 )
@@ -66,7 +66,7 @@ greeter.knows(
 )
 greeter.knows(
     "parameter_read_once",
-    text.taken_for(lambda _: "Hello"),
+    lambda seen, expected: bool(seen.of("answered")) and text.taken_for(lambda _: "Hello")(seen, expected),
     "Your node took the new value of the parameter, and goes on saying the old one: it was read only once.",
     'Ask for it each time, in the method that the timer calls: self.get_parameter("text").value.',
     certain=True,
