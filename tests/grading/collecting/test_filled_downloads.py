@@ -99,7 +99,7 @@ def hollow(archive: bytes, damage: str) -> bytes:
         place = data.index("é".encode())
         data[place : place + 2] = b"\xff\xfe"
     elif damage == "no name":
-        struct.pack_into("<H", data, entry + 28, 0)
+        data[entry + 46 : entry + 48] = b"\0x"  # the name ends before it
     elif damage == "before the beginning":
         struct.pack_into("<I", data, end + 16, 0xFFFF0000)
         struct.pack_into("<I", data, end + 12, end - entry)
