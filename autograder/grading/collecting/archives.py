@@ -12,6 +12,7 @@ import io
 import itertools
 import os
 import stat
+import struct
 import zipfile
 import zlib
 from collections import Counter
@@ -34,6 +35,18 @@ _LARGEST_LIST_OF_ONE = 300_000
 _OTHER_METHODS = {9: "Deflate64", 12: "bzip2", 14: "LZMA", 93: "Zstandard", 95: "xz", 98: "PPMd"}
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 """Others (bzip2, LZMA) unpack a few hundred bytes to a gigabyte in one step, before anybody can stop them."""
+_BROKEN = (
+    ArithmeticError,
+    EOFError,
+    LookupError,
+    OSError,
+    RuntimeError,
+    ValueError,
+    struct.error,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+"""What Python raises of archives that say what cannot be: a place before the beginning, a name in no letters."""
 _DEEPEST = 3
 """Archives in an archive that a student has handed in, one in the other."""
 _DEEPEST_FOLDER = 100
@@ -73,7 +86,7 @@ class File:
     def label(self) -> str:
         """Its name in messages."""
         parts = (*self.parts, *self.inner)
-        return "/".join(parts if self.source.is_dir() else (self.source.name, *parts))
+        return "/".join(parts if self.source.is_dir() else (name_as_text(self.source.name), *parts))
 
     @property
     def name(self) -> str:
@@ -128,7 +141,7 @@ def _of_source(source: Path, *, opened: bool) -> Iterator[File]:
     if source.is_dir():
         yield from _of_folder(source)
         return
-    alone = File(source.parent, (source.name,), functools.partial(_read_file, source))
+    alone = File(source.parent, (name_as_text(source.name),), functools.partial(_read_file, source))
     if source.suffix.lower() != ".zip" or not opened:
         yield alone
         return
@@ -187,7 +200,7 @@ def _of_zip(outer: File, data: BinaryIO, largest_list: int, room: Room | None = 
         archive = zipfile.ZipFile(bounded)
         bounded.most = MAX_BYTES + 1  # from here on, the files themselves
         entries = [entry for entry in archive.infolist() if not entry.is_dir()]
-    except (NotTaken, zipfile.BadZipFile, ValueError, NotImplementedError, OSError, EOFError) as error:
+    except _BROKEN as error:
         reason = f"it is no zip file that can be read: {error}"
         if room is None and isinstance(error, NotTaken):
             reason += ". Unpack it, and collect the folder"  # one student's many names are no reason to lose all others
@@ -302,15 +315,7 @@ def _read_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
         with archive.open(entry) as file:
             # No more than it claims: zipfile unpacks as much as it is asked for, and cuts it afterwards.
             data = file.read(min(entry.file_size, MAX_BYTES) + 1)
-    except (
-        NotTaken,
-        zipfile.BadZipFile,
-        zlib.error,
-        EOFError,
-        OSError,
-        RuntimeError,
-        NotImplementedError,
-    ) as error:
+    except _BROKEN as error:
         raise NotTaken(f"it cannot be unpacked: {error}") from error
     if len(data) > MAX_BYTES:
         raise NotTaken(f"it unpacks to more than {MAX_BYTES / 1e6:.0f} MB")

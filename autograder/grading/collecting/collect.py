@@ -103,6 +103,7 @@ class _Collecting:
         self._candidates: list[Candidate] = []
         self._outcomes: list[Outcome] = []
         self._unread: list[str] = []
+        self._rooms: dict[tuple[Path, tuple[str, ...]], Room] = defaultdict(Room)
 
     def run(self, sources: Sequence[Path], times: Sequence[Path]) -> CollectReport:
         """Read everything that is there, put it in its place, and write down what has none."""
@@ -220,7 +221,6 @@ class _Collecting:
         return found or []
 
     def _take(self, source: Source) -> None:
-        rooms: dict[tuple[str, ...], Room] = defaultdict(Room)
         levels = source.levels
         for file in source.files:
             if source.is_list(file, self._form):
@@ -237,7 +237,7 @@ class _Collecting:
                 self._refuse(file, reason, owners)
             else:
                 ids = tuple(one.id for students in owners.members for one in students)
-                for inner, held in within(file, data, rooms[ids]):
+                for inner, held in within(file, data, self._rooms[source.download, ids]):
                     if isinstance(held, NotTaken):
                         self._not_taken(inner, str(held), owners)
                     else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import unicodedata
 from dataclasses import dataclass, replace
 from datetime import datetime
@@ -107,7 +108,11 @@ def plain(name: str, file: str) -> Found:
     folders with user names.
     """
     bare = without_branch(name)
-    repository = (Identity("github", number=login) for login in (bare, *_ends(bare, "-")))
+    # What gh puts around all repositories is called lab-1-2-submissions, and somebody may call herself 2-submissions.
+    ends = [] if bare.endswith("submissions") else [bare, *_ends(bare, "-")]
+    # Before Ada's repository comes the one of a listed adalove-main.
+    logins = dict.fromkeys((*(f"{end}{name.removeprefix(bare)}" for end in ends), *ends))
+    repository = (Identity("github", number=login) for login in logins)
     return Found(Identity(), file, readings=(Identity(login=name, name=name), *repository))
 
 
@@ -181,6 +186,12 @@ def _canvas(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
     return Identity("canvas", found["number"], login=found["login"]), ()
 
 
+def numbers_in(name: str) -> list[str]:
+    """All numbers that may be the student's in a name of Canvas's: people and files may have numbers in theirs, too."""
+    pieces = name.split("_")[1:-1]
+    return [one for one, file in itertools.pairwise(pieces) if f"{one}{file}".isdecimal() and len(file) >= 3]
+
+
 def _google(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
     bare = found["name"].removeprefix(_COPY_OF)
     return Identity("google", login=bare if "@" in bare else "", name=bare), ()
@@ -199,7 +210,7 @@ def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader
         who: Tells from the groups the student, and the students of all ways to read the name.
         says_file: Whether a name without the group ``file`` is a folder's.
     """
-    expression = re2.compile(pattern)
+    expression = re2.compile(f"(?s){pattern}")  # a name may have line breaks
 
     def read(parts: Sequence[str], place: int) -> Found | None:
         match = expression.match(parts[place])
@@ -212,6 +223,15 @@ def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader
         order, late = int(found.get("order") or 0), bool(found.get("late"))
         file = parts[place] if file is None else file
         return Found(identity, file, read_time(time), order, late, readings, time)
+
+    return read
+
+
+def _first_of(*readers: _Reader) -> _Reader:
+    """A reader of names in one of several forms."""
+
+    def read(parts: Sequence[str], place: int) -> Found | None:
+        return next((found for one in readers if (found := one(parts, place))), None)
 
     return read
 
@@ -266,10 +286,17 @@ _READERS = {
     ),
     # lovelaceada_LATE_123_456_lab_1_2-1.ipynb: the student's number, then the file's. Canvas leaves of the name only
     # what is part of a word (github.com/instructure/canvas-lms, content_zipper.rb).
-    "canvas": _in_one_part(
-        r"^(?P<login>[\pL\pM\pN_-]*?[\pL\pM-][\pL\pM\pN_-]*?)_(?i:(?P<late>LATE)_)?"
-        r"(?P<number>\d+)_(?P<order>\d+)_(?P<file>.+)$",
-        _canvas,
+    "canvas": _first_of(
+        # Who is called 🙂 has no name there: 123_456_lab_1_2.ipynb has, as 2025_10_03_lab_1_2.zip has a date.
+        _in_one_part(
+            r"^(?P<login>[\pN_]*?)_(?:(?P<late>LATE)_)?(?P<number>\d{3,})_(?P<order>\d{3,})_(?P<file>.+)$",
+            _canvas,
+        ),
+        _in_one_part(
+            r"^(?P<login>[\pL\pM\pN_-]*?[\pL\pM-][\pL\pM\pN_-]*?)_(?i:(?P<late>LATE)_)?"
+            r"(?P<number>\d+)_(?P<order>\d+)_(?P<file>.+)$",
+            _canvas,
+        ),
     ),
     # Ada Lovelace - lab_1_2.ipynb
     "google": _in_one_part(r"^(?P<name>[^/]*?\S) - (?P<file>.+)$", _google),

@@ -19,6 +19,7 @@ import re2
 
 from autograder.grading.collecting.archives import EMPTY, File, files_of
 from autograder.grading.collecting.lists import GRADESCOPE
+from autograder.regular_files import name_as_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -74,7 +75,7 @@ def own_of(paths: Sequence[Path], student_of: StudentOf) -> set[Path]:
     beside = {path: path.absolute().parent for path in paths}
     by_system, loose = set(filter(student_of.has_form, paths)), set(filter(_is_loose, paths))
     # Beside a student's own file, such a name is one that a student may have chosen.
-    downloads = {path for path in paths if _DOWNLOAD.match(path.name)}
+    downloads = {path for path in paths if _DOWNLOAD.match(name_as_text(path.name))}
     downloads -= {
         path for path in downloads if beside[path] in {beside[one] for one in (by_system | loose) - downloads}
     }

@@ -10,8 +10,10 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import reason_against_name
-from autograder.grading.collecting.forms import TOLD_APART, plain, read_at
+from autograder.grading.collecting.forms import TOLD_APART, numbers_in, plain, read_at
+from autograder.grading.collecting.lists import GRADESCOPE
 from autograder.grading.table.roster import Identity, Roster, Student
+from autograder.regular_files import name_as_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -28,8 +30,8 @@ _NO_ID = (
 _NOBODY = Identity()
 _BY_NUMBER, _BY_LOGIN = ("canvas", "brightspace"), ("github", "blackboard", "google")
 """The systems whose names have one person's number, or one person's user name, whatever is handed in."""
-_LISTED = ("canvas", "github")
-"""Those of them whose lists say so, too. A number of Moodle's or Gradescope's is of one work."""
+_LISTED = ("canvas", "github", "gradescope")
+"""The systems whose lists say whom they know. A number of Moodle's or Gradescope's is of one work."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +101,7 @@ class StudentOf:
         # Google's names are the student's own at any place.
         for place in range(len(parts) if self._form == "google" else min(levels, len(parts))):
             if ways := [way for form in forms if (way := read_at(parts, place, form, self._is_notebook))]:
-                return self._agreed(ways)
+                return self._undisputed(self._agreed(ways), parts[place])
             if place < levels and (owners := self.find(plain(names[place], parts[-1]))):
                 return owners
         return Owners(None)
@@ -115,7 +117,7 @@ class StudentOf:
         return bool(self._roster.students and self._of_name(path).members)
 
     def _of_name(self, path: Path) -> Owners:
-        name = path.absolute().name
+        name = name_as_text(path.absolute().name)
         return self.owners((name, "") if path.is_dir() else (name,), 1, is_alone=True)
 
     def find(self, way: Found) -> Owners | None:
@@ -134,6 +136,17 @@ class StudentOf:
             return Owners(None, rivals=tuple(way.identity.lms for way in ways))
         return read[0]
 
+    def _undisputed(self, owners: Owners, name: str) -> Owners:
+        """The same; all whose numbers Canvas's name has where the student may be called as another one's number."""
+        if owners.found is None or owners.found.identity.lms != "canvas" or not owners.members:
+            return owners
+        others = map(self._of, (Identity("canvas", number) for number in numbers_in(name)))
+        known = [members for members, is_sure in others if is_sure]
+        meant = {
+            one.id: one for members in (owners.members, *known) for students in members for one in students
+        }
+        return replace(owners, members=(tuple(meant.values()),)) if len(meant) > 1 else owners
+
     def _who(self, identity: Identity) -> tuple[tuple[tuple[Student, ...], ...], bool]:
         """The students who may be meant, and whether that is sure; without a list, the one that the LMS names."""
         known = self._by_number.get((identity.lms, identity.number or identity.login))
@@ -145,7 +158,8 @@ class StudentOf:
         # What students.csv has of Moodle is another number: this one is one student's in one assignment.
         asked = replace(identity, number="") if identity.lms == "moodle" else identity
         found = self._roster.find(asked)
-        is_sure = bool(found and asked.number) and found[0].lms.get(identity.lms) == asked.number
+        number = asked.number.casefold()  # user names of GitHub's have capitals or not
+        is_sure = bool(found and number) and found[0].lms.get(identity.lms, "").casefold() == number
         found = tuple(one for one in found if is_sure or not self._is_another(one, identity))
         called = identity.login or identity.name
         if not self._roster.students and identity.lms and called:
@@ -155,9 +169,10 @@ class StudentOf:
     def _is_another(self, student: Student, identity: Identity) -> bool:
         """True if a student is known there by another number: who takes another's name there is not the other."""
         lms = identity.lms
-        theirs = (lms in _BY_NUMBER and identity.number) or (lms in _BY_LOGIN and identity.login) or ""
+        by_number = lms in (*_BY_NUMBER, "gradescope")
+        theirs = (by_number and identity.number) or (lms in _BY_LOGIN and identity.login) or ""
         known = {
-            student.lms.get(lms, ""),
+            student.lms.get(lms, "") if lms != "gradescope" else "",
             *(number for one, id_, number in self._listed if (one, id_) == (lms, student.id)),
         }
         # The column of a system with numbers may have a user name.
@@ -203,6 +218,8 @@ class StudentOf:
         nobody = f"nobody in the class is called {called or number}: add a line to students.csv, or"
         if identity.lms == "moodle":
             return f"{nobody} {_with_worksheet(number)}"
+        if identity.lms == "gradescope" and known is None:
+            return f"{nobody} collect the export itself, whose {GRADESCOPE} says who number {number} is"
         return (
             f"{nobody} the id that {identity.lms.capitalize()} uses ({number}) to the column {identity.lms}"
         )
@@ -250,7 +267,10 @@ def _of_several(identity: Identity, students: Iterable[Student]) -> str:
     names = ", ".join(student.id for student in students)
     if identity.lms == "moodle":
         return f"{identity} may be {names}: {_with_worksheet(identity.number)}"
-    return f"{identity} may be {names}: put the LMS's id of each into students.csv"
+    return (
+        f"{identity} may be {names}: put the LMS's id of each into students.csv, or the file into a folder with the "
+        "student's id, and collect that"
+    )
 
 
 def _with_worksheet(number: str) -> str:

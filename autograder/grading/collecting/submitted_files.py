@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     """The files that do not count, and what became of them."""
 
 
-_ONE_NUMBER = ("canvas", "moodle")
+_ONE_NUMBER = ("canvas", "moodle", "brightspace")
 """The systems that give a person one number in a download, and in which people may change their names."""
 
 
@@ -232,7 +232,7 @@ def _newest(group: list[Candidate]) -> tuple[Candidate | None, _Others]:
 def _people(group: Iterable[Candidate]) -> str:
     """The numbers of several people who are read as one student; empty where it is one person.
 
-    In Canvas a person has one number; in Moodle one in each download.
+    In Canvas a person has one number; elsewhere one in each download.
     """
     numbers: dict[Path | None, set[str]] = defaultdict(set)
     for one in group:

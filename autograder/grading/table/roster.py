@@ -171,7 +171,7 @@ class Roster:
     def _by_number(self, identity: Identity) -> tuple[Student, ...]:
         if not identity.number:
             return ()
-        return self._all(lambda one: one.lms.get(identity.lms, "") == identity.number)
+        return self._all(lambda one: _folded(one.lms.get(identity.lms, "")) == _folded(identity.number))
 
     def _by_login(self, identity: Identity) -> tuple[Student, ...]:
         if not identity.login:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import struct
 import subprocess
 import time
 from typing import TYPE_CHECKING
@@ -77,6 +78,51 @@ def test_the_archives_of_one_student_have_one_room(
     refused = [one for one in report.having(State.NOT_PLACED) if one.label.endswith(".zip")]
     assert [(one.student, one.label[-5:]) for one in refused] == [("ben", "2.zip"), ("ben", "3.zip")]
     assert "it has 1 files that unpack to 4 MB: with the student's other archives, more than" in why(report)
+
+
+def test_of_archives_named_one_by_one_one_student_has_one_room(
+    klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(archives.Room.__init__, "__defaults__", (100, 10 * MB))
+    blanks = zipped({"x.txt": b" " * (4 * MB)})
+    for number in range(4):
+        (tmp_path / f"barben_102_{number}00_x.zip").write_bytes(blanks)
+    report = collect(klass.path, sorted(tmp_path.glob("*.zip")))
+    refused = [one.label for one in report.outcomes if "with the student's other archives" in one.reason]
+    assert refused == ["barben_102_200_x.zip", "barben_102_300_x.zip"]
+
+
+def hollow(archive: bytes, damage: str) -> bytes:
+    """An archive that says what cannot be, as nobody's program does."""
+    data, entry, end = bytearray(archive), archive.rfind(b"PK\x01\x02"), archive.rfind(b"PK\x05\x06")
+    if damage == "a name in no letters":
+        place = data.index("é".encode())
+        data[place : place + 2] = b"\xff\xfe"
+    elif damage == "no name":
+        data[entry + 46 : entry + 48] = b"\0x"  # the name ends before it
+    elif damage == "before the beginning":
+        struct.pack_into("<I", data, end + 16, 0xFFFF0000)
+        struct.pack_into("<I", data, end + 12, end - entry)
+    else:
+        extra = struct.pack("<HHQ", 1, 8, 2**64 - 1)
+        data[end:end] = extra
+        struct.pack_into("<I", data, entry + 42, 0xFFFFFFFF)
+        struct.pack_into("<H", data, entry + 30, len(extra))
+        struct.pack_into("<I", data, end + len(extra) + 12, end - entry + len(extra))
+    return bytes(data)
+
+
+@pytest.mark.parametrize(
+    "damage", ["a name in no letters", "no name", "before the beginning", "behind any end"]
+)
+def test_an_archive_that_says_what_cannot_be_keeps_nobodys_work_from_being_collected(
+    klass: TinyClass, tmp_path: Path, damage: str
+) -> None:
+    """Python raised what nobody expected of a broken archive, and the whole command ended."""
+    of_ben = {"x.zip": hollow(zipped({"é.ipynb": work(klass)}), damage)}
+    report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", of_ben)])
+    assert placed(report).keys() == {"zoe"}
+    assert [one.student for one in report.having(State.NOT_PLACED)] == ["ben"]
 
 
 def test_many_small_archives_have_no_more_room_than_one(
