@@ -3,8 +3,8 @@
 This is decided here alone, by what is named and never by what lies within:
 
 - **One student's own** is what a system or its own name says to be a student's, and every file that is no zip and no
-  list. Its own name says whose it is, and nothing in it does. So it is with all zips and folders that are named beside
-  something whose name a student may have chosen, whoever theirs are: as with ``repositories/*``.
+  list. Its own name says whose it is, and nothing in it does. So it is with several folders that are named beside each
+  other, as with ``repositories/*``, and with all zips and folders beside a name that a student may have chosen.
 - **A download** is every other zip and folder. The names at its top say students, or, where one folder is around all,
   that one and those in it. Below them students have chosen the names.
 """
@@ -12,6 +12,7 @@ This is decided here alone, by what is named and never by what lies within:
 from __future__ import annotations
 
 import functools
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -80,7 +81,8 @@ def own_of(paths: Sequence[Path], student_of: StudentOf) -> set[Path]:
         path for path in downloads if beside[path] in {beside[one] for one in (by_system | loose) - downloads}
     }
     called = (loose | set(filter(student_of.is_called, paths))) - downloads - by_system
-    chosen = {beside[path] for path in called}
+    folders = Counter(beside[path] for path in paths if path.is_dir() and path not in by_system)
+    chosen = {beside[path] for path in called} | {parent for parent, number in folders.items() if number > 1}
     return (by_system - downloads) | {path for path in paths if beside[path] in chosen}
 
 

@@ -81,6 +81,17 @@ def test_of_repositories_named_one_by_one_nothing_inside_says_whose_it_is(
     assert unknown in why(report)
 
 
+def test_several_folders_beside_each_other_are_one_students_each_also_where_nobody_is_known(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    repositories = tmp_path / "repositories"
+    for name in ("lab-1-2-mallory", "lab-1-2-trudy"):
+        folder(repositories / name, {"ben/lab_1_2.ipynb": work(klass, 1)})
+    report = collect(klass.path, sorted(repositories.iterdir()))
+    assert placed(report) == {}
+    assert report.exit_code == 2
+
+
 def test_who_is_known_by_a_list_alone_shows_what_the_folders_are(klass: TinyClass, tmp_path: Path) -> None:
     grades = tmp_path / "grades.csv"
     grades.write_text("github_username,roster_identifier\nzee,zoe@uni.example\n")
