@@ -285,7 +285,9 @@ def _older(newest: Candidate, known: Collected, history: History) -> Outcome | N
             f"the one that is there came from another repository, {known.source}, and only the end of this one's name "
             f"is {newest.student}'s: if it counts, put it into submitted/ yourself",
         )
-    if new.lms == known.lms == "canvas" and new.number != known.number and not newest.is_sure:
+    if new.lms == known.lms == "canvas" and new.number != known.number:
+        if newest.is_sure:
+            return None  # what is there is of somebody who took the student's name
         return newest.outcome(
             State.NOT_PLACED,
             f"the one that is there is of number {known.number} in Canvas, and this one of {new.number}: put the "

@@ -359,3 +359,20 @@ def test_who_is_excused_from_no_assignment_is_said(klass: TinyClass, tmp_path: P
     (klass.path / "students.csv").write_text("id,excused\nada,lab_1_22\n")
     report = collect(klass.path, [write_zip(tmp_path / "c.zip", {"ada/lab_1_2.ipynb": work(klass)})])
     assert any("students.csv excuses ada from lab_1_22" in note for note in report.notes)
+
+
+def test_once_the_number_is_known_the_students_own_work_replaces_what_came_under_her_name(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    """Somebody called herself Ada and came first; her file has the higher number, and so is the later one in Canvas."""
+    roster = ROSTER.splitlines(keepends=True)
+    without = "".join(line.replace(",101,", ",,") for line in roster)
+    (klass.path / "students.csv").write_text(without, encoding="utf-8")
+    assert without != ROSTER
+    forged, own = (f"lovelaceada_{number}_lab_1_2.ipynb" for number in ("777_9999", "101_5001"))
+    works = {forged: work(klass, 1), own: work(klass, 2)}
+    collect(klass.path, [write_zip(tmp_path / "first.zip", {forged: works[forged]})])
+    assert (klass.path / "submitted/ada/lab_1_2/lab_1_2.ipynb").read_text() == works[forged]
+    (klass.path / "students.csv").write_text(ROSTER, encoding="utf-8")
+    collect(klass.path, [write_zip(tmp_path / "all.zip", works)])
+    assert (klass.path / "submitted/ada/lab_1_2/lab_1_2.ipynb").read_text() == works[own]
