@@ -173,20 +173,24 @@ class StudentOf:
         theirs = (by_number and identity.number) or (lms in _BY_LOGIN and identity.login) or ""
         known = {
             student.lms.get(lms, "") if lms != "gradescope" else "",
-            *(number for one, id_, number in self._listed if (one, id_) == (lms, student.id)),
+            *self._listed.get((lms, student.id), ()),
         }
         # The column of a system with numbers may have a user name.
         known = {one.casefold() for one in known if one and (one.isdigit() or lms not in _BY_NUMBER)}
         return bool(theirs and known) and theirs.casefold() not in known
 
     @functools.cached_property
-    def _listed(self) -> set[tuple[str, str, str]]:
-        """The systems, students and numbers by which lists know a student surely."""
+    def _listed(self) -> dict[tuple[str, str], set[str]]:
+        """The numbers by which lists know a student surely, by the system and the student's id."""
+        numbers: dict[tuple[str, str], set[str]] = defaultdict(set)
         entries = (
             (entry, names) for entry in self._entries if entry.lms in _LISTED for names in entry.members
         )
         hits = ((entry, self._first(names)) for entry, names in entries if entry.number)
-        return {(entry.lms, hit[0].id, entry.number) for entry, hit in hits if hit and hit[1]}
+        for entry, hit in hits:
+            if hit and hit[1]:
+                numbers[entry.lms, hit[0].id].add(entry.number)
+        return numbers
 
     def _first(self, names: Iterable[Identity]) -> tuple[Student, bool] | None:
         """The student of the first of several names that is one student's alone, and whether it is no mere name."""

@@ -200,14 +200,14 @@ def _newest(group: list[Candidate]) -> tuple[Candidate | None, _Others]:
     gave to a file puts it before.
     """
     outcomes: _Others = []
-    by_name = [one for one in group if one.collected.lms in _ONE_NUMBER and not one.is_sure]
+    by_name = [one for one in group if _is_by_name(one)]
     if by_name and (people := _people(group)):
         reason = (
             f"there are several people who are read as {group[0].student}, of the numbers {people}: put the number of "
             "each into students.csv, or collect it together with that system's list"
         )
         outcomes = [(one, one.outcome(State.NOT_PLACED, reason)) for one in by_name]
-        group = [one for one in group if one not in by_name]
+        group = [one for one in group if not _is_by_name(one)]
     together: dict[tuple[Path, datetime | None, tuple[Identity, ...]], list[Candidate]] = defaultdict(list)
     for one in group:
         together[one.download, one.collected.when, one.found.readings[:1]].append(one)
@@ -227,6 +227,11 @@ def _newest(group: list[Candidate]) -> tuple[Candidate | None, _Others]:
         ),
     )
     return newest, outcomes + others
+
+
+def _is_by_name(one: Candidate) -> bool:
+    """True if a name, and no number, says whose it is, though the system has a number for each person."""
+    return one.collected.lms in _ONE_NUMBER and not one.is_sure
 
 
 def _people(group: Iterable[Candidate]) -> str:
