@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from autograder.kit.runners import Runner
 
 
+STEP = 0.05
+"""Simulated seconds that pass at once where a scenario does not say more: small beside any period of the course."""
+
+
 class Pace(StrEnum):
     """The kind of time in which the judge looks at a subject."""
 
@@ -257,7 +261,12 @@ class Bench(Protocol):
         """Write down where the subject's threads are. This ends a command; to be asked last in a part."""
 
     def run_time(
-        self, seconds: float, *, until: Callable[[], bool] | None = None, quiet: float | None = None
+        self,
+        seconds: float,
+        *,
+        until: Callable[[], bool] | None = None,
+        quiet: float | None = None,
+        step: float = STEP,
     ) -> bool:
         """Let ``seconds`` of the subject's time pass: simulated ones where it follows, else real ones.
 
@@ -265,6 +274,8 @@ class Bench(Protocol):
             seconds: At most so long.
             until: Stop when this holds.
             quiet: In real time, stop when nothing at all happened for so many seconds.
+            step: Simulated seconds that pass at once. A timer with a shorter period is called once a step, so times
+                are seen to this precision; each step costs a few milliseconds of the subject's and of the judge's.
 
         Returns:
             False where simulated time could not go on, because the subject's executor does not turn any more.

@@ -19,7 +19,7 @@ from autograder.judge.bench.topics import LogReader, RecordedPublisher, Recorded
 from autograder.judge.bench.wire import JudgeFailed, Wire
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part, Reference
 from autograder.kit.giving_up import patience
-from autograder.kit.model import Pace
+from autograder.kit.model import STEP, Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -319,10 +319,15 @@ class TestBench:
     # --- time ----------------------------------------------------------------------------------------------
 
     def run_time(
-        self, seconds: float, *, until: Callable[[], bool] | None = None, quiet: float | None = None
+        self,
+        seconds: float,
+        *,
+        until: Callable[[], bool] | None = None,
+        quiet: float | None = None,
+        step: float = STEP,
     ) -> bool:
         """Let ``seconds`` of the subject's time pass, or fewer where ``until`` holds or nothing happens."""
-        return self._time.run(seconds, until=until, quiet=quiet)
+        return self._time.run(seconds, until=until, quiet=quiet, step=step)
 
     def pass_time(self, seconds: float, role: str, name: str) -> None:
         """Let simulated seconds pass for a subject that lives in real time, real ones where it does not follow."""

@@ -23,7 +23,7 @@ from autograder.judge.bench import graph
 from autograder.judge.bench.patience import Patience
 from autograder.judge.bench.presence import MATCH, Presence
 from autograder.kit.giving_up import spared, willing
-from autograder.kit.model import Pace
+from autograder.kit.model import STEP, Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -43,8 +43,6 @@ TURNS = 3
 It takes the time in one and calls the timers in the next. And where it looks at its subscriptions a moment before the
 time arrives, and at its services a moment after the question has, the first turn is about the question alone.
 """
-STEP = 0.05
-"""Simulated seconds a step: small beside any period of the course, so that a period is seen to this precision."""
 FIRST = 100.0
 """Simulated seconds at the start. The jump to it distorts the first interval, which nobody counts."""
 SLOW_STEP = 0.25
@@ -197,8 +195,8 @@ class SimulatedClock(NodeClock):
         self._recorder.wait(lambda: not silent(), STANDSTILL)
         return silent()
 
-    def run(self, seconds: float, until: Callable[[], bool]) -> bool:
-        """Step through ``seconds`` of simulated time or until something holds.
+    def run(self, seconds: float, until: Callable[[], bool], step: float = STEP) -> bool:
+        """Go through ``seconds`` of simulated time in steps of ``step`` seconds, or until something holds.
 
         Returns:
             Whether the subject's executor answered after each step.
@@ -207,7 +205,7 @@ class SimulatedClock(NodeClock):
         end = round(self._now + seconds, 6)
         while self._now < end and not until():
             began = time.monotonic()
-            self._now = round(self._now + STEP, 6)
+            self._now = round(min(self._now + step, end), 6)
             self._recorder.simulated_now = self._now
             if not self.show(self._now):
                 self.doubtful = True
@@ -258,7 +256,12 @@ class SubjectTime:
         self._deaf: set[str] = set()
 
     def run(
-        self, seconds: float, *, until: Callable[[], bool] | None = None, quiet: float | None = None
+        self,
+        seconds: float,
+        *,
+        until: Callable[[], bool] | None = None,
+        quiet: float | None = None,
+        step: float = STEP,
     ) -> bool:
         """Let ``seconds`` of the subject's time pass, or fewer where ``until`` holds or nothing happens.
 
@@ -268,7 +271,7 @@ class SubjectTime:
         over = until or (lambda: False)
         if self._pace is Pace.FAST and self._follow_clock():
             assert self._clock is not None
-            turns = self._clock.run(seconds, lambda: over() or self._subject.ended)
+            turns = self._clock.run(seconds, lambda: over() or self._subject.ended, step)
             if self._clock.doubtful:
                 self._doubt()
             return turns

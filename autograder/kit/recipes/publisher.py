@@ -14,7 +14,7 @@ from autograder.kit import common_mistakes as common
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.hangs import HANGS
 from autograder.kit.in_words import counted
-from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
+from autograder.kit.model import STEP, Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.rate import ROW, Rate, confirmed, rate_of, sent_times, simulated
 
 if TYPE_CHECKING:
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 USUAL_PERIOD = 0.5
 """Seconds; stands in for the reference's period while that is being recorded."""
+STEPS = 5
+"""Steps of simulated time in a period: a publisher that is twice as fast, or a tenth slower, shows itself."""
 SILENCE = 6
 """Periods of silence after which nothing more is waited for."""
 PERSISTS = 1.0
@@ -407,7 +409,12 @@ def reference_period(reference: Reference) -> float:
 
 def _listen(bench: Bench, topic: str, enough: int, period: float) -> None:
     missing = enough - bench.heard(topic)
-    bench.run_time(2 * missing * period, until=lambda: bench.heard(topic) >= enough, quiet=SILENCE * period)
+    bench.run_time(
+        2 * missing * period,
+        until=lambda: bench.heard(topic) >= enough,
+        quiet=SILENCE * period,
+        step=max(STEP, period / STEPS),
+    )
 
 
 def _gaps(rate: Rate) -> str:

@@ -25,6 +25,8 @@ SINGLY = 12
 """Texts that are sent each once the one before was said."""
 AT_PACE = 8
 """Texts that are sent one after the other at the pace, in real time."""
+STEPS = 2
+"""Steps of simulated time from one text to the next: in each of them a listener takes what it was sent."""
 TRIES = 3
 """Times that this is tried: a busy machine may be slower than the pace for a moment."""
 SIMULATED = 20
@@ -60,6 +62,7 @@ class Speaks:
 
     def __init__(self, *, pace: float, paced_by: str) -> None:
         self._pace, self._paced_by = pace, paced_by
+        self._step = pace / STEPS
 
     def scenario(self, bench: Bench) -> None:
         """Send texts that nobody can guess, at the pace and each once the one before was said."""
@@ -71,9 +74,9 @@ class Speaks:
         if bench.await_endpoint("subscription", topic):
             bench.release()
             bench.await_attention()
-            bench.run_time(BEFORE)
+            bench.run_time(BEFORE, step=self._step)
             if self._all_are_said(bench, speaker, texts):
-                bench.run_time(AFTERMATH)
+                bench.run_time(AFTERMATH, step=self._step)
             else:
                 bench.note_whether_it_spins()
         bench.stop()
@@ -83,15 +86,15 @@ class Speaks:
         simulated = bench.wait_until(_is_simulated, 0.0)
         if simulated:
             # As long as between any two: when the next text is sent must not depend on how soon this one is said.
-            bench.run_time(self._pace)
-        if not _are_said(bench, texts[:1]):
+            bench.run_time(self._pace, step=self._step)
+        if not self._are_said(bench, texts[:1]):
             self._ask_once_more(bench, speaker, texts[1])
             return False
         if simulated:
             return self._are_said_at_pace(bench, speaker, texts[1:SIMULATED])
         kept = any(self._are_said_at_pace(bench, speaker, row) for row in _rows(texts))
         # Where it missed some at that pace, two more tell whether it says what it is given time for.
-        return all(_is_answered(bench, speaker, text) for text in texts[-SINGLY:][: None if kept else 2])
+        return all(self._is_answered(bench, speaker, text) for text in texts[-SINGLY:][: None if kept else 2])
 
     def _ask_once_more(self, bench: Bench, speaker: Speaker, text: str) -> None:
         """Send one more text to who has said nothing: it may say the one before."""
@@ -103,9 +106,23 @@ class Speaks:
     def _are_said_at_pace(self, bench: Bench, speaker: Speaker, texts: Sequence[str]) -> bool:
         for text in texts:
             speaker.send(data=text)
-            if not bench.run_time(self._pace):
+            if not bench.run_time(self._pace, step=self._step):
                 break
-        return _are_said(bench, texts)
+        return self._are_said(bench, texts)
+
+    def _is_answered(self, bench: Bench, speaker: Speaker, text: str) -> bool:
+        speaker.send(data=text)
+        return self._are_said(bench, [text])
+
+    def _are_said(self, bench: Bench, texts: Sequence[str]) -> bool:
+        said = partial(_says, texts)
+        if bench.wait_until(said, PATIENCE[bench.pace]):
+            return True
+        if not bench.wait_until(_is_simulated, 0.0):
+            return False
+        # A listener may say by a timer of its own what it has heard.
+        bench.run_time(PATIENCE[bench.pace], until=lambda: bench.wait_until(said, 0.0), step=self._step)
+        return bench.wait_until(said, PATIENCE[bench.pace])
 
     def seen(self, evidence: Evidence) -> Part:
         """The subject, as it was seen."""
@@ -161,22 +178,6 @@ class Speaks:
 def _rows(texts: Sequence[str]) -> list[Sequence[str]]:
     """The texts of each time that the lab's pace is tried in real time."""
     return [texts[1 + AT_PACE * i : 1 + AT_PACE * (i + 1)] for i in range(TRIES)]
-
-
-def _is_answered(bench: Bench, speaker: Speaker, text: str) -> bool:
-    speaker.send(data=text)
-    return _are_said(bench, [text])
-
-
-def _are_said(bench: Bench, texts: Sequence[str]) -> bool:
-    said = partial(_says, texts)
-    if bench.wait_until(said, PATIENCE[bench.pace]):
-        return True
-    if not bench.wait_until(_is_simulated, 0.0):
-        return False
-    # A listener may say by a timer of its own what it has heard.
-    bench.run_time(PATIENCE[bench.pace], until=lambda: bench.wait_until(said, 0.0))
-    return bench.wait_until(said, PATIENCE[bench.pace])
 
 
 def _is_simulated(evidence: Evidence) -> bool:

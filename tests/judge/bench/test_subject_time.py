@@ -13,7 +13,7 @@ from rclpy.executors import SingleThreadedExecutor
 from autograder.judge.bench import subject_time
 from autograder.judge.bench.graph import NodeName
 from autograder.judge.bench.recorder import Recorder
-from autograder.judge.bench.subject_time import NodeClock
+from autograder.judge.bench.subject_time import FIRST, NodeClock, SimulatedClock
 from autograder.judge.bench.wire import Wire
 from autograder.judge.serving import domain
 
@@ -108,6 +108,22 @@ def test_timers_fire_as_they_would_later_on_and_the_clock_is_given_back(
             assert all(moment - began >= 19.0 for moment in fired)
             assert not node.get_parameter("use_sim_time").value
             assert abs(node.get_clock().now().nanoseconds / 1e9 - time.time()) < 5.0
+
+
+def test_a_scenario_says_how_much_time_passes_at_once(subject_node: SubjectNode, spun: Spun) -> None:
+    fired: list[float] = []
+    with (
+        domain.lease() as domain_id,
+        Wire(domain_id) as wire,
+        subject_node(domain_id) as node,
+        spun(SingleThreadedExecutor(context=node.context), node),
+        closing(SimulatedClock(wire, Recorder(), NodeName("subject", "/"))) as clock,
+    ):
+        assert clock.take_over()
+        node.create_timer(0.1, lambda: fired.append(node.get_clock().now().nanoseconds / 1e9))
+        assert clock.run(1.0, lambda: False, step=0.25)
+        assert clock.run(0.3, lambda: False, step=0.25)
+    assert [round(now - FIRST, 3) for now in fired] == [0.25, 0.5, 0.75, 1.0, 1.25, 1.3]
 
 
 def test_who_is_not_spun_does_not_go_along(subject_node: SubjectNode) -> None:
