@@ -27,6 +27,7 @@ from autograder.grading.running import sandboxing
 from autograder.grading.task import Task
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
     from pathlib import Path
 
     from nbformat import NotebookNode
@@ -54,7 +55,9 @@ def task_of(
     problem: str,
 ) -> Task:
     """The task that executes a rebuilt notebook under the class's limits."""
-    cells = cells_of(rebuilt, demonstrations=are_run(directory))
+    master = directory.master(assignment, notebook)
+    prose = frozenset(cell.source for cell in master.cells if cell.cell_type == CellType.MARKDOWN)
+    cells = cells_of(rebuilt, demonstrations=are_run(directory), prose=prose)
     work = hashlib.sha256(msgspec.json.encode(cells)).hexdigest()
     return Task(
         student=student,
@@ -100,12 +103,15 @@ def limits_of(directory: ClassDirectory) -> Limits:
     )
 
 
-def cells_of(notebook: NotebookNode, *, demonstrations: bool = True) -> tuple[Cell, ...]:
+def cells_of(
+    notebook: NotebookNode, *, demonstrations: bool = True, prose: Collection[str] = ()
+) -> tuple[Cell, ...]:
     """The cells of a rebuilt notebook as they are executed.
 
     Args:
         notebook: The notebook.
         demonstrations: Also run the cells that only show something.
+        prose: Texts of the course's own. Nothing locks their cells, and no student wrote them.
     """
     left_out = frozenset() if demonstrations else demonstrations_of(notebook)
     return tuple(
@@ -114,7 +120,7 @@ def cells_of(notebook: NotebookNode, *, demonstrations: bool = True) -> tuple[Ce
             kind=CellType(cell.cell_type),
             check=check_of(cell),
             name=grade_id(cell),
-            own=not is_the_masters(cell),
+            own=not (is_the_masters(cell) or (cell.cell_type == CellType.MARKDOWN and cell.source in prose)),
         )
         for place, cell in enumerate(notebook.cells)
     )

@@ -7,6 +7,7 @@ from nbformat import NotebookNode
 from autograder.boxes.execution import CellType
 from autograder.grading.rebuilding.rebuild import rebuild, rebuild_unreadable
 from autograder.grading.rebuilding.submission import SubmittedCell
+from autograder.grading.rebuilding.task_making import cells_of
 
 
 def master_cell(
@@ -186,3 +187,15 @@ def test_the_master_is_not_changed(master: NotebookNode) -> None:
     before = nbformat.writes(master)
     rebuild(master, as_submitted(master, **ANSWERS)).notebook.cells[1].source = "changed"
     assert nbformat.writes(master) == before
+
+
+def test_the_courses_own_prose_is_nobodys_work_where_its_cells_are_not_locked(master: NotebookNode) -> None:
+    del master.cells[1:]
+    texts = ("# Title", "# Title, and my notes")
+    submitted = [SubmittedCell(kind, text) for kind in (CellType.MARKDOWN, CellType.CODE) for text in texts]
+    cells = cells_of(rebuild(master, submitted).notebook, prose={"# Title"})
+    assert [(cell.kind, cell.source) for cell in cells if cell.own] == [
+        (CellType.MARKDOWN, "# Title, and my notes"),
+        (CellType.CODE, "# Title"),
+        (CellType.CODE, "# Title, and my notes"),
+    ]
