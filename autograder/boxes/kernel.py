@@ -18,10 +18,9 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from jupyter_client.session import Session
-
 from autograder.boxes.execution import Ended
 from autograder.boxes.guards import INTERVAL, NoGuard
+from autograder.boxes.jupyter_messages import SignedMessages
 from autograder.boxes.limits import Left, first_of, until, wall_time
 from autograder.boxes.zmtp import ZmtpConnection
 
@@ -91,7 +90,7 @@ class Kernel:
         self._read_before = self._dropped_before = 0
         self._on_output = on_output
         key = secrets.token_hex(32)
-        self._session = Session(key=key.encode(), check_pid=False)
+        self._form = SignedMessages(key)
         self._log, log = _log_pipe()
         shell, iopub = (_listener(folder / f"k-{number}") for number in (SHELL, IOPUB))
         try:
@@ -150,10 +149,10 @@ class Kernel:
             "allow_stdin": False,
             "stop_on_error": False,
         }
-        message = self._session.msg("execute_request", content)
-        request(message["header"]["msg_id"])
-        self._shell.send(self._session.serialize(message))
-        ended = self._await_reply(message["header"]["msg_id"], left)
+        asked, parts = self._form.written("execute_request", content)
+        request(asked)
+        self._shell.send(parts)
+        ended = self._await_reply(asked, left)
         if ended is not None:
             return ended
         stopped_for = Ended.TOO_MUCH_OUTPUT if self._floods else self._guard.reason() or Ended.TIMED_OUT
@@ -163,7 +162,7 @@ class Kernel:
         # What is asked behind it is answered all the same.
         next_one = self._ask("kernel_info_request", {})
         grace = wall_time(self._limits.interrupt_grace)
-        if self._await_reply(message["header"]["msg_id"], grace, next_one) is None:
+        if self._await_reply(asked, grace, next_one) is None:
             self.kill()
         return stopped_for
 
@@ -303,7 +302,7 @@ class Kernel:
     def _received(self, channel: ZmtpConnection) -> Iterator[dict[str, Any]]:
         for parts in channel.received():
             with contextlib.suppress(Exception):  # a message of no or of a forged form
-                yield self._session.deserialize(self._session.feed_identities(parts)[1])
+                yield self._form.read(parts)
 
     def _hand_on(self, message: Mapping[str, Any]) -> None:
         content = message.get("content")
@@ -311,9 +310,9 @@ class Kernel:
             self._on_output(_parent(message), str(message.get("msg_type")), content)
 
     def _ask(self, message_type: str, content: dict[str, Any]) -> str:
-        message = self._session.msg(message_type, content)
-        self._shell.send(self._session.serialize(message))
-        return str(message["header"]["msg_id"])
+        asked, parts = self._form.written(message_type, content)
+        self._shell.send(parts)
+        return asked
 
     def _last_words(self) -> str:
         with contextlib.suppress(OSError):
