@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 import shutil
 import tomllib
 from dataclasses import dataclass, field
@@ -98,8 +97,7 @@ def demo(path: Path, *, console: Console | None = None) -> GradeReport:
     if sandbox.why_impossible():
         sandboxing.switch_off(path)
     _make(path, console)
-    # Sample notebooks mostly wait, for a timer or for a time-out: two at once keep a processor busy.
-    report = grade(path, jobs=2 * (os.cpu_count() or 1))
+    report = grade(path)
     show(report, console)
     return report
 

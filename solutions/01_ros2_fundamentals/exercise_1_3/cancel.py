@@ -79,7 +79,11 @@ def cancels_once(evidence: Evidence) -> Finding:
 
 
 def ignores_late_feedback(evidence: Evidence) -> Finding:
-    """Feedback that arrives after the request causes no further request and no new goal."""
+    """Feedback that arrives after the request causes no further request and no new goal.
+
+    Who asks again before any arrives goes by a clock: whether that ticks among late feedback is chance, and another
+    criterion's matter (:func:`cancels_once`).
+    """
     part = evidence.main
     expected = "nothing more is asked for"
     first = part.first("cancel")
@@ -89,7 +93,8 @@ def ignores_late_feedback(evidence: Evidence) -> Finding:
         return Finding(False, expected, LEFT)
     later = part.events[part.events.index(first) + 1 :]
     arrived = next((place for place, event in enumerate(later) if event.kind == "feedback"), len(later))
-    acted = [event for event in later[arrived:] if event.kind in ("cancel", "goal")]
+    kinds = ("cancel", "goal") if len(_cancels(part)) == 1 else ("goal",)
+    acted = [event for event in later[arrived:] if event.kind in kinds]
     seen = f"{len(acted)} more {acted[0].kind} requests" if acted else expected
     return Finding(not acted, expected, seen)
 
