@@ -24,7 +24,7 @@ _OPENING, _CLOSING = tuple("\"'“‘«`"), tuple("\"'”’»`")
 _A_TALKERS = re2.compile(r"\W*[Hh]ello,? [Ww]orld!?\W*\d+\W*")
 """The texts of the talkers of this course and of the official tutorials."""
 _TWO_WORDS = re2.compile(r"\b([a-z]+) ([a-z]+) \d{4}\b")
-"""The special parts of the judge's texts, see :func:`autograder.kit.recipes.subscriber.random_texts`."""
+"""The special parts of the judge's texts, see :func:`autograder.kit.recipes.sent_texts.random_texts`."""
 _BRACES = re2.compile(r"\{[\pL_][^{}]*\}")
 """The part of a text that an f-string would have filled in."""
 _BYTE = ("\\x00", "\0")

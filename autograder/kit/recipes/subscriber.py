@@ -12,23 +12,17 @@ from autograder.kit import common_mistakes as common
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.hangs import HANGS
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
+from autograder.kit.recipes.sent_texts import AT_PACE, SINGLY, TRIES, random_texts
 from autograder.kit.texts_said import changed, invented, is_said, repeated, retold
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from random import Random
 
     from autograder.kit.counterparts import Speaker
     from autograder.kit.evidence import Event, Evidence, Part
 
-SINGLY = 12
-"""Texts that are sent each once the one before was said."""
-AT_PACE = 8
-"""Texts that are sent one after the other at the pace, in real time."""
 STEPS = 2
 """Steps of simulated time from one text to the next: in each of them a listener takes what it was sent."""
-TRIES = 3
-"""Times that this is tried: a busy machine may be slower than the pace for a moment."""
 SIMULATED = 20
 """Texts in all that are sent where the listener follows simulated time, all at the pace."""
 PATIENCE = {Pace.FAST: 1.0, Pace.REAL_TIME: 3.0}
@@ -37,17 +31,6 @@ BEFORE = 1.0
 """Seconds (simulated where it follows the clock) before the first text, in which nothing can have been heard."""
 AFTERMATH = 2.5
 """Seconds (likewise) after the last text, in which nothing may be made up or said again."""
-GREETING = "Hello, world!"
-"""The beginning of what many talkers say: some of the texts have it in them."""
-KINDS = 6
-"""Kinds of texts in each row that are something else than two words and a number; one more text comes twice."""
-
-_WORDS = (
-    "amber", "birch", "cedar", "delta", "ember", "fjord", "grove", "harbour", "islet", "juniper", "kelp", "lagoon",
-    "meadow", "north", "orchard", "pebble", "quarry", "river", "summit", "tundra",
-)  # fmt: skip
-_ELSEWHERE = ("mgła", "łąka", "řeka", "erdő", "tűz")
-"""Words of other languages. Their letters have one number that JSON, YAML and Python write in the same way."""
 
 
 class Speaks:
@@ -184,32 +167,6 @@ def _is_simulated(evidence: Evidence) -> bool:
     """True if the clock was the judge's when it sent its last text."""
     sent = evidence.main.of("sent")
     return bool(sent) and sent[-1].sim is not None
-
-
-def random_texts(random: Random) -> list[str]:
-    """Texts of words and a number; none is part of another, and in each row one comes twice, one after the other.
-
-    In each row some are of other kinds: with the greeting of many talkers before or behind, long and in capitals, with
-    braces and a percent sign, with letters beyond ASCII and two blanks, without any blank.
-    """
-    count = 1 + TRIES * AT_PACE + SINGLY
-    words = [f"{random.choice(_WORDS)} {random.choice(_WORDS)}" for _ in range(count)]
-    texts = [
-        f"{two} {number}" for two, number in zip(words, random.sample(range(1000, 10000), count), strict=True)
-    ]
-    at_pace = [range(1 + AT_PACE * i, 1 + AT_PACE * (i + 1)) for i in range(TRIES)]
-    for row in (*at_pace, range(count - SINGLY, count)):
-        twice = random.choice(row[:-1])
-        rest = [place for place in row if place not in (twice, twice + 1)]
-        greets, greeted, long, marks, far, single = random.sample(rest, KINDS)
-        texts[twice + 1] = texts[twice]
-        texts[greets] = f"{GREETING} {texts[greets].rpartition(' ')[2]}"
-        texts[greeted] = f"{texts[greeted]} {GREETING}"
-        texts[long] = f"{random.choice(_WORDS).upper()} {' '.join(random.sample(_WORDS, 4))} {texts[long]}"
-        texts[marks] = f"{{{random.choice(_WORDS)}}} {random.randrange(10, 100)}% {texts[marks]}"
-        texts[far] = f"{random.choice(_ELSEWHERE)}  {texts[far]}"
-        texts[single] = texts[single].replace(" ", "_")
-    return texts
 
 
 def _says(texts: Sequence[str], evidence: Evidence) -> bool:

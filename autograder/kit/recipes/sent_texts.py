@@ -1,0 +1,52 @@
+"""Texts that a listener is sent: nobody can guess them, and some are of kinds that a careless program changes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from random import Random
+
+SINGLY = 12
+"""Texts that are sent each once the one before was said."""
+AT_PACE = 8
+"""Texts that are sent one after the other at the pace, in real time."""
+TRIES = 3
+"""Times that this is tried: a busy machine may be slower than the pace for a moment."""
+GREETING = "Hello, world!"
+"""The beginning of what many talkers say: some of the texts have it in them."""
+KINDS = 6
+"""Kinds of texts in each row that are something else than two words and a number; one more text comes twice."""
+
+_WORDS = (
+    "amber", "birch", "cedar", "delta", "ember", "fjord", "grove", "harbour", "islet", "juniper", "kelp", "lagoon",
+    "meadow", "north", "orchard", "pebble", "quarry", "river", "summit", "tundra",
+)  # fmt: skip
+_ELSEWHERE = ("mgła", "łąka", "řeka", "erdő", "tűz")
+"""Words of other languages. Their letters have one number that JSON, YAML and Python write in the same way."""
+
+
+def random_texts(random: Random) -> list[str]:
+    """Texts of words and a number; none is part of another, and in each row one comes twice, one after the other.
+
+    In each row some are of other kinds: with the greeting of many talkers before or behind, long and in capitals, with
+    braces and a percent sign, with letters beyond ASCII and two blanks, without any blank.
+    """
+    count = 1 + TRIES * AT_PACE + SINGLY
+    words = [f"{random.choice(_WORDS)} {random.choice(_WORDS)}" for _ in range(count)]
+    texts = [
+        f"{two} {number}" for two, number in zip(words, random.sample(range(1000, 10000), count), strict=True)
+    ]
+    at_pace = [range(1 + AT_PACE * i, 1 + AT_PACE * (i + 1)) for i in range(TRIES)]
+    for row in (*at_pace, range(count - SINGLY, count)):
+        twice = random.choice(row[:-1])
+        rest = [place for place in row if place not in (twice, twice + 1)]
+        greets, greeted, long, marks, far, single = random.sample(rest, KINDS)
+        texts[twice + 1] = texts[twice]
+        texts[greets] = f"{GREETING} {texts[greets].rpartition(' ')[2]}"
+        texts[greeted] = f"{texts[greeted]} {GREETING}"
+        texts[long] = f"{random.choice(_WORDS).upper()} {' '.join(random.sample(_WORDS, 4))} {texts[long]}"
+        texts[marks] = f"{{{random.choice(_WORDS)}}} {random.randrange(10, 100)}% {texts[marks]}"
+        texts[far] = f"{random.choice(_ELSEWHERE)}  {texts[far]}"
+        texts[single] = texts[single].replace(" ", "_")
+    return texts
