@@ -116,7 +116,8 @@ class _Reached:
         node = _node(value)
         if node is None:
             return  # made by another program, such as a dataclass's __init__: what it was made of counts
-        self.texts.add(f"{value.__module__}.{value.__qualname__}: {_plain(node)}")
+        # Without its module: where something is written changes nothing that is seen.
+        self.texts.add(f"{value.__qualname__}: {_plain(node)}")
         nodes = list(ast.walk(node))
         used = {one.id: names[one.id] for one in nodes if isinstance(one, ast.Name) and one.id in names}
         attributes = {one.attr for one in nodes if isinstance(one, ast.Attribute)}

@@ -156,10 +156,10 @@ def scenario():
 """
 
 
-def reached(text: str, folder: Path) -> set[str]:
+def reached(text: str, folder: Path, module_name: str = "autograder.kit.made_up") -> set[str]:
     file = folder / f"made_up_{len(list(folder.iterdir()))}.py"  # no bytecode of another one is taken for it
     file.write_text(text, encoding="utf-8")
-    spec = importlib.util.spec_from_file_location("autograder.kit.made_up", file)
+    spec = importlib.util.spec_from_file_location(module_name, file)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -193,6 +193,10 @@ def test_what_a_scenario_refers_to_counts_and_nothing_else(
     assert old in SCENARIO
     usual = reached(SCENARIO, tmp_path)
     assert (reached(SCENARIO.replace(old, new), tmp_path) != usual) == counts
+
+
+def test_where_a_scenario_is_written_does_not_count(tmp_path: Path) -> None:
+    assert reached(SCENARIO, tmp_path) == reached(SCENARIO, tmp_path, "autograder.kit.recipes.moved")
 
 
 def test_the_digest_is_the_same_in_each_process() -> None:
