@@ -13,9 +13,9 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.archives import File, NotTaken, Room, files_of, is_zip, within
 from autograder.grading.collecting.assignment_of import AssignmentOf, NoTarget, is_notebook, stem_of
 from autograder.grading.collecting.lists import GRADESCOPE, LARGEST_OF_GRADESCOPE, Entry, is_unread, read_list
+from autograder.grading.collecting.named_sources import Source, note_on, own_of, source_of
 from autograder.grading.collecting.outcomes import CollectReport, Outcome, State, WaitingList
 from autograder.grading.collecting.records import Collected, CollectedRecords
-from autograder.grading.collecting.sources import Source, note_on, own_of, source_of
 from autograder.grading.collecting.student_of import Owners, StudentOf
 from autograder.grading.collecting.submitted_files import Candidate, Placing
 from autograder.grading.errors import GradingError, check_known, course_command
