@@ -15,7 +15,7 @@ from autograder.kit import common_mistakes as common
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.hangs import HANGS
 from autograder.kit.in_words import counted
-from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
+from autograder.kit.model import STEP, Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.rate import ROW, Rate, confirmed, rate_of, sent_times, simulated
 
 if TYPE_CHECKING:
@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
 USUAL_PERIOD = 0.5
 """Seconds; stands in for the reference's period while that is being recorded."""
+LONG_STEP = 2 * STEP
+"""Simulated seconds a step while more of a publisher is listened to. A timer that is shorter than a step is called once
+in it: what is counted by such a timer seems uneven in steps of two lengths, and is looked at in real time."""
 SILENCE = 6
 """Periods of silence after which nothing more is waited for."""
 PERSISTS = 1.0
@@ -222,7 +225,7 @@ class Hears:
         _listen(bench, topic, enough, period)
         if bench.pace is Pace.FAST and bench.wait_until(self._is_simulated, 0.0):
             enough = self._long_run
-            _listen(bench, topic, enough, period)
+            _listen(bench, topic, enough, period, LONG_STEP)
             if not bench.in_a_cell:
                 bench.await_end(PERSISTS)
         elif bench.pace is Pace.REAL_TIME and bench.heard(topic) >= enough:
@@ -417,9 +420,11 @@ def _was_faster(messages: Sequence[Event], wanted: float) -> bool:
     return median(after - before for before, after in pairwise(times)) < wanted
 
 
-def _listen(bench: Bench, topic: str, enough: int, period: float) -> None:
+def _listen(bench: Bench, topic: str, enough: int, period: float, step: float = STEP) -> None:
     missing = enough - bench.heard(topic)
-    bench.run_time(2 * missing * period, until=lambda: bench.heard(topic) >= enough, quiet=SILENCE * period)
+    bench.run_time(
+        2 * missing * period, until=lambda: bench.heard(topic) >= enough, quiet=SILENCE * period, step=step
+    )
 
 
 def _gaps(rate: Rate) -> str:
