@@ -27,7 +27,7 @@ LATE = 6
 SIMULATED_TOLERANCE = 0.05
 """The part of the reference's interval by which the mean simulated one may differ."""
 SIMULATED_JITTER = 0.1
-"""Simulated seconds by which one interval may differ: two steps of the judge's clock."""
+"""Simulated seconds by which one interval may differ: two steps of the judge's clock, or a long one."""
 SLOWER, FASTER = 0.18, 0.1
 """The parts of the reference's interval by which the median real one may differ: load makes a talker slower only."""
 UNEVEN = 0.3

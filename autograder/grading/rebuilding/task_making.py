@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections import Counter
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -27,7 +28,7 @@ from autograder.grading.running import sandboxing
 from autograder.grading.task import Task
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Iterable
     from pathlib import Path
 
     from nbformat import NotebookNode
@@ -56,7 +57,7 @@ def task_of(
 ) -> Task:
     """The task that executes a rebuilt notebook under the class's limits."""
     master = directory.master(assignment, notebook)
-    prose = frozenset(cell.source for cell in master.cells if cell.cell_type == CellType.MARKDOWN)
+    prose = [cell.source for cell in master.cells if cell.cell_type == CellType.MARKDOWN]
     cells = cells_of(rebuilt, demonstrations=are_run(directory), prose=prose)
     work = hashlib.sha256(msgspec.json.encode(cells)).hexdigest()
     return Task(
@@ -104,23 +105,33 @@ def limits_of(directory: ClassDirectory) -> Limits:
 
 
 def cells_of(
-    notebook: NotebookNode, *, demonstrations: bool = True, prose: Collection[str] = ()
+    notebook: NotebookNode, *, demonstrations: bool = True, prose: Iterable[str] = ()
 ) -> tuple[Cell, ...]:
     """The cells of a rebuilt notebook as they are executed.
 
     Args:
         notebook: The notebook.
         demonstrations: Also run the cells that only show something.
-        prose: Texts of the course's own. Nothing locks their cells, and no student wrote them.
+        prose: Texts of the course's own. Nothing locks their cells, and no student wrote them. A copy is its
+            student's: a page with thousands of them would cost the grader seconds.
     """
     left_out = frozenset() if demonstrations else demonstrations_of(notebook)
+    left = Counter(prose)
+
+    def is_given(cell: NotebookNode) -> bool:
+        if is_the_masters(cell):
+            return True
+        given = cell.cell_type == CellType.MARKDOWN and left[cell.source] > 0
+        left[cell.source] -= given
+        return given
+
     return tuple(
         Cell(
             source="" if place in left_out else cell.source,
             kind=CellType(cell.cell_type),
             check=check_of(cell),
             name=grade_id(cell),
-            own=not (is_the_masters(cell) or (cell.cell_type == CellType.MARKDOWN and cell.source in prose)),
+            own=not is_given(cell),
         )
         for place, cell in enumerate(notebook.cells)
     )

@@ -193,9 +193,11 @@ def test_the_courses_own_prose_is_nobodys_work_where_its_cells_are_not_locked(ma
     del master.cells[1:]
     texts = ("# Title", "# Title, and my notes")
     submitted = [SubmittedCell(kind, text) for kind in (CellType.MARKDOWN, CellType.CODE) for text in texts]
-    cells = cells_of(rebuild(master, submitted).notebook, prose={"# Title"})
+    submitted.append(SubmittedCell(CellType.MARKDOWN, "# Title"))
+    cells = cells_of(rebuild(master, submitted).notebook, prose=["# Title"])
     assert [(cell.kind, cell.source) for cell in cells if cell.own] == [
         (CellType.MARKDOWN, "# Title, and my notes"),
         (CellType.CODE, "# Title"),
         (CellType.CODE, "# Title, and my notes"),
+        (CellType.MARKDOWN, "# Title"),  # the second one is a copy
     ]
