@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from typing import TYPE_CHECKING, Any
 
 from environment.ros2_command.commands import Outcome, Verb
@@ -56,23 +57,51 @@ class _Feedback:
             self(message)
 
 
-def _wait(node: Node, future: Future) -> Any:
-    """Spin until a future is done, in short turns: between them Ctrl-C is seen."""
-    import rclpy
+class _Turns:
+    """Turns of the executor, with Ctrl-C between two of them and never within one.
 
-    while not future.done():
-        rclpy.spin_once(node, timeout_sec=_POLL)
-    return future.result()
+    rclpy waits for nothing more from an action client whose message was being taken when an exception came
+    (`_executor_event` in rclpy/executors.py): the answer to the cancel request would not be heard.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._interrupted = False
+        # Where Ctrl-C is ignored, as in a background job of a script, it stays ignored.
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            signal.signal(signal.SIGINT, self._interrupt)
+
+    def _interrupt(self, *_: object) -> None:
+        self._interrupted = True
+
+    def take_one(self) -> None:
+        """Spin once.
+
+        Raises:
+            KeyboardInterrupt: Ctrl-C was pressed since the last turn.
+        """
+        import rclpy
+
+        rclpy.spin_once(self._node, timeout_sec=_POLL)
+        if self._interrupted:
+            self._interrupted = False
+            raise KeyboardInterrupt
+
+    def until_done(self, future: Future) -> Any:
+        """Spin until a future is done and give its result."""
+        while not future.done():
+            self.take_one()
+        return future.result()
 
 
-def _cancel(node: Node, handle: Any) -> None:
+def _cancel(turns: _Turns, handle: Any) -> None:
     """Cancel a goal that nobody is waiting for any more.
 
     Raises:
         RuntimeError: the server did not cancel it.
     """
     print("Canceling goal...")
-    response = _wait(node, handle.cancel_goal_async())
+    response = turns.until_done(handle.cancel_goal_async())
     canceling = [info.goal_id for info in response.goals_canceling]
     if handle.goal_id not in canceling:
         raise RuntimeError("Failed to cancel goal")
@@ -80,8 +109,6 @@ def _cancel(node: Node, handle: Any) -> None:
 
 
 def _send_goal(args: argparse.Namespace) -> Outcome:
-    import rclpy
-
     try:
         action = load_type(args.action_type, "action")
     except ValueError:
@@ -98,26 +125,27 @@ def _send_goal(args: argparse.Namespace) -> Outcome:
         from rclpy.action.client import ActionClient
 
         client = ActionClient(node, action, args.action_name)
+        turns = _Turns(node)
         handle = None
         try:
             print("Waiting for an action server to become available...")
             while not client.server_is_ready():
-                rclpy.spin_once(node, timeout_sec=_POLL)
+                turns.take_one()
             print(f"Sending goal:\n     {to_yaml(goal)}")
             feedback = _Feedback()
-            handle = _wait(node, client.send_goal_async(goal, feedback if args.feedback else None))
+            handle = turns.until_done(client.send_goal_async(goal, feedback if args.feedback else None))
             if not handle.accepted:
                 print("Goal was rejected.")
                 return None
             print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
             feedback.begin()
-            result = _wait(node, handle.get_result_async())
+            result = turns.until_done(handle.get_result_async())
             print(f"Result:\n    {to_yaml(result.result)}")
             status = result.status if 0 <= result.status < len(_STATUS) else 0
             print(f"Goal finished with status: {_STATUS[status]}")
         except KeyboardInterrupt:
             if handle is not None and handle.status in (0, _ACCEPTED, _EXECUTING):
-                _cancel(node, handle)
+                _cancel(turns, handle)
             raise
         finally:
             client.destroy()

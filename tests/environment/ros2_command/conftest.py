@@ -156,12 +156,14 @@ def ros2(env: dict[str, str], tmp_path: Path) -> Callable[..., subprocess.Comple
 
 @pytest.fixture
 def start(env: dict[str, str], tmp_path: Path) -> Iterator[Callable[..., Running]]:
-    """Start `ros2 WORDS…`, or with `program` a program of the demo package, and go on while it runs."""
+    """Start `ros2 WORDS…`, with `program` a program of the demo package, with `code` this code, and go on meanwhile."""
     started: list[Running] = []
 
-    def begin(*words: str, program: bool = False, **variables: str) -> Running:
+    def begin(*words: str, program: bool = False, code: str = "", **variables: str) -> Running:
         if program:
             command = [sys.executable, str(NODES / f"{words[0]}.py"), *words[1:]]
+        elif code:
+            command = [sys.executable, "-c", code, *words]
         else:
             command = [sys.executable, "-m", "environment.ros2_command", *words]
         running = Running(command, env | variables, tmp_path)

@@ -197,6 +197,33 @@ def test_ctrl_c_cancels_the_goal(servers: Running, start: Callable[..., Running]
     servers.wait_for("was canceled")
 
 
+CTRL_C_WHILE_FEEDBACK_IS_TAKEN = """
+import os, signal, sys
+from rclpy.action.client import ActionClient
+from environment.ros2_command.main import main
+
+take_data = ActionClient.take_data
+
+def interrupted(client):
+    if client._is_feedback_ready:
+        ActionClient.take_data = take_data
+        os.kill(os.getpid(), signal.SIGINT)
+    return take_data(client)
+
+ActionClient.take_data = interrupted
+sys.exit(main())
+"""
+
+
+def test_ctrl_c_cancels_the_goal_also_while_a_message_is_taken(
+    servers: Running, start: Callable[..., Running]
+) -> None:
+    words = ("action", "send_goal", "/fibonacci", "my_robot_interfaces/action/Fibonacci", "{order: 20}")
+    goal = start(*words, code=CTRL_C_WHILE_FEEDBACK_IS_TAKEN)
+    goal.wait_for("Goal canceled.")
+    assert goal.end() == 2
+
+
 def test_nodes(talker: Running, servers: Running, call: Call) -> None:
     assert call("node", "list") == "/desk/servers\n/talker\n"
     assert call("node", "list", "-c") == "2\n"
