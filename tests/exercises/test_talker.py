@@ -94,13 +94,13 @@ def test_a_greeting_costs_the_same_whether_it_was_heard_or_not(greeting: str, be
     lost = _evidence(_with_texts(texts[before:], 0.5, first=before + 1))
     assert points(heard) == points(lost) == 8
     assert judged("counter", heard)
-    assert told("wrong_text", heard).startswith(f"Your talker says “{greeting}”")
     assert not judged("counter", lost)
     more = "1 message" if before == 1 else "2 messages"
-    assert told("counter_start", lost) == (
-        f"“Hello, world! 0” was message {before + 1} of your node: it published {more} more before it than it counted, "
-        "too early for anybody to hear."
-    )
+    first = f"“Hello, world! 0” was message {before + 1} of your node"
+    said = f"{first}: it published {more} more before it than it counted"
+    assert told("counter_start", heard) == f"{said}: “{greeting}”."
+    assert told("counter_start", lost) == f"{said}, too early for anybody to hear."
+    assert not told("wrong_text", heard)
 
 
 def test_a_greeting_hides_no_wrong_start() -> None:

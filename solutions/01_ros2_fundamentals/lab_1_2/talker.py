@@ -9,7 +9,7 @@ import re2
 from autograder.kit.draft import Draft
 from autograder.kit.in_words import counted, first_difference
 from autograder.kit.model import Advice, Finding
-from autograder.kit.recipes.publisher import Hears, Publisher
+from autograder.kit.recipes.publisher import Hears, Publisher, template
 
 heard = Hears(messages=8, long_run=20)
 MANY = 3
@@ -70,6 +70,12 @@ def uncounted(seen: Publisher, expected: Publisher) -> int:
     return begins - first if first is not None and seen.counters[0] >= begins > first else 0
 
 
+def greeted(seen: Publisher) -> int:
+    """The messages that were heard before it began to count; none where it had only written its numbers otherwise."""
+    last = re2.findall(r"\d+", seen.texts[seen.greetings - 1]) if seen.greetings else []
+    return 0 if last and seen.counters[:1] == [int(last[-1]) + 1] else seen.greetings
+
+
 def slip(numbers: list[int]) -> int:
     """The place of the first number that is not one more than the one before; 0 where all are."""
     return next((place for place, (a, b) in enumerate(pairwise(numbers), 1) if b - a != 1), 0)
@@ -107,25 +113,27 @@ talker.knows(
 @talker.mistake("wrong_text", certain=True)
 def wrong_text(seen: Publisher, expected: Publisher) -> Advice | None:
     """Messages arrive, but with another text."""
-    finding = text(seen, expected)
-    odd = next((form for form in seen.templates if form not in expected.templates), None)
+    odd = next(
+        (said for said in seen.texts[greeted(seen) :] if template(said) not in expected.templates), None
+    )
     if odd is None:
         return None
-    if blank := re2.search(r"\{[^{}]*\}|%[ds]|\(?\bself\.\w+\)?", finding.seen):
+    asked = text(seen, expected).expected
+    if blank := re2.search(r"\{[^{}]*\}|%[ds]|\(?\bself\.\w+\)?", odd):
         return Advice(
-            f"Your talker says {finding.seen}: {blank[0]} is sent as it is, Python put no number in its place.",
+            f"Your talker says “{odd}”: {blank[0]} is sent as it is, Python put no number in its place.",
             "Put an f in front of the opening quotation mark, and braces around what Python is to fill in, as in "
             "f'Hello, world! {self.count}'.",
         )
-    if re2.search(r"\d[.,]\d", finding.seen):
+    if re2.search(r"\d[.,]\d", odd):
         return Advice(
-            f"Your talker says {finding.seen}: its number is not a whole number; the task asks for {finding.expected}",
+            f"Your talker says “{odd}”: its number is not a whole number; the task asks for {asked}",
             "Begin with a whole number, as in self.count = 0 (not 0.0), and add 1; or write int(...) around it.",
         )
     return Advice(
-        f"Your talker says {finding.seen}; the task asks for {finding.expected}",
-        f"{first_difference(odd, expected.templates[0])} (N is the number.) Every letter counts, because other nodes "
-        "read this string.".replace("#", "N"),
+        f"Your talker says “{odd}”; the task asks for {asked}",
+        f"{first_difference(template(odd), expected.templates[0])} (N is the number.) Every letter counts, because "
+        "other nodes read this string.".replace("#", "N"),
     )
 
 
@@ -133,13 +141,15 @@ def wrong_text(seen: Publisher, expected: Publisher) -> Advice | None:
 def counter_start(seen: Publisher, expected: Publisher) -> Advice | None:
     """It counts by one, but from another number, or not from its first message on."""
     steady = len(seen.counters) > 1 and all(b - a == 1 for a, b in pairwise(seen.counters))
-    if not steady or starts_right(seen, expected):
+    unheard, right = uncounted(seen, expected), starts_right(seen, expected)
+    if not steady or (right and not greeted(seen)):
         return None
-    if more := uncounted(seen, expected):
+    if unheard or right:
+        what = f": “{seen.texts[0]}”" if greeted(seen) else ", too early for anybody to hear"
         return Advice(
-            f"“{seen.texts[seen.greetings]}” was message {seen.number_of_first} of your node: it published "
-            f"{counted(more, 'message')} more before it than it counted, too early for anybody to hear.",
-            "Publish nothing before the first of these, as in __init__: a line such as “Talker started” "
+            f"“{seen.texts[seen.greetings]}” was message {seen.greetings + seen.number_of_first} of your node: it "
+            f"published {counted(seen.greetings + unheard, 'message')} more before it than it counted{what}.",
+            "Publish nothing before the first of these, in __init__ or later: a line such as “Talker started” "
             "goes into the log.",
         )
     first = seen.counters[0] if seen.first_number is None else seen.first_number
