@@ -13,6 +13,7 @@ PROGRAMS = {
     "soak": "judge the bank in random order under load, and name what changes",
     "steady_class": "grade a class thirty times, and name what changes",
     "rates": "all of that, published in docs/fairness.md",
+    "history": "name what the evidence of earlier days says otherwise of the bank; nothing is run",
     "compare": "name what two commits say otherwise of the bank",
     "run_all": "Restart and Run All in one student's folder, again and again",
 }
