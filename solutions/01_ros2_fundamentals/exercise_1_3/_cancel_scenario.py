@@ -9,6 +9,7 @@ does not say how the goal ended. In a fourth one the goal itself is refused.
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING
 
 from exercise_1_3._cancel_evidence import (
@@ -61,8 +62,10 @@ FEEDBACK_GAP = {Pace.FAST: 0.03, Pace.REAL_TIME: 0.5}
 """Seconds between two feedback messages outside the window in which a cancel is expected."""
 LATE_GAP = 0.2
 """The same in real time after the request."""
-WINDOW_WAIT = {Pace.FAST: 0.2, Pace.REAL_TIME: 0.5}
-"""Seconds that the server waits for a cancel after each feedback message inside that window."""
+SHORTEST_GAP = 0.25
+"""Seconds between two messages at least, where a crowded machine has kept the judge from sending one in time."""
+WINDOW_WAIT = 0.2
+"""Seconds that a fast look waits for a cancel after each feedback message inside that window."""
 PROMPT = 0.05
 """Seconds of wall time in which a client that counts feedback has asked to cancel, once its executor has turned."""
 AT_ONCE = 0.01
@@ -191,6 +194,7 @@ def send_feedback_until_cancelled(
     bench: Bench, server: ActionCounterpart, sequence: list[int], pause: float
 ) -> bool:
     """Send feedback until somebody asks to cancel, as much as there is; whether somebody did."""
+    began = time.monotonic()
     for count in range(WITHOUT_CANCEL + 1):
         if count == FIRST_STATUS:
             say_that_it_runs(bench, server)
@@ -206,25 +210,35 @@ def send_feedback_until_cancelled(
                 return True
             if early:
                 continue
-        # After the last message in the window, a client that a crowded machine wakes up late gets the time it lost.
-        if server.await_cancel(wait_after(count, bench.pace), wall=count != LAST_FEEDBACK):
+        wait = (
+            wait_after(count) if bench.pace is Pace.FAST else wait_for_next(count, time.monotonic() - began)
+        )
+        if server.await_cancel(wait):
             # Nothing that was sent just now has caused it: perhaps a clock did, and it needs the real pace.
             bench.doubt()
             return True
     return False
 
 
-def wait_after(count: int, pace: Pace) -> float:
-    """Seconds that the server waits for a cancel after so many feedback messages, before it does what comes next."""
-    if count == 0:
-        # The first feedback follows the acceptance at once, at any pace.
-        return FEEDBACK_GAP[Pace.FAST]
-    if FIRST_FEEDBACK <= count <= LAST_FEEDBACK:
-        return WINDOW_WAIT[pace]
-    if count + 1 == FIRST_STATUS and pace is Pace.REAL_TIME:
-        # The status takes the rest of the time to the next message: the lab's server keeps one pace from the first on.
-        return FEEDBACK_GAP[pace] - LATE_GAP
-    return FEEDBACK_GAP[pace]
+def wait_after(count: int) -> float:
+    """Seconds that a fast look waits for a cancel after so many feedback messages, before it does what comes next."""
+    return WINDOW_WAIT if FIRST_FEEDBACK <= count <= LAST_FEEDBACK else FEEDBACK_GAP[Pace.FAST]
+
+
+def wait_for_next(count: int, elapsed: float) -> float:
+    """The same in real time, where messages come at moments of the wall's clock, as those of the lab's server do.
+
+    A judge that waited longer on a crowded machine would be late for a client that cancels by the clock.
+
+    Args:
+        count: Feedback messages that were sent.
+        elapsed: Seconds since the goal was accepted. The first message follows that at once, at any pace.
+    """
+    left = FEEDBACK_GAP[Pace.FAST] + count * FEEDBACK_GAP[Pace.REAL_TIME] - elapsed
+    if count + 1 == FIRST_STATUS:
+        # The status takes the rest of the time to the next message.
+        left -= LATE_GAP
+    return max(left, SHORTEST_GAP if count else 0.0)
 
 
 def say_that_it_runs(bench: Bench, server: ActionCounterpart) -> None:
