@@ -45,7 +45,7 @@ class Entry:
         return f"'{self.program} = {self.package}.{self.module}:main'"
 
 
-FORM = "a string of this form: program = package.module:function, with no slash and no parentheses"
+FORM = "a string of this form: executable = package.module:function, with no slash and no parentheses"
 
 
 def await_build(bench: Bench) -> None:

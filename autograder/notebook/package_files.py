@@ -44,7 +44,7 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
 
     Args:
         workspace: The folder that holds ``src``.
-        entries: Each ``executable = module:function``.
+        entries: Each ``executable = package.module:function``.
         package: The name of the package.
 
     Returns:
@@ -149,7 +149,7 @@ def _no_entry_point(entry: object) -> str:
             "with nothing between. Write a comma after each entry point, behind its closing quotation mark."
         )
     what = _what_is_wrong(entry) if isinstance(entry, str) else ""
-    return f"{entry!r} is no entry point. {what}Write: executable = module : function"
+    return f"{entry!r} is no entry point. {what}Write: executable = package.module:function"
 
 
 def _what_is_wrong(entry: str) -> str:
