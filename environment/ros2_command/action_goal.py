@@ -75,20 +75,27 @@ class _Turns:
         self._interrupted = True
 
     def take_one(self) -> None:
-        """Spin once.
-
-        Raises:
-            KeyboardInterrupt: Ctrl-C was pressed since the last turn.
-        """
+        """Spin once, unless Ctrl-C was pressed."""
         import rclpy
 
+        self.heed()
         rclpy.spin_once(self._node, timeout_sec=_POLL)
+
+    def heed(self) -> None:
+        """Do what Python does at Ctrl-C.
+
+        Raises:
+            KeyboardInterrupt: Ctrl-C was pressed since this was last asked.
+        """
         if self._interrupted:
             self._interrupted = False
             raise KeyboardInterrupt
 
     def until_done(self, future: Future) -> Any:
-        """Spin until a future is done and give its result."""
+        """Spin until a future is done and give its result.
+
+        Ctrl-C in the turn that brings the result is heard in the next wait: a goal that was just accepted is canceled.
+        """
         while not future.done():
             self.take_one()
         return future.result()
@@ -131,6 +138,7 @@ def _send_goal(args: argparse.Namespace) -> Outcome:
             print("Waiting for an action server to become available...")
             while not client.server_is_ready():
                 turns.take_one()
+            turns.heed()
             print(f"Sending goal:\n     {to_yaml(goal)}")
             feedback = _Feedback()
             handle = turns.until_done(client.send_goal_async(goal, feedback if args.feedback else None))
