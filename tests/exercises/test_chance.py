@@ -101,6 +101,14 @@ def test_a_talker_that_spoke_for_a_while_did_not_publish_all_at_once_whatever_wa
     assert first == "ended_too_early"
 
 
+def test_a_talker_that_a_crowded_machine_held_up_in_its_first_moment_published_all_at_once() -> None:
+    said = [replace(SAID[0], t=1.3 + 0.04 * number) for number in range(10)]
+    seen = [Event(1.4, "matched", TOPIC, {"count": 1}), *said, Event(1.9, "subject", "exited", {"code": 0})]
+    evidence = Evidence([Part("talking", {}, seen)], TALKER)
+    first = next(mistake.key for mistake in talker.EXERCISE.mistakes if mistake.recognise(evidence))
+    assert first == "published_before_discovery"
+
+
 NODE_ONLY = Event(0.2, "interface", "graph", {"nodes": ["/node"]})
 ANNOUNCED = Event(0.5, "announced", "a node")
 READY = Event(0.3, "output", "stdout", {"text": "Ready."})

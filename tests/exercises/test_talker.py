@@ -103,6 +103,12 @@ def test_a_greeting_costs_the_same_whether_it_was_heard_or_not(greeting: str, be
     assert not told("wrong_text", heard)
 
 
+def test_a_greeting_with_a_number_longer_than_python_reads_is_a_greeting() -> None:
+    """int() refuses more than 4,300 digits (sys.set_int_max_str_digits)."""
+    texts = [f"Talker {'7' * 5000}", *(f"Hello, world! {i}" for i in range(20))]
+    assert told("counter_start", _evidence(_with_texts(texts, 0.5))).endswith("7”.")
+
+
 def test_a_greeting_hides_no_wrong_start() -> None:
     texts = ["Talker started", *(f"Hello, world! {i}" for i in range(1, 21))]
     heard = _evidence(_with_texts(texts, 0.5))

@@ -70,12 +70,6 @@ def uncounted(seen: Publisher, expected: Publisher) -> int:
     return begins - first if first is not None and seen.counters[0] >= begins > first else 0
 
 
-def greeted(seen: Publisher) -> int:
-    """The messages that were heard before it began to count; none where it had only written its numbers otherwise."""
-    last = re2.findall(r"\d+", seen.texts[seen.greetings - 1]) if seen.greetings else []
-    return 0 if last and seen.counters[:1] == [int(last[-1]) + 1] else seen.greetings
-
-
 def slip(numbers: list[int]) -> int:
     """The place of the first number that is not one more than the one before; 0 where all are."""
     return next((place for place, (a, b) in enumerate(pairwise(numbers), 1) if b - a != 1), 0)
@@ -114,7 +108,7 @@ talker.knows(
 def wrong_text(seen: Publisher, expected: Publisher) -> Advice | None:
     """Messages arrive, but with another text."""
     odd = next(
-        (said for said in seen.texts[greeted(seen) :] if template(said) not in expected.templates), None
+        (said for said in seen.texts[seen.greetings :] if template(said) not in expected.templates), None
     )
     if odd is None:
         return None
@@ -142,10 +136,10 @@ def counter_start(seen: Publisher, expected: Publisher) -> Advice | None:
     """It counts by one, but from another number, or not from its first message on."""
     steady = len(seen.counters) > 1 and all(b - a == 1 for a, b in pairwise(seen.counters))
     unheard, right = uncounted(seen, expected), starts_right(seen, expected)
-    if not steady or (right and not greeted(seen)):
+    if not steady or (right and not seen.greetings):
         return None
     if unheard or right:
-        what = f": “{seen.texts[0]}”" if greeted(seen) else ", too early for anybody to hear"
+        what = f": “{seen.texts[0]}”" if seen.greetings else ", too early for anybody to hear"
         return Advice(
             f"“{seen.texts[seen.greetings]}” was message {seen.greetings + seen.number_of_first} of your node: it "
             f"published {counted(seen.greetings + unheard, 'message')} more before it than it counted{what}.",
