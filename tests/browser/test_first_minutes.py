@@ -20,6 +20,13 @@ pytestmark = [pytest.mark.browser, pytest.mark.ros, pytest.mark.slow]
 ROBOT = 'img[alt^="The robot is in"]'
 
 
+@pytest.fixture(autouse=True)
+def nobody_drives(page: Page, lab: str) -> None:
+    """Ends the kernels of earlier tests: what they have left spinning would drive this test's robot, too."""
+    for kernel in page.request.get(lab.format("api/kernels")).json():
+        assert page.request.delete(lab.format(f"api/kernels/{kernel['id']}")).ok
+
+
 def test_a_student_drives_the_robot_in_five_actions(page: Page, lab: str) -> None:
     """Open, run the first cell, write two lines, see the robot go through the door, and the card is green."""
     from playwright.sync_api import expect

@@ -18,6 +18,7 @@ from autograder.grading.appeal import write_appeal
 from autograder.grading.classes import sample_class
 from autograder.grading.classes.sample_class import SampleNotebook, demo, sample_notebooks
 from autograder.grading.errors import ClassExists, GradingError
+from autograder.judge.verdicts.crowding import TOO_BUSY
 from tests.tiers import asked_for
 
 if TYPE_CHECKING:
@@ -155,9 +156,11 @@ def test_validate_tells_a_student_the_truth(graded: GradeReport) -> None:
             text=True,
             check=True,
         )
-        said[student] = result.stdout
+        said[student] = " ".join(result.stdout.split())
     assert "Success! Your notebook passes all the tests." in said["all-right"]
     assert "VALIDATION FAILED ON 1 CELL(S)" in said["partly-right"]
+    if TOO_BUSY in said["partly-right"]:
+        pytest.skip("The machine was too busy for a failure to count, and Validate says so.")
     assert "8 of 10" in said["partly-right"]
 
 
