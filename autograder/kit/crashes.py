@@ -180,7 +180,6 @@ OTHER_SLIPS = tuple(map(_only_slips, OTHER_CRASHES))
 
 SLIPS = ("AttributeError", "TypeError", "NameError", "UnboundLocalError", "KeyError", "IndexError")
 """Exceptions that nobody raises in order to say something."""
-_INSTALLED = re2.compile(r"/(site|dist)-packages/|/lib/python3\.\d+/|/opt/ros/")
 
 
 def last_line_of(traceback: str) -> str:
@@ -197,6 +196,6 @@ def on_purpose(traceback: str) -> bool:
 def meant(traceback: str) -> bool:
     """True if the innermost line of a traceback is one of the program's own that says ``raise`` or ``assert``."""
     frames = list(FRAME_WITH_CODE.finditer(traceback))
-    if not frames or _INSTALLED.search(frames[-1]["file"]):
+    if not frames or is_a_library(frames[-1]["file"]):
         return False
     return re2.search(r"(?:^|[:;] *)(?:raise|assert)\b", frames[-1]["code"]) is not None

@@ -18,6 +18,11 @@ NOT_SPUN_WHILE_CALLING = (
 )
 """What to do where a call waits for its answer, and nothing spins its node."""
 
+_CALLED_BY_RCLPY = (
+    r"(?:\A|rclpy/(?:executors|task|event_handler|action/client|action/server)\.py\".*\n(?: .*\n){1,2})"
+)
+"""Before what is raised where rclpy calls a callback; a notebook's traceback leaves rclpy's own lines out."""
+
 KNOWN = (
     Crash(
         "syntax_error",
@@ -54,7 +59,7 @@ KNOWN = (
     ),
     Crash(
         "super_init_missing",
-        r"no attribute '_(?:Node__|default_callback_group|parameter|context|logger|handle)"
+        r"no attribute '_(?:Node__\w+|default_callback_group|parameters|parameter_overrides|context|logger|handle)'"
         r"|rclpy/node\.py\".*\n(?: .*\n){1,2}AttributeError: '\w+' object has no attribute '_"
         r"|descriptor '__init__' (?:requires|of) .*'super'",
         "The class uses the Node before the Node was set up: super().__init__('a_name') is missing or comes too late.",
@@ -86,13 +91,15 @@ KNOWN = (
     ),
     Crash(
         "handle_overwritten",
-        r"'method' object does not support the context manager protocol|handle cannot be modified",
+        rf"\.handle\b.*{MARKS}TypeError: 'method' object does not support the context manager protocol"
+        r"|handle cannot be modified",
         "A method or attribute of your node is called handle, a name that Node itself needs.",
         "Rename it, for example to handle_message.",
     ),
     Crash(
         "node_attribute_overwritten",
-        r"property '(?P<name>\w+)' of '\w+' object has no setter|can't set attribute '?(?P<other>\w*)",
+        r"property '(?P<name>publishers|subscriptions|clients|services|timers|guards|waitables|handle|context"
+        r"|default_callback_group)' of '\w+' object has no setter",
         "Your class assigns to a name that Node already uses for something else ({name}).",
         "Give your attribute another name, for example my_{name} or {name}_.",
     ),
@@ -152,16 +159,14 @@ KNOWN = (
     ),
     Crash(
         "callback_signature",
-        # Raised where rclpy calls the callback; a notebook's traceback leaves rclpy's own lines out.
-        r"(?:\A|rclpy/(?:executors|task|event_handler|action/client|action/server)\.py\".*\n(?: .*\n){1,2})"
-        r"TypeError: (?P<what>.*positional argument.*)",
+        rf"{_CALLED_BY_RCLPY}TypeError: (?P<what>.*positional argument.*)",
         "A callback takes the wrong number of arguments: {what}.",
         "Change what is between its parentheses where it is defined. Besides self, a timer's callback takes nothing, a "
         "service's takes request and response, and any other takes one thing: the message, the goal, the future.",
     ),
     Crash(
         "callback_signature",
-        r"Expected .* callback|[Cc]allback should be either|callback.*(?:takes|missing) .*positional argument",
+        r"Expected .* callback|[Cc]allback should be either",
         "A callback has the wrong form: it was called at once (cb() instead of cb), or it takes the wrong number of "
         "arguments.",
         "Pass the function itself, without parentheses after it. Besides self, a timer's callback takes nothing and a "
@@ -169,8 +174,8 @@ KNOWN = (
     ),
     Crash(
         "timer_callback_called",
-        r"'NoneType' object is not callable",
-        "The timer got what the callback returned (None) instead of the callback.",
+        rf"{_CALLED_BY_RCLPY}TypeError: 'NoneType' object is not callable",
+        "ROS was to call a method of yours, and got None in its place: what the method had returned.",
         "Write the method's name without parentheses, as in create_timer(0.5, self.say_hello): ROS calls it, not you.",
     ),
     Crash(
@@ -248,13 +253,13 @@ KNOWN = (
     *FIELDS,
     Crash(
         "callback_returned_none",
-        r"(?:send_response|service_send_response)(?:.*\n)+TypeError",
+        r"(?:rclpy/service\.py\".* in send_response|service_send_response)(?:.*\n)+TypeError",
         "A service callback returned no response: nothing at all, a field of it, or a type without parentheses.",
         "End the callback with `return` and the whole response that it was given, such as `return response`.",
     ),
     Crash(
         "executor_not_kept",
-        r"'NoneType' object has no attribute '(?:spin\w*|add_node|create_task)'",
+        r"'NoneType' object has no attribute '(?:spin|spin_once|spin_until_future_complete|add_node|create_task)'",
         "{owner:The executor of the node} is None: a node has an executor only while one spins it, and does not keep "
         "it.",
         "Write rclpy.spin(your_node), or rclpy.spin_until_future_complete(your_node, your_future) where you wait for "

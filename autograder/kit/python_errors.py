@@ -35,15 +35,15 @@ class Meaning(NamedTuple):
 RUNNING: Sequence[Row] = (
     *NAMES,
     (
+        r'^TypeError: can only concatenate str \(not "(?P<kind>list|tuple|dict|array|NoneType)"\)',
+        "A string and a value of the type {kind} are joined with +, which joins strings only.",
+        "Put the value into an f-string, in braces, as in f'... {{number}}'.",
+    ),
+    (
         r'^TypeError: can only concatenate str \(not "(?P<type>[A-Z]\w*)"\)',
         "A string and a whole {type} are joined with +.",
         "The string of a message is in its field data: write that field, with a dot, after the name that your method "
         "has for the message, as in message.data.",
-    ),
-    (
-        r'^TypeError: can only concatenate str \(not "(?P<kind>list|tuple|dict|array|NoneType)"\)',
-        "A string and a value of the type {kind} are joined with +, which joins strings only.",
-        "Put the value into an f-string, in braces, as in f'... {{number}}'.",
     ),
     (
         r"^TypeError: (?:can only concatenate str|unsupported operand type\(s\) for \+=?: '(?:int|float|str)' and "
@@ -138,6 +138,12 @@ RUNNING: Sequence[Row] = (
         "ROS was to call a method of yours, and was given a value of the type {kind} in its place.",
         "Look at what create_timer(...), or whatever takes a callback, has in this place: the name of the method, with "
         "self. before it, and without quotation marks or parentheses, as in create_timer(0.5, self.say_hello).",
+    ),
+    (
+        r"^TypeError: 'NoneType' object is not callable",
+        "What is called in this line is None.",
+        "Look at the line that sets it. If that is to be a function, write the function's name there without "
+        "parentheses: with them, it is what the function returns.",
     ),
     (
         r"^TypeError: '(?P<kind>int|float|str|bool|list|dict|array|String|Publisher|Timer|Client|Service)' object "

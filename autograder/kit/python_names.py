@@ -14,6 +14,14 @@ MARKS = r"\n(?:[ ~^]*\n)?"
 """From a line of code to what Python says of it: perhaps a line of marks below the code."""
 _OWN = r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute '(?P<name>\w+)'"
 _TYPE = r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>[A-Z]\w*)'"
+_OF_RCLPY = (
+    r"\w+GoalHandle|Publisher|Subscription|Timer|Client|Service|ActionClient|ActionServer|RcutilsLogger"
+)
+_OF_ANOTHER_TYPE = (
+    "{owner:The value before .{name}} is of the type {class} here, which has nothing called {name}.",
+    "Look at the line that sets it: it may be another value than you mean. If it is the right one, compare the "
+    "name, letter by letter. If {name} is a function of the notebook or the program, write it alone: {name}(...).",
+)
 _MODULES = r"\w+_(?:msgs|srvs|interfaces)|math|random|rclpy|sys|threading|time"
 _IMPORTED_FROM = {
     "action_msgs.msg": "GoalStatus",
@@ -49,13 +57,6 @@ NAMES: Sequence[Row] = (
         "Write a single one: self.{name} = ...",
     ),
     (
-        r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute 'publish'"
-        r"(?:\. Did you mean: '(?P<kept>publisher(?:_\w*)?)')?",
-        "A node cannot publish by itself: its publisher does.",
-        "Keep what create_publisher returns in an attribute of the node, and call publish(...) of that, as in "
-        "{owner:self}.{kept:publisher}.publish(...).",
-    ),
-    (
         r"AttributeError: 'NoneType' object has no attribute '(?P<name>append)'",
         "{owner:The list before .append} is None.",
         "append changes the list and returns None: write it alone, as in {owner:numbers}.append(...), without "
@@ -66,6 +67,17 @@ NAMES: Sequence[Row] = (
         "{owner:The value before .{name}} is None: it was not set yet, or the function that should give it has no "
         "return.",
         "Look where it gets its value, and whether that line has run before this one.",
+    ),
+    (
+        rf"AttributeError: '(?P<class>{_OF_RCLPY})' object has no attribute '(?P<name>publish|log|logger|info|print)'",
+        *_OF_ANOTHER_TYPE,
+    ),
+    (
+        r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute 'publish'"
+        r"(?:\. Did you mean: '(?P<kept>publisher(?:_\w*)?)')?",
+        "A node cannot publish by itself: its publisher does.",
+        "Keep what create_publisher returns in an attribute of the node, and call publish(...) of that, as in "
+        "{owner:self}.{kept:publisher}.publish(...).",
     ),
     (
         r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>log|logger|info|print)'",
@@ -152,11 +164,9 @@ NAMES: Sequence[Row] = (
         "Write the key in square brackets: {owner:names}[...], as in STATUS_NAMES[answer.status].",
     ),
     (
-        r"AttributeError: '(?P<class>list|dict|tuple|set|str|bytes|bool|int|float|\w+GoalHandle|Publisher|Subscription"
-        r"|Timer|Client|Service|ActionClient|ActionServer|RcutilsLogger)' object has no attribute '(?P<name>\w+)'",
-        "{owner:The value before .{name}} is of the type {class} here, which has nothing called {name}.",
-        "Look at the line that sets it: it may be another value than you mean. If it is the right one, compare the "
-        "name, letter by letter. If {name} is a function of the notebook or the program, write it alone: {name}(...).",
+        rf"AttributeError: '(?P<class>list|dict|tuple|set|str|bytes|bool|int|float|{_OF_RCLPY})' object has no "
+        r"attribute '(?P<name>\w+)'",
+        *_OF_ANOTHER_TYPE,
     ),
     (
         r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>(?:create|declare|get)_\w+)'",
@@ -213,6 +223,11 @@ NAMES: Sequence[Row] = (
         "There is no constant or attribute {name} there.",
         "Compare the name with the lab's text, letter by letter: constants have capitals only, such as "
         "GoalResponse.ACCEPT.",
+    ),
+    (
+        r"^AttributeError: property '(?P<name>\w+)' of '(?P<class>\w+)' object has no setter",
+        "{name} of {class} can only be read.",
+        "If {name} is to be a value of your own, give it another name.",
     ),
     (
         r"AttributeError: partially initialized module '(?P<name>[\w.]+)'",

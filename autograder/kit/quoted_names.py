@@ -10,14 +10,16 @@ import re2
 
 FRAME_WITH_CODE = re2.compile(r'(?m)^ {2}File "(?P<file>[^"]*)", line \d+.*\n {4,}(?P<code>\S.*)$')
 """A frame of a traceback, with the line of code that is quoted below it."""
-_LIBRARY = re2.compile(r"/python3(?:\.\d+)?/(?P<below>[^/]*)|/rclpy/|^<frozen")
+_LIBRARY = re2.compile(r"/lib/python3(?:\.\d+)?/|/(?:site|dist)-packages/|^/opt/ros/|^<frozen")
+_BUILT = re2.compile(
+    r"/install/(?:[^/.]+/)?(?:local/)?lib/python3[^/]*/(?:site|dist)-packages/(?P<package>\w+)"
+)
+"""A package that a build has installed, as a student's own is; so is ROS, where it was built from source."""
+_ROS = ("rclpy", "launch", "launch_ros", "ros2cli", "ros2run")
 _MISSED = re2.compile(r"AttributeError: .*(?:has no attribute|object attribute) '(?P<name>\w+)'")
 _OWNER = r"(?:^|[^\w.)\]])(?P<owner>[A-Za-z_][\w.]*(?:(?:\(\)|\[[^\[\]]*\])[\w.]*)*)\.{name}\b"
 """What stands before a name and a dot: names and dots, calls without arguments, places in a list."""
 _RESULT = ".result()"
-_PACKAGES = re2.compile(r"/(?:site|dist)-packages/")
-_BUILT = "/install/"
-"""In the path of each file that a build of a student's workspace has installed."""
 
 
 class Name(str):
@@ -30,13 +32,9 @@ class Name(str):
 
 
 def is_a_library(file: str) -> bool:
-    """True of a file of Python's own or of rclpy; a package that a student has built is none."""
-    return any(found["below"] not in ("site-packages", "dist-packages") for found in _LIBRARY.finditer(file))
-
-
-def _is_installed(file: str) -> bool:
-    """True of a library, also one of another author: its names are none of the student's."""
-    return is_a_library(file) or (_PACKAGES.search(file) is not None and _BUILT not in file)
+    """True of a file of Python, of ROS or of an installed package; a package that a student has built is none."""
+    built = _BUILT.search(file)
+    return _LIBRARY.search(file) is not None and (built is None or built["package"] in _ROS)
 
 
 def names(traceback: str) -> dict[str, Name]:
@@ -53,7 +51,7 @@ def names(traceback: str) -> dict[str, Name]:
 def _owner(traceback: str) -> str:
     """What the student's line has before the attribute that is missing; empty where several things may be meant."""
     missed, frames = _MISSED.search(traceback), list(FRAME_WITH_CODE.finditer(traceback))
-    if missed is None or not frames or _is_installed(frames[-1]["file"]):
+    if missed is None or not frames or is_a_library(frames[-1]["file"]):
         return ""
     found = {
         one["owner"] for one in re2.finditer(_OWNER.replace("{name}", missed["name"]), frames[-1]["code"])

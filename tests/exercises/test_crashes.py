@@ -144,11 +144,60 @@ HEAD = 'Traceback (most recent call last):\n  File "client.py", line 9, in <modu
             "    raise TypeError()\nTypeError",
             False,
         ),
+        (
+            '  File "/ros2_ws/install/my_robot_pkg/lib/python3.12/site-packages/my_robot_pkg/client.py", line 5, '
+            'in run\n    raise RuntimeError("no service")\nRuntimeError: no service',
+            True,
+        ),
         ("RuntimeError: no line of the program is known", False),
     ],
 )
 def test_the_innermost_line_tells(rest: str, expected: bool) -> None:
     assert meant(HEAD + rest) is expected
+
+
+@pytest.mark.parametrize(
+    ("lines", "key"),
+    [
+        (["    f()", "AttributeError: 'Talker' object has no attribute '_handle_message'"], "crashed"),
+        (["    f()", "AttributeError: 'Talker' object has no attribute '_parameters'"], "super_init_missing"),
+        (["    self.say('x')", "TypeError: 'NoneType' object is not callable"], "crashed"),
+        (["    with self.make_lock:", f"TypeError: 'method' {NO_CONTEXT}"], "crashed"),
+        (["    with self.handle:", f"TypeError: 'method' {NO_CONTEXT}"], "handle_overwritten"),
+        (
+            ["    self.speed = 1", "AttributeError: property 'speed' of 'Robot' object has no setter"],
+            "crashed",
+        ),
+        (
+            [
+                "    self.make_callback(1)",
+                "TypeError: R.make_callback() takes 1 positional argument but 2 were",
+            ],
+            "crashed",
+        ),
+        (
+            ["    self.send_response(1)", "TypeError: unsupported operand type(s) for +: 'A' and 'A'"],
+            "crashed",
+        ),
+        (
+            [
+                "    pass",
+                '  File "/opt/ros/jazzy/rclpy/service.py", line 9, in send_response',
+                "    raise TypeError()",
+                "TypeError",
+            ],
+            "callback_returned_none",
+        ),
+        (
+            ["    robot.spin_left()", "AttributeError: 'NoneType' object has no attribute 'spin_left'"],
+            "crashed",
+        ),
+    ],
+)
+def test_what_happens_in_a_line_of_ones_own_is_not_taken_for_a_mistake_with_ros(
+    lines: list[str], key: str
+) -> None:
+    assert next(m.key for m in (*CRASHES, *OTHER_CRASHES) if m.recognise(_shown(lines))) == key
 
 
 def test_nothing_is_meant_by_nothing() -> None:
