@@ -166,8 +166,8 @@ def returned_instead(part: Part, wanted: Sequence[int]) -> str:
         return ""
     # A type may be named beside the numbers, as in np.int32(5).
     numbers = re2.findall(r"\d+", re2.sub(r"int\d+", "", part.returned))
-    right = part.returned != "None" and numbers == [str(number) for number in wanted]
-    return "" if right else part.returned
+    right = numbers == [str(number) for number in wanted]
+    return "" if right and re2.search(r"[\[(]", part.returned) else part.returned
 
 
 def miscalled(part: Part) -> str:

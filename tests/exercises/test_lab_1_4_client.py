@@ -180,6 +180,23 @@ def test_a_function_returns_the_numbers_in_any_kind_of_sequence(value: str | Non
     assert (returned_instead(part, [1, 2]) == "") is right
 
 
+@pytest.mark.parametrize(
+    ("value", "right"),
+    [
+        ("[]", True),
+        ("()", True),
+        ("array('i')", True),
+        ("False", False),
+        ("''", False),
+        ("'rejected'", False),
+        ("{}", False),
+    ],
+)
+def test_only_an_empty_sequence_is_an_empty_list(value: str, right: bool) -> None:
+    part = Part(LATE, {}, [Event(0.0, "subject", "returned", {"value": value})])
+    assert (returned_instead(part, []) == "") is right
+
+
 def test_a_program_returns_nothing() -> None:
     assert returned_instead(Part(LATE, {}, [ENDED]), [1, 2]) == ""
 
