@@ -12,7 +12,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import re2
 
 from autograder.kit import common_mistakes as common
 from autograder.kit import giving_up, service_mistakes
@@ -27,6 +29,7 @@ from autograder.kit.service_calls import (
     HANGS_AFTER,
     LATE,
     Client,
+    answers,
     cut_short,
     has_reported,
     how_it_went,
@@ -35,6 +38,7 @@ from autograder.kit.service_calls import (
     reports,
     requests,
 )
+from autograder.kit.texts_said import mentions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -189,6 +193,18 @@ def _as_int64(number: int) -> int:
     return (number + 2**63) % 2**64 - 2**63
 
 
+class AnotherSum(NamedTuple):
+    """What a client said of an answer, in place of its number.
+
+    Attributes:
+        answer: The number.
+        line: The last line with another number.
+    """
+
+    answer: int
+    line: str
+
+
 class Calls:
     """The recipe for a client that has a service add numbers.
 
@@ -266,6 +282,16 @@ class Calls:
         """A run with the right calls whose last answer is not said."""
         answered = (part for part in seen.served if part.of("response"))
         return next((part for part in answered if self.is_right(part) and not reports(part)), None)
+
+    def another_sum(self, seen: Client) -> AnotherSum | None:
+        """What is said in place of the last answer of a run with the right calls."""
+        part = self.unreported(seen)
+        if part is None:
+            return None
+        answer = answers(part)[-1]
+        said = reversed(part.said(after=part.of("response")[-1]))
+        line = next((line for line in said if re2.search(r"\d", line) and not mentions([line], answer)), None)
+        return None if line is None else AnotherSum(answer, line)
 
     def _too_many_calls(self, evidence: Evidence) -> Advice | None:
         """More calls than the reference solution makes."""

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import re2
-
 from autograder.kit import service_calls
 from autograder.kit.draft import Draft
 from autograder.kit.model import Advice, Finding
@@ -22,7 +20,6 @@ from autograder.kit.service_calls import (
     Client,
     answers,
     pair,
-    reports,
     requests,
 )
 
@@ -149,33 +146,22 @@ def one_call_only(seen: Client, expected: Client) -> Advice | None:
     )
 
 
-@adder.mistake("wrong_sum_reported", late=True, certain=Client.ended_each_time)
-def wrong_sum_reported(seen: Client, expected: Client) -> Advice | None:
-    """The calls are right, and another number is said."""
-    part = unreported(seen, expected)
-    lines = part.said(after=part.of("response")[-1]) if part else []
-    if part is None or not any(re2.search(r"\d", line) for line in lines):
-        return None
-    return Advice(
-        f"The service's last answer was {answers(part)[-1]}, but your program said “{lines[-1]}”.",
-        "Report the sum of the second answer, not the first one and not one of your own.",
-    )
-
-
+adder.knows(
+    "wrong_sum_reported",
+    lambda seen, _: recipe.another_sum(seen),
+    "The service's last answer was {0.answer}, but your program said “{0.line}”.",
+    "Report the sum of the second answer, not the first one and not one of your own.",
+    late=True,
+    certain=Client.ended_each_time,
+)
 adder.knows(
     "sum_not_reported",
-    lambda seen, expected: (part := unreported(seen, expected)) and (service_calls.braces_left(part) or True),
+    lambda seen, _: (part := recipe.unreported(seen)) and (service_calls.braces_left(part) or True),
     "Both calls are right, but the final sum is never said.",
     "Log or print the sum of the second answer. In a notebook, return it, too.",
     late=True,
     certain=Client.ended_each_time,
 )
-
-
-def unreported(seen: Client, expected: Client) -> Part | None:
-    """A run whose last answer is not said, where all calls are right."""
-    silent = (part for part in seen.served if part.of("response") and not reports(part))
-    return next(silent, None) if chain(seen, expected).passed else None
 
 
 EXERCISE = adder.exercise(

@@ -7,21 +7,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import re2
-
 from autograder.kit import service_calls
 from autograder.kit.draft import Draft
-from autograder.kit.model import Advice
 from autograder.kit.recipes.service_client import Calls, Run, hidden
 from autograder.kit.service_calls import (
     BIASED,
     EXTREME,
     LATE,
     Client,
-    answers,
     requests,
 )
-from autograder.kit.texts_said import mentions
 
 if TYPE_CHECKING:
     from random import Random
@@ -105,21 +100,14 @@ def no_call(seen: Client, _: Client) -> bool:
     return part is not None and bool(part.endpoints("client"))
 
 
-@client.mistake("wrong_sum_reported", late=True, certain=Client.ended_each_time)
-def wrong_sum_reported(seen: Client, _: Client) -> Advice | None:
-    """The call is right, and another number is said."""
-    part = recipe.unreported(seen)
-    lines = part.said(after=part.of("response")[-1]) if part else []
-    others = [line for line in lines if part and not mentions([line], answers(part)[-1])]
-    told = next((line for line in reversed(others) if re2.search(r"\d", line)), None)
-    if part is None or told is None:
-        return None
-    return Advice(
-        f"The service answered {answers(part)[-1]}, but your program said “{told}”.",
-        "Report the field sum of the answer that the service gave, and add nothing up yourself.",
-    )
-
-
+client.knows(
+    "wrong_sum_reported",
+    lambda seen, _: recipe.another_sum(seen),
+    "The service answered {0.answer}, but your program said “{0.line}”.",
+    "Report the field sum of the answer that the service gave, and add nothing up yourself.",
+    late=True,
+    certain=Client.ended_each_time,
+)
 client.knows(
     "sum_not_reported",
     lambda seen, _: (part := recipe.unreported(seen)) and (service_calls.braces_left(part) or True),
