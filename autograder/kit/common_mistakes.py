@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from collections import Counter
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -175,7 +176,8 @@ def everything_twice(role: str) -> Mistake:
         name, _ = evidence.reference.only(role)
         messages = evidence.main.of("message", name)
         heard = [str(event.data["fields"]) for event in messages]
-        pairs = [heard.count(text) for text in heard[:-1]]
+        times = Counter(heard)
+        pairs = [times[text] for text in heard[:-1]]
         if len(heard) < 4 or sum(count == 2 for count in pairs) < len(pairs) * 0.7:
             return None
         # Each publisher counts its messages. A single one that says a text again much later counts in a circle.

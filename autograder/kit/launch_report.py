@@ -45,7 +45,7 @@ def processes(part: Part) -> list[Process]:
 def _parsed(text: str) -> Process | None:
     try:
         words = json.loads(text)
-    except ValueError:
+    except (ValueError, RecursionError):
         return None
     match words:
         case [int(pid), int(parent), *argv] if argv:

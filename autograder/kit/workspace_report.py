@@ -177,5 +177,5 @@ def _parsed(text: str) -> WorkspaceReport | None:
             for package in data.pop("packages")
         ]
         return WorkspaceReport(**data, packages=packages)
-    except (ValueError, TypeError, KeyError, AttributeError):
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
         return None

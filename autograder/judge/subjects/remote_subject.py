@@ -228,4 +228,4 @@ class RemotePath(InOwnProcesses, RemoteSubject):
 
 
 def _bounded(seconds: float) -> float:
-    return min(max(seconds, 0.0), MAX_SECONDS)
+    return min(max(0.0, seconds), MAX_SECONDS)  # in this order, so that NaN is 0

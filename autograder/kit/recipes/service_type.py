@@ -267,11 +267,14 @@ class ServiceType(SeenAsItIs):
 
 
 def fields(text: str) -> list[Fields]:
-    """The fields of each section of an interface file; comments, constants and default values left out."""
+    """The fields of each section of an interface file; comments, constants and default values left out.
+
+    Only a line of exactly ``---`` begins a new section, as in ``rosidl_adapter/parser.py``.
+    """
     sections: list[Fields] = [[]]
     for line in text.splitlines():
         bare = line.partition("#")[0].strip()
-        if re2.fullmatch(r"-{3,}", bare):
+        if line == "---":
             sections.append([])
         elif found := re2.fullmatch(r"(?P<type>\S+)\s+(?P<name>\w+)(?P<rest>(?:\s+.*)?)", bare):
             if not found["rest"].strip().startswith("="):

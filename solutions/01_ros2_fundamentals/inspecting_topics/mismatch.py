@@ -154,10 +154,11 @@ def _dictionary(text: str) -> dict[str, Any] | None:
     for read in (ast.literal_eval, json.loads):
         try:
             value = read(body)
-        except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
+            # Refuses lone surrogates and numbers of thousands of digits, which no evidence can hold.
+            "".join(map(str, value.values())).encode()
+        except (ValueError, SyntaxError, TypeError, AttributeError, MemoryError, RecursionError):
             continue
-        if isinstance(value, dict):
-            return value
+        return value
     return None
 
 

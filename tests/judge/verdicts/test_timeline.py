@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from autograder.judge.verdicts.timeline import MAX_MOMENTS, moments
+from autograder.kit import launch_report, workspace_report
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.workspace_report import WorkspaceReport, as_line
 
@@ -19,6 +20,11 @@ def told(
 ) -> list[Moment]:
     expected = Reference("an exercise", interface or {}, reference.get("parts", ()))
     return list(moments(Evidence([Part("", {}, events)], expected)))
+
+
+def test_brackets_without_an_end_are_no_report() -> None:
+    for mark in (workspace_report.MARK, launch_report.MARK):
+        assert told(Event(0.1, "output", "stdout", {"text": f"{mark}{'[' * 3900}"})) is not None
 
 
 def test_a_message_of_the_judges_own_is_told_once() -> None:
