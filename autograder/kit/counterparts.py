@@ -37,13 +37,8 @@ class ActionCounterpart(Protocol):
     def say_status(self) -> None:
         """Say the current goal's status on the action's topic, as a server does when it begins to execute a goal."""
 
-    def await_cancel(self, within: float, *, wall: bool = True) -> bool:
-        """Wait until somebody asked to cancel the current goal; False where nobody did.
-
-        Args:
-            within: Seconds.
-            wall: Whether they are those of the wall, and not those that the machine had for the subject.
-        """
+    def await_cancel(self, within: float) -> bool:
+        """Wait until somebody asked to cancel the current goal; False where nobody did in ``within`` seconds."""
 
     def await_result_request(self, within: float) -> bool:
         """Wait until somebody asked for the result."""

@@ -117,9 +117,9 @@ class ScriptedActionServer:
         )
         return True
 
-    def await_cancel(self, within: float, *, wall: bool = True) -> bool:
-        """Wait until somebody asked to cancel; False where nobody did in so many seconds, of the wall or not."""
-        return self._await("cancel", within, wall=wall)
+    def await_cancel(self, within: float) -> bool:
+        """Wait until somebody asked to cancel; False where nobody did in ``within`` seconds of the wall."""
+        return self._await("cancel", within, wall=True)
 
     def await_result_request(self, within: float) -> bool:
         """Wait until somebody asked for the result; False where nobody did in ``within`` seconds."""

@@ -234,14 +234,10 @@ class TestBench:
         """The same for what the graph tells of; each change of it is written down."""
 
         def look() -> Evidence:
-            self.note_interface()
+            self._presence.note_interface()
             return self._evidence()
 
         return self._wait_for(condition, look, within, poll=GRAPH_LOOK)
-
-    def note_interface(self) -> None:
-        """Write down the subject's endpoints as they are now, where they are others than before."""
-        self._presence.note_interface()
 
     def _evidence(self) -> Evidence:
         return Evidence([self._recorder.part()], self.reference, self.pace is Pace.REAL_TIME)
@@ -363,7 +359,7 @@ class TestBench:
     def note_where_it_hangs(self) -> None:
         """Write down the subject's stacks; a command ends by that. To be asked last in a part."""
         if not self._subject.ended:
-            self.note_interface()
+            self._presence.note_interface()
             self._recorder.record("stack", "subject", text=self._subject.stack())
 
     def wait_until(
@@ -389,7 +385,7 @@ class TestBench:
 
     def compare_type(self, service: str, like: str) -> None:
         """Write down whether a service's type has the fields of the type ``like``, by its hashes on the graph."""
-        made = self._presence.survey()["service"].get(service, "")
+        made = graph.survey(self.wire.node)["service"].get(service, "")
         expected = expected_hashes(like, made.partition("/")[0])
         seen: dict[str, str] = {}
 

@@ -89,10 +89,6 @@ class Presence:
         self._announced = announced
         self._again = AT_WORK
 
-    def survey(self) -> graph.Interface:
-        """The subject's endpoints as they are now."""
-        return graph.survey(self._node)
-
     def nodes(self) -> list[graph.NodeName]:
         """The subject's nodes as they are now."""
         return graph.subject_nodes(self._node, self._subject.keeper)
@@ -171,7 +167,7 @@ class Presence:
             marker = self._subject.marker
             # Asked before the endpoints: what was made before the marker is announced before it.
             all_made = marker is not None and graph.shows(self._node, marker)
-            interface = self.survey()
+            interface = graph.survey(self._node)
             if there(interface) or self._subject.ended or all_made:
                 return True
             return marker is None and settled.unchanged(interface, len(self.nodes()))
@@ -228,7 +224,7 @@ class Presence:
         """
         nodes = [node.full for node in self.nodes()]
         ends = [[e.role, e.topic, e.process] for e in graph.topic_ends(self._node)]
-        seen = {"nodes": nodes, "ends": sorted(ends), **(interface or self.survey())}
+        seen = {"nodes": nodes, "ends": sorted(ends), **(interface or graph.survey(self._node))}
         surveys = self._recorder.part().of("interface", "graph")
         if not surveys or surveys[-1].data != seen:
             self._recorder.record("interface", "graph", **seen)

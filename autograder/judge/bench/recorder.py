@@ -152,7 +152,7 @@ class Recorder:
         Returns:
             Whether the condition held in time.
         """
-        slowness = _never_slower if wall else None
+        slowness = (lambda: 1.0) if wall else None
         patience = Patience(within, slowness=slowness)
         silence = None if quiet is None else Patience(quiet, slowness=slowness)
         heard = self._count
@@ -177,10 +177,6 @@ def usable(part: Part) -> Part:
         return part
     kept = ("subject", "stack", "interface")
     return Part(part.name, part.inputs, [event for event in part.events if event.kind in kept])
-
-
-def _never_slower() -> float:
-    return 1.0
 
 
 def _is_speech(event: Event) -> bool:

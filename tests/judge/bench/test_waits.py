@@ -9,6 +9,7 @@ from unittest.mock import create_autospec
 import pytest
 
 from autograder.judge.bench.bench import TestBench
+from autograder.judge.bench.presence import Presence
 from autograder.judge.bench.recorder import Recorder
 from autograder.judge.bench.subject_time import SubjectTime
 from autograder.kit.evidence import Evidence, Reference
@@ -42,7 +43,7 @@ def test_a_condition_that_holds_for_a_moment_has_held() -> None:
 
 
 def test_on_the_graph_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(TestBench, "note_interface", lambda _: None)
+    monkeypatch.setattr(TestBench, "_presence", create_autospec(Presence))
     asked: list[int] = []
     assert _bench().watch_graph(lambda evidence: _once(evidence, asked), 5.0)
     assert len(asked) == 1
