@@ -34,12 +34,7 @@ from autograder.kit.model import Advice, Mistake, mistake
 from autograder.kit.texts_said import mentions, not_filled_in
 
 if TYPE_CHECKING:
-    from autograder.kit.evidence import Evidence, Part
-
-
-def _successful_run(evidence: Evidence) -> Part:
-    """The run in which a goal succeeds."""
-    return evidence.part(LATE)
+    from autograder.kit.evidence import Evidence
 
 
 # --- the server, and the goal -------------------------------------------------------------------------------------
@@ -55,9 +50,9 @@ WAITS_FOR_NOBODY = mistake(
 WAITS_FOREVER = mistake(
     "waits_forever",
     lambda evidence: (
-        _successful_run(evidence).endpoints("action_client")
-        and _successful_run(evidence).ending is None
-        and not asked_for(_successful_run(evidence))
+        evidence.part(LATE).endpoints("action_client")
+        and evidence.part(LATE).ending is None
+        and not asked_for(evidence.part(LATE))
     ),
     "The server was there, but your client never sent a goal and never ended.",
     "Wait with a limit, `your_action_client.wait_for_server(timeout_sec=5.0)`, and send the goal as soon as it is "
@@ -118,9 +113,9 @@ CANCELED_UNASKED = mistake(
 NEVER_SPUN = mistake(
     "never_spun",
     lambda evidence: (
-        asked_for(_successful_run(evidence))
-        and _successful_run(evidence).of("unanswered")
-        and not _successful_run(evidence).first("result_request")
+        asked_for(evidence.part(LATE))
+        and evidence.part(LATE).of("unanswered")
+        and not evidence.part(LATE).first("result_request")
     ),
     "Your client sent its goal, but it receives no answer: none of its callbacks is called any more.",
     "Spin it while it waits: rclpy.spin(your_node) or rclpy.spin_until_future_complete(your_node, your_future, "
@@ -130,7 +125,7 @@ NEVER_SPUN = mistake(
 
 def _ended_before(evidence: Evidence) -> str:
     """The answer that was still to come when it ended, in words; empty where it waited for its answers."""
-    part = _successful_run(evidence)
+    part = evidence.part(LATE)
     ending, answered, result = part.ending, part.first("goal_answered"), part.first("result")
     if not asked_for(part) or ending is None or (part.traceback and not meant(part.traceback)):
         return ""
@@ -223,7 +218,7 @@ REFUSAL_RETURNED = mistake(
 
 def _feedback_not_shown(evidence: Evidence) -> tuple[int, int] | None:
     """The number of feedback messages that were sent, and of those that it showed."""
-    part = _successful_run(evidence)
+    part = evidence.part(LATE)
     sent, missing = len(part.of("feedback")), len(unshown_feedback(part))
     return (sent, sent - missing) if missing and part.first("result_request") else None
 
@@ -237,9 +232,7 @@ FEEDBACK_NOT_SHOWN = mistake(
 )
 RESULT_NOT_REQUESTED = mistake(
     "result_not_reported",
-    lambda evidence: (
-        asked_for(_successful_run(evidence)) and not _successful_run(evidence).first("result_request")
-    ),
+    lambda evidence: asked_for(evidence.part(LATE)) and not evidence.part(LATE).first("result_request"),
     "Your client sent its goal and never asked for the result.",
     "Call get_result_async() of the goal handle once the goal is accepted, and wait for the future that it returns.",
 )
@@ -261,7 +254,7 @@ RESULT_REPEATED = mistake(
 
 
 def _feedback_for_result(evidence: Evidence) -> bool:
-    part = _successful_run(evidence)
+    part = evidence.part(LATE)
     feedback = part.of("feedback")
     if part.first("result") is None or reports_result(part) or not feedback:
         return False
@@ -277,7 +270,7 @@ WRONG_RESULT_REPORTED = mistake(
 
 
 def _returns_another(evidence: Evidence) -> str:
-    part = _successful_run(evidence)
+    part = evidence.part(LATE)
     result = part.first("result")
     said = result is not None and reports_result(part)
     return returned_instead(part, result.data["fields"]["sequence"]) if result and said else ""
@@ -292,7 +285,7 @@ RESULT_NOT_RETURNED = mistake(
 )
 STATUS_MISREPORTED = mistake(
     "status_misreported",
-    lambda evidence: miscalled(_successful_run(evidence)),
+    lambda evidence: miscalled(evidence.part(LATE)),
     "The goal succeeded (status 4), but your client said “{}”.",
     "Look the number up in GoalStatus (from action_msgs.msg): 4 is SUCCEEDED, 5 is CANCELED, 6 is ABORTED.",
 )
@@ -340,7 +333,7 @@ def _abort_not_reported(evidence: Evidence) -> Advice | None:
 ABORT_NOT_REPORTED = Mistake("abort_not_reported", _abort_not_reported)
 SILENT_END = mistake(
     "silent_end",
-    lambda evidence: given_up(evidence) == SILENT and asked_for(_successful_run(evidence)),
+    lambda evidence: given_up(evidence) == SILENT and asked_for(evidence.part(LATE)),
     "When there is no action server, your client ends without a word.",
     "Log an error (or raise TimeoutError) before you return.",
 )

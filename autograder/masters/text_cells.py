@@ -110,26 +110,6 @@ def _nested(hints: list[Hint]) -> str:
     return text.rstrip("\n")
 
 
-@dataclass(frozen=True)
-class Figure:
-    """A figure as a notebook carries it.
-
-    Attributes:
-        name: The name of the attachment.
-        alternative: What it shows, in words, for those who do not see it.
-        png: The picture.
-    """
-
-    name: str
-    alternative: str
-    png: bytes
-
-    @property
-    def attachment(self) -> dict[str, str]:
-        """The picture as nbformat keeps it."""
-        return {"image/png": base64.b64encode(self.png).decode("ascii")}
-
-
 def attach_figures(folder: Path, markdown: str) -> tuple[str, dict[str, dict[str, str]]]:
     """A text cell that brings its figures along.
 
@@ -143,16 +123,15 @@ def attach_figures(folder: Path, markdown: str) -> tuple[str, dict[str, dict[str
     Raises:
         CellError: A figure is missing, has no words, or its PNG is not drawn from it.
     """
-    figures: dict[str, Figure] = {}
+    figures: dict[str, dict[str, str]] = {}
 
     def shown(reference: re.Match[str]) -> str:
         line = markdown.count("\n", 0, reference.start())
-        figure = _read(folder / reference["path"], reference["path"], line)
-        figures[figure.name] = figure
-        return f"![{figure.alternative}](attachment:{figure.name})"
+        name, words, png = _read(folder / reference["path"], reference["path"], line)
+        figures[name] = {"image/png": base64.b64encode(png).decode("ascii")}
+        return f"![{words}](attachment:{name})"
 
-    text = REFERENCE.sub(shown, markdown)
-    return text, {name: figure.attachment for name, figure in figures.items()}
+    return REFERENCE.sub(shown, markdown), figures
 
 
 def digest(svg: bytes) -> bytes:
@@ -160,7 +139,8 @@ def digest(svg: bytes) -> bytes:
     return hashlib.sha256(svg).hexdigest().encode("ascii")
 
 
-def _read(svg: Path, named: str, line: int) -> Figure:
+def _read(svg: Path, named: str, line: int) -> tuple[str, str, bytes]:
+    """The name of a figure's PNG, what the figure shows in words, and the picture."""
     png = svg.with_suffix(".png")
     try:
         drawing, picture = svg.read_bytes(), png.read_bytes()
@@ -184,4 +164,4 @@ def _read(svg: Path, named: str, line: int) -> Figure:
             f"The figure {named} has changed since its PNG was drawn.",
             "Draw it: python -m autograder.masters.drawing",
         )
-    return Figure(png.name, " ".join(re.sub(r"[\[\]]", "", ". ".join(words)).split()), picture)
+    return (png.name, " ".join(re.sub(r"[\[\]]", "", ". ".join(words)).split()), picture)

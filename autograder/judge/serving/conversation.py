@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import secrets
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
@@ -16,7 +17,7 @@ from autograder.judge.subjects.remote_subject import RemotePath, RemoteSubject
 from autograder.judge.verdicts import keeping, record, reference, trial
 from autograder.messages.checks import Check, Judged, Refused
 from autograder.messages.lines import Hangup, Lines, NotUnderstood
-from autograder.messages.orders import Report
+from autograder.messages.orders import Open, Report
 from autograder.verdict import Verdict, not_checked
 
 if TYPE_CHECKING:
@@ -32,28 +33,17 @@ MAX_NAME = 100
 """Characters of the exercise's name that are looked at."""
 
 
-def converse(
-    connection: socket.socket,
-    *,
-    seed: str,
-    expected: str | None,
-    recording: bool,
-    workspaces: str = "",
-    evidence: bool = False,
-) -> Report:
+def converse(connection: socket.socket, order: Open | None) -> Report:
     """Hear which exercise is asked for, judge it and tell the notebook.
 
     Args:
         connection: The notebook's end.
-        seed: What random inputs of this and other checks are drawn from.
-        expected: The only exercise that may be asked for; None for any.
-        recording: Record a reference output instead of judging against the stored one.
-        workspaces: The socket of the grader's side of checks of workspaces; empty where notebooks run these themselves.
-        evidence: Report what the verdict follows from, too.
+        order: The only check that is expected; None where a notebook may ask for any.
 
     Returns:
         What came of it; nothing where nothing was asked, or something else than what is expected.
     """
+    wanted = order or Open("", secrets.token_hex(8))
     lines = Lines(connection)
     connection.settimeout(FIRST_WORD)
     try:
@@ -70,24 +60,23 @@ def converse(
     except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
         _tell(lines, Refused(str(error)))
         return Report()
-    if expected is not None and asked != expected:
-        _tell(lines, Refused(f"the check cell of {expected} asked for {asked}"))
+    if wanted.exercise and asked != wanted.exercise:
+        _tell(lines, Refused(f"the check cell of {wanted.exercise} asked for {asked}"))
         return Report()
     subject: RemoteSubject | PathSubject
-    if workspaces and exercise.runner:
+    if wanted.workspaces and exercise.runner:
         # Whatever the notebook calls its subject: here only sources count.
-        subject = PathSubject(lines, exercise.id, workspaces)
+        subject = PathSubject(lines, exercise.id, wanted.workspaces)
     elif exercise.runner and first.kind == "path":
         subject = RemotePath(lines)
     else:
         subject = RemoteSubject(lines, is_class=first.kind == "class")
     # A grader has asked for this one exercise: it checks again, alone, what a crowded machine may have spoilt.
-    report, checked = _report(
-        exercise, subject, own_seed(seed, exercise.id), recording, marks_crowded=expected is not None
-    )
+    seed = own_seed(wanted.seed, exercise.id)
+    report, checked = _report(exercise, subject, seed, wanted.record, marks_crowded=order is not None)
     _tell(lines, Judged(_shown(exercise, report)))
     # Its notebook has its verdict already: nobody waits while the evidence is packed.
-    return replace(report, evidence=keeping.packed(checked)) if evidence and checked else report
+    return replace(report, evidence=keeping.packed(checked)) if wanted.evidence and checked else report
 
 
 def own_seed(seed: str, exercise_id: str) -> str:

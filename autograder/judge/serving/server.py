@@ -7,7 +7,6 @@ participant, which meets its subject at once.
 from __future__ import annotations
 
 import contextlib
-import secrets
 import selectors
 import sys
 from typing import TYPE_CHECKING, BinaryIO
@@ -66,23 +65,12 @@ class JudgeServer:
             if self._controlled and (order is None or self._child is not None):
                 _refuse(connection, "no check is expected now: it counts once, while its cell is running")
                 return
-            seed = order.seed if order else secrets.token_hex(8)
-            expected, recording = (order.exercise, order.record) if order else (None, False)
-            workspaces, evidence = (order.workspaces, order.evidence) if order else ("", False)
             limit = max(
-                (e.limit for e in exercises.unbroken() if expected in (None, e.id)), default=REFUSE_LIMIT
+                (e.limit for e in exercises.unbroken() if order is None or e.id == order.exercise),
+                default=REFUSE_LIMIT,
             )
             child = Child(
-                lambda: msgspec.json.encode(
-                    conversation.converse(
-                        connection,
-                        seed=seed,
-                        expected=expected,
-                        recording=recording,
-                        workspaces=workspaces,
-                        evidence=evidence,
-                    )
-                ),
+                lambda: msgspec.json.encode(conversation.converse(connection, order)),
                 limit + SPARE,
                 close=[self._listener.fileno()],
             )

@@ -9,9 +9,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import re2
-from action_msgs.msg import GoalStatus
 
 from autograder.kit.evidence import spoken_by
+from autograder.kit.goals_seen import STATUS
 from autograder.kit.workspace_report import build_ended
 from autograder.verdict import Moment
 
@@ -30,12 +30,6 @@ MAX_LABEL = 200
 
 EXPECTED = 5
 """Messages of the reference solution that a failed card shows for each topic: the first that were missed."""
-
-_STATUS = {
-    GoalStatus.STATUS_SUCCEEDED: "SUCCEEDED",
-    GoalStatus.STATUS_CANCELED: "CANCELED",
-    GoalStatus.STATUS_ABORTED: "ABORTED",
-}
 
 _ENDS = {
     "publisher": "your publisher is here",
@@ -313,7 +307,7 @@ _KINDS = {
     ),
     "result_heard": _Kind(
         _HEARD,
-        lambda e: f"{_STATUS.get(e.data['status'], e.data['status'])} {_fields(e.data)}",
+        lambda e: f"{STATUS.get(e.data['status'], e.data['status'])} {_fields(e.data)}",
         key=True,
         numbered=True,
     ),
