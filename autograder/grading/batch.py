@@ -157,7 +157,7 @@ class _Batch:
         self._entries: Entries = {}
         self._timings = Timings()
         self._returned = UpToDate(
-            directory, store, lambda: self._writer, self._timings, self._problem, feedback=feedback
+            directory, store, lambda: self._writer, self._timings, self._problems.append, feedback=feedback
         )
         self._began = time.monotonic()
         self._executed = 0
@@ -377,7 +377,7 @@ class _Batch:
         except NotWritten as error:
             if is_disk_full(error):
                 raise
-            self._problem(str(error))
+            self._problems.append(str(error))
             work.rows = tuple(without_grade(row) for row in rows)
         else:
             work.rows = rows
@@ -385,6 +385,3 @@ class _Batch:
             self._written += 1
             self._returned.bring_graded(work)
         work.results.clear()
-
-    def _problem(self, text: str) -> None:
-        self._problems.append(f"{text} (see {self._directory.state / 'nbgrader.log'})")
