@@ -19,7 +19,7 @@ from rich.console import Console
 
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Refused, Submission
-from autograder.grading.classes.configuration import check_configuration
+from autograder.grading.classes.configuration import check_configuration, limits_of
 from autograder.grading.classes.origins import news
 from autograder.grading.classes.timestamps import handed_in_at
 from autograder.grading.collecting.tidying import Tidied, tidy
@@ -247,8 +247,6 @@ class _Batch:
             return
         works = {work.key: work for work in waiting}
         missing = sum(len(work.notebooks) - len(work.results) for work in waiting)
-        from autograder.grading.rebuilding.task_making import limits_of
-
         longest = limits_of(self._directory).longest
         with BatchProgress(self._console, missing, longest=longest) as progress:
             self._timings.first_started = time.monotonic() - self._began

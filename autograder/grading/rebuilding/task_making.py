@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder.boxes.execution import Cell, CellType
-from autograder.boxes.limits import Limits
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, Submission
+from autograder.grading.classes.configuration import limits_of
 from autograder.grading.classes.seeds import seed_for
 from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.rebuilding.demonstrations import are_run, demonstrations_of
@@ -88,20 +88,6 @@ def tasks_of(directory: ClassDirectory, submission: Submission) -> list[Task]:
             task_of(directory, submission.student, submission.assignment, notebook, rebuilt.notebook, problem)
         )
     return tasks
-
-
-def limits_of(directory: ClassDirectory) -> Limits:
-    """The limits that the class's configuration sets; the usual ones where it sets none."""
-    configured = directory.config.WireExecute
-    usual = Limits()
-    return Limits(
-        cell_seconds=float(configured.get("cell_seconds", usual.cell_seconds)),
-        notebook_seconds=float(configured.get("notebook_seconds", usual.notebook_seconds)),
-        cpu_seconds=float(configured.get("cpu_seconds", usual.cpu_seconds)),
-        memory_bytes=int(configured.get("memory_bytes", usual.memory_bytes)),
-        processes=int(configured.get("processes", usual.processes)),
-        scratch_bytes=int(configured.get("scratch_bytes", usual.scratch_bytes)),
-    )
 
 
 def cells_of(
