@@ -23,7 +23,7 @@ from autograder.grading.classes.configuration import check_configuration, limits
 from autograder.grading.classes.origins import news
 from autograder.grading.classes.timestamps import handed_in_at
 from autograder.grading.collecting.tidying import Tidied, tidy
-from autograder.grading.entering.gradebook_reading import SubmissionEntry, read_entries
+from autograder.grading.entering.gradebook_reading import SubmissionEntry, gradebook_file, read_entries
 from autograder.grading.errors import MasterUnusable, is_disk_full
 from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.rebuilding.fingerprints import Fingerprints
@@ -31,7 +31,7 @@ from autograder.grading.rebuilding.source_points import check_release, read_rele
 from autograder.grading.reporting.report import GradeReport
 from autograder.grading.reporting.rows import rows_of, write_csv
 from autograder.grading.returning.up_to_date import UpToDate
-from autograder.grading.running import backends
+from autograder.grading.running import backends, sandboxing
 from autograder.grading.running.progress import BatchProgress
 from autograder.grading.running.timings import Timings
 from autograder.grading.table.roster import enter_roster, read_roster
@@ -96,8 +96,6 @@ def grade(
     directory = ClassDirectory(Path(path))
     check_configuration(directory)
     if scheduler is None:
-        from autograder.grading.running import sandboxing
-
         sandboxing.require(directory)
         backend = backends.local(directory, jobs, judge)
     else:
@@ -299,6 +297,8 @@ class _Batch:
             written=self._written,
             seconds=seconds,
             timings=self._timings,
+            note=sandboxing.NOTE if sandboxing.switched_off(self._directory) else "",
+            gradebook=gradebook_file(url),
         )
 
     def _settle(self, work: Work) -> None:

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from datetime import datetime  # noqa: TC003  (msgspec reads the annotations)
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -162,6 +163,12 @@ def _engine(url: str) -> Engine:
 def sql(statement: str) -> TextClause:
     """A statement, parsed once."""
     return sqlalchemy.text(statement)
+
+
+def gradebook_file(url: str) -> Path | None:
+    """The file of a gradebook; None where that is in a database server."""
+    address = sqlalchemy.make_url(url)
+    return Path(address.database) if address.database and address.get_backend_name() == "sqlite" else None
 
 
 def has_tables(book: Connection) -> bool:

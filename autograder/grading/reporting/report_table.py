@@ -72,7 +72,7 @@ def show(report: GradeReport, console: Console | None = None) -> None:
         ("grades", report.csv),
         ("feedback", report.feedback),
     ):
-        if path.exists():
+        if path and path.exists():
             _line(console, f"{name:<10} {_near(path)}")
     if report.executed:
         _line(console, report.timings.line())
