@@ -89,6 +89,7 @@ def report_json(report: GradeReport) -> bytes:
             ],
             "problems": [name_as_text(text) for text in report.problems],
             "notices": [name_as_text(text) for text in report.notices],
+            "would_change": report.would_change,
             "totals": {
                 "executed": report.executed,
                 "reused": report.reused,
