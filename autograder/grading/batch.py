@@ -32,7 +32,7 @@ from autograder.grading.reporting.report import GradeReport
 from autograder.grading.reporting.rows import rows_of, write_csv
 from autograder.grading.returning.up_to_date import UpToDate
 from autograder.grading.running import backends, sandboxing
-from autograder.grading.running.progress import BatchProgress
+from autograder.grading.running.progress import BatchProgress, plain_line
 from autograder.grading.running.timings import Timings
 from autograder.grading.table.roster import enter_roster, read_roster
 from autograder.grading.table.true_rows import true_rows
@@ -103,7 +103,7 @@ def grade(
 
         check_dask()
         check_address(scheduler)
-        tell = functools.partial(console.print, markup=False, highlight=False, soft_wrap=True)
+        tell = functools.partial(plain_line, console)
         backend = backends.cluster(directory, scheduler, judge, tell)
     with directory.lock(), contextlib.ExitStack() as stack:
         backends.remove_leftovers(directory)
@@ -186,7 +186,7 @@ class _Batch:
         self._notices += tidied.notices
         for text in news(self._directory, self._store, assignments or self._cells):
             self._notices.append(text)
-            self._console.print(f"note: {text}", markup=False, highlight=False, soft_wrap=True)
+            plain_line(self._console, f"note: {text}")
         found = find_work(
             self._directory, self._asked, self._released, self._roster, self._fingerprints, tidied.refused
         )
