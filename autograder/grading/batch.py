@@ -23,14 +23,18 @@ from autograder.grading.classes.configuration import check_configuration, limits
 from autograder.grading.classes.origins import news
 from autograder.grading.classes.timestamps import handed_in_at
 from autograder.grading.collecting.tidying import Tidied, tidy
-from autograder.grading.entering.gradebook_reading import SubmissionEntry, gradebook_file, read_entries
+from autograder.grading.entering.gradebook_reading import (
+    SubmissionEntry,
+    gradebook_file,
+    read_entries,
+    read_entry,
+)
 from autograder.grading.errors import MasterUnusable, is_disk_full
 from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import check_release, read_released
 from autograder.grading.reporting.report import GradeReport
 from autograder.grading.reporting.rows import rows_of, write_csv
-from autograder.grading.returning.up_to_date import UpToDate
 from autograder.grading.running import backends, sandboxing
 from autograder.grading.running.progress import BatchProgress, plain_line
 from autograder.grading.running.timings import Timings
@@ -154,9 +158,7 @@ class _Batch:
         self._notices: list[str] = []
         self._entries: Entries = {}
         self._timings = Timings()
-        self._returned = UpToDate(
-            directory, store, lambda: self._writer, self._timings, self._problems.append, feedback=feedback
-        )
+        self._feedback = feedback
         self._began = time.monotonic()
         self._executed = 0
         self._reused = 0
@@ -237,7 +239,7 @@ class _Batch:
             if work.written:
                 self._reused += len(work.notebooks)
                 if not self._dry_run:
-                    self._returned.bring(work, self._entries.get(work.key, SubmissionEntry()))
+                    self._make_pages(work, self._keep_time(work))
             else:
                 self._take_known(work)
         waiting = [work for work in self._works if work.rows is None]
@@ -381,5 +383,33 @@ class _Batch:
             work.rows = rows
             work.written = True
             self._written += 1
-            self._returned.bring_graded(work)
+            self._make_pages(work, read_entry(self._directory.gradebook_url, *work.key))
         work.results.clear()
+
+    def _keep_time(self, work: Work) -> SubmissionEntry:
+        """Enter a changed time of handing in, or a changed due date, and what being late costs now."""
+        entry = self._entries.get(work.key, SubmissionEntry())
+        at = handed_in_at(work.submission.folder, believed=entry.handed_in)
+        moved = at is not None and at != entry.handed_in
+        if not (moved or entry.is_late or entry.penalty):
+            return entry
+        with self._timings.measure("gradebook"):
+            self._writer.enter_time(work.submission, at if moved else None)
+        return read_entry(self._directory.gradebook_url, *work.key)
+
+    def _make_pages(self, work: Work, entry: SubmissionEntry) -> None:
+        """Make the pages of a submission that has none, or whose pages say what the gradebook said before."""
+        submission = work.submission
+        if not self._feedback:
+            return
+        if work.shown == entry.shown() and self._directory.has_pages(submission, work.notebooks):
+            return
+        with self._timings.measure("feedback"):
+            made = self._writer.write_feedback(submission)
+        if made:
+            self._store.note_shown(submission, entry.shown())
+        else:
+            log = self._directory.state / "nbgrader.log"
+            self._problems.append(
+                f"feedback for {submission.student}/{submission.assignment} could not be made (see {log})"
+            )
