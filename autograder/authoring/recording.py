@@ -62,7 +62,6 @@ def record(wanted: Sequence[str], *, only_check: bool, tell: Callable[[str], obj
         if only_check:
             tell(f"{exercise_id}: differs from {file.relative_to(course.root())}")
         else:
-            file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text, encoding="utf-8")
             tell(f"{exercise_id}: recorded in {file.relative_to(course.root())}")
     return changed

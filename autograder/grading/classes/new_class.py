@@ -169,12 +169,9 @@ def sources_of(course_root: Path, wanted: Sequence[str]) -> Sources:
     """
     try:
         known = {lab_name(master): master for master in masters(course_root)}
-    except MasterError as error:
-        raise GradingError(str(error)) from error
-    for name in wanted:
-        if name not in known:
-            raise GradingError(f"There is no master named {name}. The course has: {', '.join(known)}.")
-    try:
+        for name in wanted:
+            if name not in known:
+                raise GradingError(f"There is no master named {name}. The course has: {', '.join(known)}.")
         made = {name: (known[name], source_notebook(known[name])) for name in wanted or known}
     except MasterError as error:
         raise GradingError(str(error)) from error
