@@ -59,7 +59,10 @@ class _Noisy:
 
 def test_a_judge_of_the_bank_leaves_stdout_to_the_verdicts(capfd: pytest.CaptureFixture[str]) -> None:
     judge_all(
-        [Turn(_Noisy(), "seed")], jobs=1, done=lambda turn, verdict: print(turn.subject.name, verdict.score)
+        [Turn(_Noisy(), "seed")],
+        jobs=1,
+        done=lambda turn, verdict: print(turn.subject.name, verdict.score),
+        failed=lambda _, trouble: print(trouble),
     )
     said = capfd.readouterr()
     assert said.out == "noisy 10.0\n"

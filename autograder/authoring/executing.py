@@ -14,7 +14,7 @@ from autograder.authoring.execution_problems import Problem, problems_of, write_
 from autograder.boxes.execution import CellType
 from autograder.boxes.scratch import HeldFolder
 from autograder.grading.running import engine
-from autograder.grading.running.progress import BatchProgress
+from autograder.grading.running.progress import BatchProgress, plain_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -75,12 +75,12 @@ def execute_command(
     results = execute_all(planned, folder, jobs=jobs, console=console)
     failed = [result for result in results if result.found]
     for result in failed:
-        _say(console, f"{result.planned.label} failed, see {result.report}")
+        plain_line(console, f"{result.planned.label} failed, see {result.report}")
         for problem in result.found:
             where = "" if problem.cell is None else f"cell {problem.cell + 1} "
-            _say(console, f"  {where}{problem.text}")
+            plain_line(console, f"  {where}{problem.text}")
     seconds = time.monotonic() - began
-    _say(console, f"{len(results)} notebooks executed, {len(failed)} failed, {seconds:.1f} s")
+    plain_line(console, f"{len(results)} notebooks executed, {len(failed)} failed, {seconds:.1f} s")
     return 1 if failed else 0
 
 
@@ -145,7 +145,3 @@ def _remove_reports(folder: Path) -> None:
         page.unlink()
     with contextlib.suppress(OSError):
         folder.rmdir()
-
-
-def _say(console: Console, text: str) -> None:
-    console.print(text, markup=False, highlight=False, soft_wrap=True)

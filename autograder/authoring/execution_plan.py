@@ -53,7 +53,7 @@ class Planned:
 
 
 class NothingToExecuteError(LookupError):
-    """There is no such notebook, or a chapter was not built; the message says what to do."""
+    """There is no such notebook, or a chapter was not built or is damaged; the message says what to do."""
 
 
 def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
@@ -66,7 +66,7 @@ def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
         only: Names such as ``"lab_1_2"``; all where empty.
 
     Raises:
-        NothingToExecuteError: A name is not there, or a chapter is missing.
+        NothingToExecuteError: A name is not there, or a chapter is missing or no notebook.
         autograder.masters.master_errors.MasterError: A master cannot be used.
     """
     found = masters(root)
@@ -80,11 +80,15 @@ def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
             continue
         chapter = chapter_path(root, master)
         if not chapter.is_file():
-            raise NothingToExecuteError(f"{chapter.relative_to(root)} is not there: run `autograder build`.")
+            raise NothingToExecuteError(f"{chapter.relative_to(root)} is not there: run `./course build`.")
+        try:
+            built = nodes.read(chapter.read_text(encoding="utf-8"))
+        except Exception as error:  # nbformat's libraries raise anything
+            raise NothingToExecuteError(
+                f"{chapter.relative_to(root)} is no notebook: run `./course build`."
+            ) from error
         planned.append(_planned(NotebookKind.MASTER, lab_name(master), source_notebook(master)))
-        planned.append(
-            _planned(NotebookKind.CHAPTER, lab_name(master), nodes.read(chapter.read_text(encoding="utf-8")))
-        )
+        planned.append(_planned(NotebookKind.CHAPTER, lab_name(master), built))
     return planned
 
 

@@ -46,16 +46,12 @@ class Turn(Generic[T]):
     seed: str
 
 
-class NoVerdict(RuntimeError):
-    """A judge ended twice without a verdict."""
-
-
 def judge_all(
     turns: Iterable[Turn[T]],
     *,
     jobs: int,
     done: Callable[[Turn[T], Verdict], None],
-    failed: Callable[[Turn[T], str], None] | None = None,
+    failed: Callable[[Turn[T], str], None],
 ) -> None:
     """Judge, in this order, in forks of this process, which must have no other threads.
 
@@ -66,9 +62,6 @@ def judge_all(
         jobs: How many at once.
         done: Called with each verdict as it comes.
         failed: Called with what has no verdict, and why.
-
-    Raises:
-        NoVerdict: Something has none, and nobody wants to be called.
     """
     again: list[Turn[T]] = []
     for turn, verdict, _ in _judged(turns, jobs):
@@ -79,10 +72,8 @@ def judge_all(
     for turn, verdict, trouble in _judged(again, 1):
         if verdict is not None:
             done(turn, verdict)
-        elif failed is not None:
-            failed(turn, trouble)
         else:
-            raise NoVerdict(f"{turn.subject.name}: {trouble}")
+            failed(turn, trouble)
 
 
 def _judged(turns: Iterable[Turn[T]], jobs: int) -> Iterator[tuple[Turn[T], Verdict | None, str]]:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 from autograder import course, exercises
 from autograder.judge.serving.process import JudgeDied, JudgeProcess
+from autograder.masters.master_errors import MasterError
 from autograder.masters.solutions import reference_source
 
 if TYPE_CHECKING:
@@ -61,7 +62,6 @@ def record(wanted: Sequence[str], *, only_check: bool, tell: Callable[[str], obj
         if only_check:
             tell(f"{exercise_id}: differs from {file.relative_to(course.root())}")
         else:
-            file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text, encoding="utf-8")
             tell(f"{exercise_id}: recorded in {file.relative_to(course.root())}")
     return changed
@@ -106,12 +106,15 @@ def program(exercise_id: str) -> str:
     """The program that is recorded: the solution of the master, and its check.
 
     Raises:
-        CannotRecord: No master checks the exercise.
+        CannotRecord: No master checks the exercise, or its master cannot be used.
     """
     master = exercises.path(exercise_id).with_name(course.LAB)
     if not master.is_file() or exercise_id not in master.read_text(encoding="utf-8"):
         raise CannotRecord(f"{master} does not check {exercise_id}")
-    solution = reference_source(master, exercise_id)
+    try:
+        solution = reference_source(master, exercise_id)
+    except MasterError as error:
+        raise CannotRecord(str(error)) from error
     return solution.source + _CALL.format(exercise=exercise_id, subject=solution.subject)
 
 

@@ -11,6 +11,8 @@ if TYPE_CHECKING:
 
     from autograder.cards.traffic import Part
 
+CHARACTER = 6.7
+"""Pixels of one character of the 11-pixel monospaced label font; a lane's name is set one pixel larger."""
 MARGIN = 10.0
 SHORTEST = 0.002
 """Seconds that an axis covers at least."""
@@ -68,12 +70,8 @@ class Axis:
         """Pixels from the left."""
         return MARGIN + (place - self.start) / (self.end - self.start) * (self.right - MARGIN)
 
-    def ticks(self, character: float) -> Iterator[Tick]:
-        """Round values that cover the axis, also right of the last moment.
-
-        Args:
-            character: Pixels of one character of a tick's text.
-        """
+    def ticks(self) -> Iterator[Tick]:
+        """Round values that cover the axis, also right of the last moment."""
         if not self.seconds:
             yield Tick(0.0, TURNS, "start")
             return
@@ -85,7 +83,7 @@ class Axis:
             value = number * step
             text = f"{value * 1000:.{decimals}f} ms" if short else f"{value:.{decimals}f} s"
             x = self.x(value)
-            yield Tick(x, text, "start" if x < len(text) * character / 2 else "middle")
+            yield Tick(x, text, "start" if x < len(text) * CHARACTER / 2 else "middle")
 
 
 def places_of(part: Part) -> list[float]:

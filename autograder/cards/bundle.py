@@ -46,7 +46,10 @@ def waiting_bundle(title: str, doing: str) -> dict[str, str]:
         title: The exercise.
         doing: What goes on.
     """
-    return {"text/html": waiting_html(title, doing), "text/plain": f"{title}: {doing}"}
+    css, template = _templates()
+    waiting = template.environment.get_template("waiting.html.j2")
+    html = waiting.render(title=one_line(title, 160), doing=one_line(doing, 160), css=css)
+    return {"text/html": html, "text/plain": f"{title}: {doing}"}
 
 
 def prepare() -> None:
@@ -75,13 +78,6 @@ def card_html(verdict: Verdict, *, buttons: bool = False, **choices: Unpack[Choi
         facts=one_line(" · ".join(card.facts), 200),
         buttons=buttons,
     )
-
-
-def waiting_html(title: str, doing: str) -> str:
-    """The placeholder for a card that is not there yet: the exercise, and what goes on."""
-    css, template = _templates()
-    waiting = template.environment.get_template("waiting.html.j2")
-    return waiting.render(title=one_line(title, 160), doing=one_line(doing, 160), css=css)
 
 
 @dataclass(frozen=True)

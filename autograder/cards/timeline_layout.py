@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from autograder.cards import readable, wording
-from autograder.cards.axis import Axis, Tick, places_of
+from autograder.cards.axis import CHARACTER, Axis, Tick, places_of
 from autograder.cards.readable import one_line
 
 if TYPE_CHECKING:
@@ -25,8 +25,6 @@ WIDTH = 600
 HALF_WIDTH = 430
 """The same where a check has many parts, so that a wide card shows two side by side."""
 
-_CHARACTER = 6.7
-"""Pixels of one character of the 11-pixel monospaced label font; a lane's name is set one pixel larger."""
 _MANY = 8
 """Moments in a lane beyond which the labels that may be left out stay on one level: a calm lane."""
 _LEVELS = 4
@@ -113,15 +111,10 @@ def picture(part: Part, width: int = WIDTH) -> Picture:
     """Lay out one part of the traffic.
 
     Args:
-        part: What to draw.
+        part: What to draw; it has moments.
         width: Pixels of the narrowest picture.
-
-    Raises:
-        ValueError: ``part`` has no moments.
     """
     moments = part.moments
-    if not moments:
-        raise ValueError("a part without moments cannot be drawn")
     labels = _labels(part)
     axis = Axis.of(part, [_length(label) for label in labels], width)
     xs = [axis.x(place) for place in places_of(part)]
@@ -133,7 +126,7 @@ def picture(part: Part, width: int = WIDTH) -> Picture:
         lanes.append(lane)
     return Picture(
         lanes=tuple(lanes),
-        ticks=tuple(Tick(_percent(tick.x, width), tick.text, tick.anchor) for tick in axis.ticks(_CHARACTER)),
+        ticks=tuple(Tick(_percent(tick.x, width), tick.text, tick.anchor) for tick in axis.ticks()),
         axis_y=bottom,
         height=bottom + _AXIS_HEIGHT + _READING_HEIGHT,
         summary=wording.part_in_words(part),
@@ -157,7 +150,7 @@ def _lane(
     placed = _flags([_Wish(labels[i], xs[i], needed=moments[i].key) for i in members])
     text = one_line(name, 60)
     levels = 1 + max((flag.level for flag in placed if flag), default=0)
-    name_end = readable.width(text) * (_CHARACTER + 0.7) + 6
+    name_end = readable.width(text) * (CHARACTER + 0.7) + 6
     if any(flag.level == levels - 1 and flag.left < name_end for flag in placed if flag):
         levels += 1
     line_y = top + _LANE_HEAD + levels * _LEVEL_HEIGHT + 7
@@ -246,7 +239,7 @@ class _Flag:
 
 def _length(label: str) -> float:
     """Pixels from a mark to the end of its label."""
-    return 5 + readable.width(label) * _CHARACTER
+    return 5 + readable.width(label) * CHARACTER
 
 
 def _flags(wishes: Sequence[_Wish]) -> list[_Flag | None]:

@@ -19,20 +19,24 @@ from rich.console import Console
 
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Refused, Submission
-from autograder.grading.classes.configuration import check_configuration
+from autograder.grading.classes.configuration import check_configuration, limits_of
 from autograder.grading.classes.origins import news
 from autograder.grading.classes.timestamps import handed_in_at
 from autograder.grading.collecting.tidying import Tidied, tidy
-from autograder.grading.entering.gradebook_reading import SubmissionEntry, read_entries
+from autograder.grading.entering.gradebook_reading import (
+    SubmissionEntry,
+    gradebook_file,
+    read_entries,
+    read_entry,
+)
 from autograder.grading.errors import MasterUnusable, is_disk_full
 from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import check_release, read_released
 from autograder.grading.reporting.report import GradeReport
 from autograder.grading.reporting.rows import rows_of, write_csv
-from autograder.grading.returning.up_to_date import UpToDate
-from autograder.grading.running import backends
-from autograder.grading.running.progress import BatchProgress
+from autograder.grading.running import backends, sandboxing
+from autograder.grading.running.progress import BatchProgress, plain_line
 from autograder.grading.running.timings import Timings
 from autograder.grading.table.roster import enter_roster, read_roster
 from autograder.grading.table.true_rows import true_rows
@@ -96,8 +100,6 @@ def grade(
     directory = ClassDirectory(Path(path))
     check_configuration(directory)
     if scheduler is None:
-        from autograder.grading.running import sandboxing
-
         sandboxing.require(directory)
         backend = backends.local(directory, jobs, judge)
     else:
@@ -105,7 +107,7 @@ def grade(
 
         check_dask()
         check_address(scheduler)
-        tell = functools.partial(console.print, markup=False, highlight=False, soft_wrap=True)
+        tell = functools.partial(plain_line, console)
         backend = backends.cluster(directory, scheduler, judge, tell)
     with directory.lock(), contextlib.ExitStack() as stack:
         backends.remove_leftovers(directory)
@@ -156,9 +158,7 @@ class _Batch:
         self._notices: list[str] = []
         self._entries: Entries = {}
         self._timings = Timings()
-        self._returned = UpToDate(
-            directory, store, lambda: self._writer, self._timings, self._problem, feedback=feedback
-        )
+        self._feedback = feedback
         self._began = time.monotonic()
         self._executed = 0
         self._reused = 0
@@ -188,7 +188,7 @@ class _Batch:
         self._notices += tidied.notices
         for text in news(self._directory, self._store, assignments or self._cells):
             self._notices.append(text)
-            self._console.print(f"note: {text}", markup=False, highlight=False, soft_wrap=True)
+            plain_line(self._console, f"note: {text}")
         found = find_work(
             self._directory, self._asked, self._released, self._roster, self._fingerprints, tidied.refused
         )
@@ -239,7 +239,7 @@ class _Batch:
             if work.written:
                 self._reused += len(work.notebooks)
                 if not self._dry_run:
-                    self._returned.bring(work, self._entries.get(work.key, SubmissionEntry()))
+                    self._make_pages(work, self._keep_time(work))
             else:
                 self._take_known(work)
         waiting = [work for work in self._works if work.rows is None]
@@ -247,8 +247,6 @@ class _Batch:
             return
         works = {work.key: work for work in waiting}
         missing = sum(len(work.notebooks) - len(work.results) for work in waiting)
-        from autograder.grading.rebuilding.task_making import limits_of
-
         longest = limits_of(self._directory).longest
         with BatchProgress(self._console, missing, longest=longest) as progress:
             self._timings.first_started = time.monotonic() - self._began
@@ -301,6 +299,8 @@ class _Batch:
             written=self._written,
             seconds=seconds,
             timings=self._timings,
+            note=sandboxing.NOTE if sandboxing.switched_off(self._directory) else "",
+            gradebook=gradebook_file(url),
         )
 
     def _settle(self, work: Work) -> None:
@@ -377,14 +377,39 @@ class _Batch:
         except NotWritten as error:
             if is_disk_full(error):
                 raise
-            self._problem(str(error))
+            self._problems.append(str(error))
             work.rows = tuple(without_grade(row) for row in rows)
         else:
             work.rows = rows
             work.written = True
             self._written += 1
-            self._returned.bring_graded(work)
+            self._make_pages(work, read_entry(self._directory.gradebook_url, *work.key))
         work.results.clear()
 
-    def _problem(self, text: str) -> None:
-        self._problems.append(f"{text} (see {self._directory.state / 'nbgrader.log'})")
+    def _keep_time(self, work: Work) -> SubmissionEntry:
+        """Enter a changed time of handing in, or a changed due date, and what being late costs now."""
+        entry = self._entries.get(work.key, SubmissionEntry())
+        at = handed_in_at(work.submission.folder, believed=entry.handed_in)
+        moved = at is not None and at != entry.handed_in
+        if not (moved or entry.is_late or entry.penalty):
+            return entry
+        with self._timings.measure("gradebook"):
+            self._writer.enter_time(work.submission, at if moved else None)
+        return read_entry(self._directory.gradebook_url, *work.key)
+
+    def _make_pages(self, work: Work, entry: SubmissionEntry) -> None:
+        """Make the pages of a submission that has none, or whose pages say what the gradebook said before."""
+        submission = work.submission
+        if not self._feedback:
+            return
+        if work.shown == entry.shown() and self._directory.has_pages(submission, work.notebooks):
+            return
+        with self._timings.measure("feedback"):
+            made = self._writer.write_feedback(submission)
+        if made:
+            self._store.note_shown(submission, entry.shown())
+        else:
+            log = self._directory.state / "nbgrader.log"
+            self._problems.append(
+                f"feedback for {submission.student}/{submission.assignment} could not be made (see {log})"
+            )

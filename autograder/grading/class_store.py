@@ -326,7 +326,10 @@ class ClassStore:
         if not self._has_tables:
             (form,) = self._connection.execute("PRAGMA user_version").fetchone()
             if form not in (0, _FORM):
-                raise StoreTrouble(self._path, f"it has the form {form}, and this course knows {_FORM}")
+                whose = " of a newer course" if form > _FORM else ""
+                raise StoreTrouble(
+                    self._path, f"it has the form {form}{whose}, and this course knows {_FORM}"
+                )
             if may_make and not form:
                 make = f"BEGIN IMMEDIATE; {_TABLES} PRAGMA user_version = {_FORM}; COMMIT;"
                 self._connection.executescript(make)

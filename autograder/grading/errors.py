@@ -140,6 +140,7 @@ _STORE_ADVICE = {
     "readonly": _GRADEBOOK_ADVICE["readonly"],
     "unable to open": _GRADEBOOK_ADVICE["readonly"],
     "disk I/O error": "Look whether your quota is used up and the disk is sound; then run the same command again.",
+    "newer course": "It is sound: leave it there, and go on with the course that wrote it, or with a newer one.",
     "malformed": "Put back a copy of it. Without a copy, rename it: the next run grades everything anew, and what was "
     "noted of earlier attempts, runs and appeals is in the renamed file alone.",
 }

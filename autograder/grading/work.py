@@ -49,7 +49,7 @@ class AskedFor:
     def tells_of(self, refused: Refused, class_folder: Path) -> bool:
         """True if what was refused belongs to the students and assignments that were named."""
         submitted = class_folder / "submitted"
-        if not refused.path.is_relative_to(submitted):
+        if submitted not in refused.path.parents:
             return True
         parts = refused.path.relative_to(submitted).parts
         return (not self.students or parts[0] in self.students) and (

@@ -131,5 +131,13 @@ def test_an_unknown_name_is_refused(tmp_path: Path) -> None:
 
 def test_a_chapter_that_was_never_built_is_named(tmp_path: Path) -> None:
     (course(tmp_path, GOOD) / "chapters" / "01_first" / "lab_9_1.ipynb").unlink()
-    with pytest.raises(NothingToExecuteError, match="autograder build"):
+    with pytest.raises(NothingToExecuteError, match=r"\./course build"):
         execute(tmp_path)
+
+
+def test_a_chapter_that_is_no_notebook_is_named(tmp_path: Path) -> None:
+    root = course(tmp_path, GOOD)
+    (notebook,) = (root / "chapters").rglob("*.ipynb")
+    notebook.write_text("<<<<<<< HEAD")
+    with pytest.raises(NothingToExecuteError, match=r"is no notebook: run `\./course build`"):
+        execute(root)

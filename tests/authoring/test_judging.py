@@ -35,8 +35,12 @@ def test_what_could_not_be_checked_is_judged_again_one_at_a_time(tmp_path: Path)
     def done(turn: Turn[NeverChecked], verdict: Verdict) -> None:
         verdicts.append((turn.subject.name, verdict.state))
 
+    def failed(turn: Turn[NeverChecked], trouble: str) -> None:
+        raise AssertionError(f"{turn.subject.name}: {trouble}")
+
     names = ["a", "b", "c"]
-    judge_all([Turn(NeverChecked(name, journal), "seed") for name in names], jobs=AT_ONCE, done=done)
+    turns = [Turn(NeverChecked(name, journal), "seed") for name in names]
+    judge_all(turns, jobs=AT_ONCE, done=done, failed=failed)
     assert sorted(verdicts) == [(name, State.NOT_CHECKED) for name in names]
     words = journal.read_text().split()
     assert len(words) == 2 * AT_ONCE * 2

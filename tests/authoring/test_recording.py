@@ -81,3 +81,12 @@ def test_a_changed_reference_solution_changes_what_is_expected(
         program.write_text(TALKER.format(topic=topic), encoding="utf-8")
         codes[topic] = _autograder("check", "lab_1_2.talker", "--", sys.executable, str(program)).returncode
     assert codes == {"chatter": 1, "gossip": 0}
+
+
+def test_a_master_that_cannot_be_used_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shutil.copytree(ROOT / "solutions", tmp_path / "solutions")
+    master = tmp_path / "solutions" / "01_ros2_fundamentals" / "lab_1_2" / "lab.md"
+    master.write_text(master.read_text(encoding="utf-8").replace("### END SOLUTION", ""), encoding="utf-8")
+    monkeypatch.setenv("AUTOGRADER_COURSE", str(tmp_path))
+    done = _autograder("record", "lab_1_2.talker")
+    assert (done.returncode, "lab.md" in done.stderr, "Traceback" in done.stderr) == (2, True, False)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import exercises
-from autograder.cards.bundle import card_html, waiting_html
+from autograder.cards.bundle import card_html, waiting_bundle
 from autograder.student import journal
 from autograder.student.journal import Entry
 from autograder.verdict import from_json
@@ -34,7 +34,7 @@ light_and_dark = pytest.mark.parametrize("scheme", ["light", "dark"])
 @light_and_dark
 def test_cards(page: Page, scheme: str) -> None:
     page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
-    cards = [waiting_html("The talker", "Checking: run 1 of your code …")]
+    cards = [waiting_bundle("The talker", "Checking: run 1 of your code …")["text/html"]]
     for path in VERDICTS:
         verdict = from_json(path.read_bytes())
         cards += [

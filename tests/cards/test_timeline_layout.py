@@ -191,8 +191,3 @@ def test_the_same_label_again_is_not_repeated() -> None:
     moments = tuple(Moment(float(t), "log", "from_subject", "waiting again...") for t in range(7))
     labels = [mark.label for mark in picture(Part("", False, moments)).lanes[0].marks]
     assert labels == ["waiting again...", *[""] * 6]
-
-
-def test_nothing_to_draw_is_an_error() -> None:
-    with pytest.raises(ValueError, match="without moments"):
-        picture(Part("", False, ()))

@@ -272,7 +272,7 @@ def test_a_damaged_file_is_named_and_costs_nobody_points(
         file.write_bytes(good[: len(good) // 2])
     else:
         with contextlib.closing(sqlite3.connect(file)) as book:
-            book.execute("PRAGMA user_version = 99")
+            book.execute("PRAGMA user_version = 1")
     advice = r"class\.db, which holds what was graded, cannot be read or written .*Put back a copy of it.*rename it"
     with pytest.raises(StoreTrouble, match=advice):
         tiny.grade()
@@ -288,6 +288,15 @@ def test_a_damaged_file_is_named_and_costs_nobody_points(
     fake_engine.ran.clear()
     assert tiny.grade().exit_code == 0
     assert (fake_engine.ran, tiny.scores("ada")[TALKER]) == (["ada"], 4)
+
+
+def test_a_file_of_a_newer_course_is_sound(store: ClassStore, tmp_path: Path) -> None:
+    store.keep_graded_cells("f", b"{}")
+    with contextlib.closing(sqlite3.connect(tmp_path / "class" / ".autograder" / "class.db")) as book:
+        book.execute("PRAGMA user_version = 99")
+    with pytest.raises(StoreTrouble, match=r"form 99 of a newer course.* It is sound") as caught:
+        ClassStore(ClassDirectory(tmp_path / "class")).entered()
+    assert "Put back" not in str(caught.value)
 
 
 # -- killed

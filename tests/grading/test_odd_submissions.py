@@ -368,3 +368,13 @@ def test_a_scratch_folder_of_somebody_else_is_not_used(
     scratch.symlink_to(tmp_path / "class")
     with pytest.raises(ClassIncomplete, match="is not your folder"):
         tiny.grade()
+
+
+def test_a_folder_that_cannot_be_listed_is_named_to_whoever_grades_one_student(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    (tiny.path / "students.csv").write_text("id\nada\n")
+    (tiny.path / "submitted").rmdir()
+    (tiny.path / "submitted").touch()
+    (refused,) = tiny.grade(students=["ada"]).refused
+    assert refused.path == tiny.path / "submitted"

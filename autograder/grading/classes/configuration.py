@@ -6,8 +6,11 @@ know is refused before anything is touched, so that nobody believes in a line wi
 
 from __future__ import annotations
 
+import contextlib
+import math
 from typing import TYPE_CHECKING, Any
 
+from autograder.boxes.limits import Limits
 from autograder.grading.classes.class_directory import CONFIG_NAME
 from autograder.grading.errors import ClassIncomplete
 
@@ -21,6 +24,14 @@ if TYPE_CHECKING:
 _EXPORTER = "autograder.grading.nbgrader_commands.SubmissionExporter"
 _STEP = "autograder.grading.nbgrader_commands.WireExecute"
 _ANYTHING = object()
+_LIMITS: Mapping[str, type[float | int]] = {
+    "cell_seconds": float,
+    "notebook_seconds": float,
+    "cpu_seconds": float,
+    "memory_bytes": int,
+    "processes": int,
+    "scratch_bytes": int,
+}
 _MAY_BE: Mapping[str, Mapping[str, tuple[Any, ...]]] = {
     "Autograde": {
         "exporter_class": (_EXPORTER,),
@@ -34,19 +45,7 @@ _MAY_BE: Mapping[str, Mapping[str, tuple[Any, ...]]] = {
     "CourseDirectory": dict.fromkeys(
         ("root", "db_url", "course_id", "include", "max_file_size", "max_dir_size"), (_ANYTHING,)
     ),
-    "WireExecute": dict.fromkeys(
-        (
-            "cell_seconds",
-            "notebook_seconds",
-            "cpu_seconds",
-            "memory_bytes",
-            "processes",
-            "scratch_bytes",
-            "unsafe_no_sandbox",
-            "demonstrations",
-        ),
-        (_ANYTHING,),
-    ),
+    "WireExecute": dict.fromkeys((*_LIMITS, "unsafe_no_sandbox", "demonstrations"), (_ANYTHING,)),
     # Of these, none has an effect.
     **{
         section: {}
@@ -101,6 +100,26 @@ def check_configuration(directory: ClassDirectory) -> None:
                 f"{path} does not set c.{section}.exporter_class, so that nbgrader's own commands would go past the "
                 "judge: copy the line from a class that `./course new-class` makes."
             )
+    limits_of(directory)
+
+
+def limits_of(directory: ClassDirectory) -> Limits:
+    """The limits that the class's configuration sets; the usual ones where it sets none.
+
+    Raises:
+        ClassIncomplete: One of them is no number above zero.
+    """
+    configured = directory.config.WireExecute
+    found: dict[str, Any] = {}
+    for name in _LIMITS.keys() & configured.keys():
+        with contextlib.suppress(TypeError, ValueError, OverflowError):
+            found[name] = _LIMITS[name](configured[name])
+        if not 0 < found.get(name, 0) < math.inf:
+            raise ClassIncomplete(
+                f"{directory.path / CONFIG_NAME} sets c.WireExecute.{name} to {configured[name]!r}: it has to be a "
+                f"number above zero, such as {getattr(Limits(), name)}."
+            )
+    return Limits(**found)
 
 
 def _not_honoured(config: Config) -> Iterator[str]:

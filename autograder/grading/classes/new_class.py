@@ -169,12 +169,9 @@ def sources_of(course_root: Path, wanted: Sequence[str]) -> Sources:
     """
     try:
         known = {lab_name(master): master for master in masters(course_root)}
-    except MasterError as error:
-        raise GradingError(str(error)) from error
-    for name in wanted:
-        if name not in known:
-            raise GradingError(f"There is no master named {name}. The course has: {', '.join(known)}.")
-    try:
+        for name in wanted:
+            if name not in known:
+                raise GradingError(f"There is no master named {name}. The course has: {', '.join(known)}.")
         made = {name: (known[name], source_notebook(known[name])) for name in wanted or known}
     except MasterError as error:
         raise GradingError(str(error)) from error
@@ -265,7 +262,9 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
         What was done, a line for each assignment.
 
     Raises:
-        GradingError: An assignment is not the course's or not the class's, or nbgrader refuses the new text.
+        GradingError: An assignment is not the course's or not the class's, none is both, or nbgrader refuses the new
+            text.
+        OSError: The sources could not be written. Whatever fails, they are as they were before.
     """
     directory = ClassDirectory(path)
     there = directory.assignments()
@@ -273,6 +272,8 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
         if name not in there:
             raise GradingError(f"The class has no assignment {name}. It has: {', '.join(there)}.")
     made = {name: one for name, one in sources_of(course_root, assignments).items() if name in there}
+    if not made:
+        raise GradingError(f"The class has none of the course's assignments. It has: {', '.join(there)}.")
     kept = directory.state / "sources-before" / f"{datetime.now(tz=UTC):%Y-%m-%dT%H-%M-%S.%f}"
     with directory.lock(), ClassStore(directory) as store:
         for name in made:
@@ -281,7 +282,7 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
             for name, (_, notebook) in made.items():
                 write_source(directory, name, notebook, there)
             release(directory, list(made))
-        except GradingError:
+        except BaseException:  # also a full disk and Ctrl-C
             for name in made:
                 shutil.copytree(kept / name, directory.path / "source" / name, dirs_exist_ok=True)
             raise

@@ -18,23 +18,16 @@ if TYPE_CHECKING:
 _ADDRESS = re.compile(r"(tcp|tls)://[^\s/]+:\d{1,5}")
 
 
-class NoDask(GradingError):
-    """The package ``distributed`` is not installed."""
-
-    def __init__(self) -> None:
-        super().__init__(
-            "Grading on a cluster needs Dask, which is not installed here. Type: ./course setup --with cluster"
-        )
-
-
 def check_dask() -> None:
     """Make sure that Dask is there.
 
     Raises:
-        NoDask: It is not.
+        GradingError: It is not.
     """
     if importlib.util.find_spec("distributed") is None:
-        raise NoDask
+        raise GradingError(
+            "Grading on a cluster needs Dask, which is not installed here. Type: ./course setup --with cluster"
+        )
 
 
 def check_address(address: str) -> None:
@@ -63,7 +56,7 @@ def connected(
         tell: Called with a sentence for the instructor.
 
     Raises:
-        NoDask: Dask is not installed.
+        GradingError: Dask is not installed.
         SchedulerGone: There is no scheduler at that address.
         NoWorkers: It has no worker that can be given work.
     """

@@ -14,14 +14,12 @@ class Offer(msgspec.Struct, frozen=True):
     Attributes:
         version: Stands for the course, as :func:`autograder.grading.rebuilding.course_version.course_version` has it.
         slots: Notebooks that it executes at once.
-        sandbox: Whether it can execute in boxes.
-        obstacle: Why it cannot, and what to do; empty where it can.
+        obstacle: Why it cannot execute in boxes, and what to do; empty where it can.
     """
 
     version: str
     slots: int
-    sandbox: bool
-    obstacle: str = ""
+    obstacle: str
 
 
 class Order(msgspec.Struct, frozen=True):

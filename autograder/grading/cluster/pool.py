@@ -242,7 +242,7 @@ class Pool:
                 f"it has another version of the course ({offer.version:.16}, here it is {course_version()}). "
                 "Bring both to the same commit and start the worker again",
             )
-        elif self._boxed and not offer.sandbox:
+        elif self._boxed and offer.obstacle:
             self._refuse(address, name, f"it has no sandbox: {offer.obstacle[:500]}")
         else:
             self._workers[address] = _Worker(name, offer.slots)

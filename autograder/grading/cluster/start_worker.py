@@ -33,18 +33,13 @@ _SETTINGS = {
 }
 
 
-class NoSandboxHere(GradingError):
-    """This machine cannot execute in boxes, so it can offer nothing."""
-
-
 def offer(slots: int) -> Offer:
     """Return what this machine offers to a cluster: which course it has, and whether it can execute in boxes.
 
     Args:
         slots: Notebooks at once.
     """
-    obstacle = why_impossible()
-    return Offer(course_version(), slots, sandbox=not obstacle, obstacle=obstacle)
+    return Offer(course_version(), slots, why_impossible())
 
 
 def start_worker(
@@ -68,14 +63,14 @@ def start_worker(
     check_address(address)
     name = name or os.environ.get("DASK_WORKER_NAME") or f"{os.uname().nodename}-{os.getpid()}"
     offered = offer(jobs or len(os.sched_getaffinity(0)))
-    if sandbox and not offered.sandbox:
-        raise NoSandboxHere(
+    if sandbox and offered.obstacle:
+        raise GradingError(
             f"No sandbox is possible here: {offered.obstacle}. To offer this machine without one, for submissions "
             "that you trust as your own programs, add --unsafe-no-sandbox."
         )
     tell(
         f"{name} offers {offered.slots} notebooks at once, "
-        f"{'in boxes' if offered.sandbox else 'WITHOUT a sandbox'}, with course version {course_version()}."
+        f"{'WITHOUT a sandbox' if offered.obstacle else 'in boxes'}, with course version {course_version()}."
     )
     logging.getLogger("distributed").setLevel(logging.ERROR)
     with dask.config.set(_SETTINGS), tempfile.TemporaryDirectory(prefix="autograder-dask-") as folder:

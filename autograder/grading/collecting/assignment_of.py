@@ -44,6 +44,8 @@ class AssignmentOf:
     def __init__(self, directory: ClassDirectory, asked: str = "") -> None:
         self._directory = directory
         self._asked = asked
+        self.notes: list[str] = []
+        """A sentence on each source of the class that cannot be read."""
 
     def is_notebook(self, file: str) -> bool:
         """True if a file of this name is a notebook of the class."""
@@ -119,9 +121,16 @@ class AssignmentOf:
 
     @functools.cached_property
     def _grade_ids(self) -> dict[Target, set[str]]:
-        """The names of the cells of each notebook, as they are handed out."""
-        found = {}
+        """The names of the cells of each notebook, as they are handed out; none of one that cannot be read."""
+        found: dict[Target, set[str]] = {}
         for assignment, notebook in self._notebooks.values():
             path = self._directory.path / "source" / assignment / f"{notebook}{SUFFIX}"
-            found[assignment, notebook] = {cell.grade_id for cell in parse(path.read_bytes())[0]} - {""}
+            try:
+                cells, _ = parse(path.read_bytes())
+            except UnreadableSubmission as error:
+                cells = []
+                self.notes.append(
+                    f"{path} cannot be read ({error}): what is for it is told by file names alone"
+                )
+            found[assignment, notebook] = {cell.grade_id for cell in cells} - {""}
         return found

@@ -129,6 +129,7 @@ class _Collecting:
                 "each assignment in a command of its own, with its list"
             )
         notes += self._roster.excused_from_nothing(self._directory.assignments(), self._roster.students)
+        notes += self._assignment_from.notes
         notes += [note for one in read if (note := note_on(one, self._student_of, self._form))]
         came = {(one.student, one.assignment) for one in self._outcomes if one.state in _CAME}
         came |= {(student, "") for student, _ in came}

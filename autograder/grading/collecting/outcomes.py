@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import hashlib
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
@@ -18,6 +17,7 @@ from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+    from datetime import datetime
     from pathlib import Path
 
     from autograder.grading.classes.class_directory import ClassDirectory
@@ -107,7 +107,6 @@ class Waiting:
         student: The student's id; empty where it is not known.
         assignment: The assignment's name; empty where it is not known.
         there: A digest of what lay at its place then: when something else does, it is settled.
-        since: The time of collecting, in UTC.
     """
 
     label: str
@@ -115,7 +114,6 @@ class Waiting:
     student: str
     assignment: str
     there: str
-    since: datetime
 
 
 class WaitingList:
@@ -146,11 +144,9 @@ class WaitingList:
         """
         again = {one.label for one in outcomes}
         kept = [one for one in self.read() if one.label not in again]
-        there, now = functools.cache(self._there), datetime.now(tz=UTC)
+        there = functools.cache(self._there)
         new = [
-            Waiting(
-                one.label, one.reason, one.student, one.assignment, there(one.student, one.assignment), now
-            )
+            Waiting(one.label, one.reason, one.student, one.assignment, there(one.student, one.assignment))
             for one in outcomes
             if one.state == State.NOT_PLACED
         ]

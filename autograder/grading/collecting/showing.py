@@ -9,6 +9,7 @@ from rich.console import Console
 from autograder.cards.readable import printable
 from autograder.grading.collecting.outcomes import State
 from autograder.grading.errors import course_command
+from autograder.grading.running.progress import plain_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,7 +27,7 @@ def show(report: CollectReport, console: Console | None = None) -> None:
     console = console or Console()
     for text in _lines(report):
         style = "yellow" if text.startswith(State.NOT_PLACED) else ""
-        console.print(printable(text), style=style, markup=False, highlight=False, soft_wrap=True)
+        plain_line(console, printable(text), style)
 
 
 def _lines(report: CollectReport) -> Iterator[str]:

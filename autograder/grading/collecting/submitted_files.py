@@ -149,12 +149,7 @@ class Placing:
         history = self._records.get(newest.assignment, newest.student) or History({})
         known = history.now.get(notebook)
         content = "" if there is None else hashlib.sha256(there).hexdigest()
-        if (
-            there is not None
-            and known is not None
-            and content == newest.content
-            and not _has_news(newest.collected, known)
-        ):
+        if known is not None and content == newest.content and not _has_news(newest.collected, known):
             return newest.outcome(State.UNCHANGED)
         if there is not None and content != newest.content:
             if content not in history.collected(notebook):

@@ -21,7 +21,7 @@ from autograder.grading.classes.timestamps import companions
 from autograder.grading.entering.gradebook import NotebookEntry
 from autograder.grading.rebuilding import nodes
 from autograder.grading.rebuilding.demonstrations import LEFT_OUT
-from autograder.grading.rebuilding.task_making import rebuilt_notebook, task_of
+from autograder.grading.rebuilding.task_making import task_of
 from autograder.grading.returning.sanitize import harmless_output, make_harmless
 from autograder.grading.running import sandboxing
 from autograder.grading.task import points, unchecked
@@ -39,10 +39,6 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 _READ_ONLY = 0o444
-
-
-class ChangedMeanwhile(RuntimeError):
-    """The submission is not any more what was executed; the message says what to do."""
 
 
 def convert(
@@ -63,7 +59,7 @@ def convert(
         By notebook.
 
     Raises:
-        ChangedMeanwhile: A notebook was replaced while it was executed.
+        RuntimeError: A notebook was replaced while it was executed.
         OSError: Something could not be written.
     """
     folder.mkdir(parents=True)
@@ -92,14 +88,12 @@ def write_companions(submission: Submission, folder: Path) -> None:
 def _graded(
     directory: ClassDirectory, submission: Submission, task: Task, execution: Execution
 ) -> NotebookNode:
-    master = directory.master(submission.assignment, task.notebook)
-    rebuilt, problem = rebuilt_notebook(submission.folder / f"{task.notebook}{SUFFIX}", master)
-    now = task_of(directory, task.student, task.assignment, task.notebook, rebuilt.notebook, problem)
+    now, rebuilt = task_of(directory, submission, task.notebook)
     if now.key() != task.key():
-        raise ChangedMeanwhile(
+        raise RuntimeError(
             f"{task.label} was changed while it was graded: grade it again to take the new one"
         )
-    return _with_results(rebuilt.notebook, task, execution)
+    return _with_results(rebuilt, task, execution)
 
 
 def _text(notebook: NotebookNode) -> bytes:

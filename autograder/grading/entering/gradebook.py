@@ -27,10 +27,6 @@ _COMMENTED = ("SolutionCell", "TaskCell")
 _PARAMETER = re.compile(r":(\w+)")
 
 
-class NoSuchAssignment(LookupError):
-    """The gradebook has no assignment or notebook of that name."""
-
-
 @dataclass(frozen=True)
 class NotebookEntry:
     """The entry of one notebook.
@@ -88,20 +84,20 @@ def enter(
         Whether the assignment has a due date, so that nbgrader has to say what being late costs.
 
     Raises:
-        NoSuchAssignment: It was never generated.
+        LookupError: It was never generated.
     """
     with opened(url) as book:
         found = book.execute(
             sql("SELECT id, duedate FROM assignment WHERE name = :name"), {"name": assignment}
         ).first()
         if found is None:
-            raise NoSuchAssignment(f"the gradebook has no assignment named {assignment}")
+            raise LookupError(f"the gradebook has no assignment named {assignment}")
         assignment_id, due = found
         submission = _submission(book, assignment_id, student, timestamp)
         cells = _cells(book, assignment_id)
         for name, entry in notebooks.items():
             if name not in cells:
-                raise NoSuchAssignment(f"the gradebook has no notebook named {name} in {assignment}")
+                raise LookupError(f"the gradebook has no notebook named {name} in {assignment}")
             _enter_notebook(book, submission, cells[name], entry)
         # A notebook that no result is for has zero points, and is there all the same.
         for name in cells.keys() - notebooks.keys():

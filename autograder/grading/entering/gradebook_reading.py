@@ -9,9 +9,9 @@ from __future__ import annotations
 import functools
 import hashlib
 from collections.abc import Mapping
-from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from datetime import datetime  # noqa: TC003  (msgspec reads the annotations)
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -19,7 +19,7 @@ import sqlalchemy
 from sqlalchemy.pool import NullPool
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from contextlib import AbstractContextManager
 
     from sqlalchemy import Connection, Engine, TextClause
 
@@ -35,7 +35,7 @@ _CELLS = f"""
     SELECT s.student_id AS student, a.name AS assignment, n.name AS notebook, b.name AS cell,
         g.auto_score AS judged, g.manual_score AS by_hand, g.extra_credit AS extra,
         g.needs_manual_grade AS waits, COALESCE(gc.max_score, tc.max_score, 0) AS most
-    FROM {_FROM} JOIN submitted_notebook sn ON sn.assignment_id = s.id JOIN notebook n ON n.id = sn.notebook_id
+    FROM {SUBMITTED}
         JOIN grade g ON g.notebook_id = sn.id JOIN base_cell b ON b.id = g.cell_id
         LEFT JOIN grade_cells gc ON gc.id = b.id LEFT JOIN task_cells tc ON tc.id = b.id
 """
@@ -43,7 +43,7 @@ _CELLS = f"""
 _COMMENTS = f"""
     SELECT s.student_id AS student, a.name AS assignment, n.name AS notebook, b.name AS cell,
         COALESCE(c.manual_comment, c.auto_comment) AS said
-    FROM {_FROM} JOIN submitted_notebook sn ON sn.assignment_id = s.id JOIN notebook n ON n.id = sn.notebook_id
+    FROM {SUBMITTED}
         JOIN comment c ON c.notebook_id = sn.id JOIN base_cell b ON b.id = c.cell_id
     WHERE COALESCE(c.manual_comment, c.auto_comment) IS NOT NULL
 """
@@ -145,11 +145,9 @@ Entries = Mapping[tuple[str, str], SubmissionEntry]
 """By student and assignment."""
 
 
-@contextmanager
-def opened(url: str) -> Iterator[Connection]:
+def opened(url: str) -> AbstractContextManager[Connection]:
     """A connection for one transaction, closed at the end of the block."""
-    with _engine(url).begin() as connection:
-        yield connection
+    return _engine(url).begin()
 
 
 @functools.lru_cache(maxsize=8)
@@ -162,6 +160,12 @@ def _engine(url: str) -> Engine:
 def sql(statement: str) -> TextClause:
     """A statement, parsed once."""
     return sqlalchemy.text(statement)
+
+
+def gradebook_file(url: str) -> Path | None:
+    """The file of a gradebook; None where that is in a database server."""
+    address = sqlalchemy.make_url(url)
+    return Path(address.database) if address.database and address.get_backend_name() == "sqlite" else None
 
 
 def has_tables(book: Connection) -> bool:
@@ -233,6 +237,12 @@ def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entrie
             name = " ".join(part for part in (row.first_name, row.last_name) if part)
             found[key] = SubmissionEntry(row.timestamp, due, penalties.get(key, {}), cells.get(key, {}), name)
     return found
+
+
+def read_entry(url: str, student: str, assignment: str) -> SubmissionEntry:
+    """The gradebook's rows of one submission; none in it where the gradebook does not know it."""
+    entries = read_entries(url, student=student, assignment=assignment)
+    return entries.get((student, assignment), SubmissionEntry())
 
 
 def read_due_dates(url: str) -> dict[str, datetime]:

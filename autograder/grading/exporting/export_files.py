@@ -56,8 +56,10 @@ def export(
         sections: Only the students of these; all where empty.
 
     Raises:
-        GradingError: There is nothing to export, a run is at work, or the list cannot be filled in.
+        GradingError: There is nothing to export, a run is at work, or the list cannot be filled in or is not named.
     """
+    if columns and not into:
+        raise GradingError("--column names a column of --into: name that list, too, or leave --column out.")
     directory = ClassDirectory(path)
     # While a run is at work, grades that were taken back look as if nobody had earned them.
     with directory.lock():

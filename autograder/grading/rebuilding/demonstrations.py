@@ -14,6 +14,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from autograder.boxes.execution import CellType
+from autograder.grading.rebuilding.rebuild import is_the_masters
 from autograder.masters.parsing import CellRole
 
 if TYPE_CHECKING:
@@ -30,15 +31,8 @@ def is_demonstration(cell: NotebookNode) -> bool:
     Args:
         cell: Of a rebuilt notebook, in which only the master's own cells carry nbgrader's marks.
     """
-    marks = _marks(cell)
-    if (
-        cell.cell_type != CellType.CODE
-        or not marks.get("locked")
-        or marks.get("solution")
-        or marks.get("grade")
-    ):
-        return False
-    return CellRole.DEMONSTRATION in cell.metadata.get("tags", ())
+    given = cell.cell_type == CellType.CODE and is_the_masters(cell) and not _marks(cell).get("grade")
+    return given and CellRole.DEMONSTRATION in cell.metadata.get("tags", ())
 
 
 def demonstrations_of(notebook: NotebookNode) -> frozenset[int]:

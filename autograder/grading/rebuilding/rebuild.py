@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import re  # noqa: TID251  (a class of characters each, nothing repeated: there is nothing to try twice)
 from collections import Counter
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from nbformat import NotebookNode
@@ -28,27 +27,17 @@ _HIDDEN = re.compile(r"(BEGIN|END) (HIDDEN TESTS|MARK SCHEME)")
 _SHOWN = re.compile(r"\(attachment:([\w.-]+)\)")
 
 
-@dataclass(frozen=True)
-class Rebuilt:
-    """A notebook fit to be executed and graded.
-
-    Attributes:
-        notebook: nbformat 4.5; its first cell shows the remarks, where there are any.
-        remarks: Sentences for the student on what was put right.
-    """
-
-    notebook: NotebookNode
-    remarks: tuple[str, ...]
-
-
-def rebuild(master: NotebookNode, submitted: Sequence[SubmittedCell], left_out: int = 0) -> Rebuilt:
-    """Build the notebook from the master and the submitted cells.
+def rebuild(master: NotebookNode, submitted: Sequence[SubmittedCell], left_out: int = 0) -> NotebookNode:
+    """Build the notebook that is executed and graded from the master and the submitted cells.
 
     Args:
         master: As it was released: stubs in place of solutions, every cell that matters named by its
             grade_id.
         submitted: The submission's cells.
         left_out: The number of cells that could not be read.
+
+    Returns:
+        nbformat 4.5. Its first cell shows what was put right, where anything was; its metadata has that, too.
     """
     sorting = _Sorting(master, submitted)
     remarks = sorting.remarks()
@@ -57,7 +46,7 @@ def rebuild(master: NotebookNode, submitted: Sequence[SubmittedCell], left_out: 
     return _finished(master, sorting.cells(), remarks)
 
 
-def rebuild_unreadable(master: NotebookNode, problem: str) -> Rebuilt:
+def rebuild_unreadable(master: NotebookNode, problem: str) -> NotebookNode:
     """The notebook in place of a submission that cannot be read: the master without answers, and the reason."""
     remarks = [f"This submission could not be graded. {problem}"]
     return _finished(master, [nodes.copied(cell) for cell in master.cells], remarks)
@@ -201,7 +190,7 @@ def _without_hidden(source: str) -> str:
     return "\n".join(kept)
 
 
-def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str]) -> Rebuilt:
+def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str]) -> NotebookNode:
     if remarks:
         cells = [_remarks_cell(remarks), *cells]
     figures = _Figures(master)
@@ -214,7 +203,7 @@ def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str
         if cell["cell_type"] == CellType.CODE:
             cell["outputs"] = []
             cell["execution_count"] = None
-    notebook = nodes.notebook(
+    return nodes.notebook(
         cells,
         {
             "kernelspec": {"name": "python3", "display_name": "Python 3 (ipykernel)", "language": "python"},
@@ -222,7 +211,6 @@ def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str
             "autograder": {"remarks": remarks},
         },
     )
-    return Rebuilt(notebook, tuple(remarks))
 
 
 class _Figures:

@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder.boxes.execution import Cell, CellType
-from autograder.boxes.limits import Limits
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, Submission
+from autograder.grading.classes.configuration import limits_of
 from autograder.grading.classes.seeds import seed_for
 from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.rebuilding.demonstrations import are_run, demonstrations_of
 from autograder.grading.rebuilding.master import check_of
 from autograder.grading.rebuilding.rebuild import (
-    Rebuilt,
     grade_id,
     is_of_another,
     is_the_masters,
@@ -34,33 +33,29 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 
-def rebuilt_notebook(path: Path, master: NotebookNode) -> tuple[Rebuilt, str]:
-    """The notebook that stands for the submitted file, and why it was not taken over (empty where it was)."""
-    try:
-        cells, left_out = parse(read_bytes(path))
-        if is_of_another(master, cells):
-            raise UnreadableSubmission(
-                f"The cells of {path.name} are those of another assignment: the notebook of this one is missing."
-            )
-    except UnreadableSubmission as error:
-        return rebuild_unreadable(master, str(error)), str(error)
-    return rebuild(master, cells, left_out), ""
+def tasks_of(directory: ClassDirectory, submission: Submission) -> list[Task]:
+    """The tasks of a submission, one a notebook of the assignment.
+
+    Raises:
+        MasterUnusable: A source notebook cannot be graded against.
+    """
+    notebooks = directory.notebooks(submission.assignment)
+    return [task_of(directory, submission, notebook)[0] for notebook in notebooks]
 
 
-def task_of(
-    directory: ClassDirectory,
-    student: str,
-    assignment: str,
-    notebook: str,
-    rebuilt: NotebookNode,
-    problem: str,
-) -> Task:
-    """The task that executes a rebuilt notebook under the class's limits."""
+def task_of(directory: ClassDirectory, submission: Submission, notebook: str) -> tuple[Task, NotebookNode]:
+    """The task that executes a notebook of a submission under the class's limits, and the rebuilt notebook.
+
+    Raises:
+        MasterUnusable: The source notebook cannot be graded against.
+    """
+    student, assignment = submission.student, submission.assignment
     master = directory.master(assignment, notebook)
+    rebuilt, problem = _rebuilt(submission.folder / f"{notebook}{SUFFIX}", master)
     prose = [cell.source for cell in master.cells if cell.cell_type == CellType.MARKDOWN]
     cells = cells_of(rebuilt, demonstrations=are_run(directory), prose=prose)
     work = hashlib.sha256(msgspec.json.encode(cells)).hexdigest()
-    return Task(
+    task = Task(
         student=student,
         assignment=assignment,
         notebook=notebook,
@@ -72,36 +67,20 @@ def task_of(
         problem=problem,
         boxed=not sandboxing.switched_off(directory),
     )
+    return task, rebuilt
 
 
-def tasks_of(directory: ClassDirectory, submission: Submission) -> list[Task]:
-    """The tasks of a submission, one a notebook of the assignment.
-
-    Raises:
-        MasterUnusable: A source notebook cannot be graded against.
-    """
-    tasks = []
-    for notebook in directory.notebooks(submission.assignment):
-        master = directory.master(submission.assignment, notebook)
-        rebuilt, problem = rebuilt_notebook(submission.folder / f"{notebook}{SUFFIX}", master)
-        tasks.append(
-            task_of(directory, submission.student, submission.assignment, notebook, rebuilt.notebook, problem)
-        )
-    return tasks
-
-
-def limits_of(directory: ClassDirectory) -> Limits:
-    """The limits that the class's configuration sets; the usual ones where it sets none."""
-    configured = directory.config.WireExecute
-    usual = Limits()
-    return Limits(
-        cell_seconds=float(configured.get("cell_seconds", usual.cell_seconds)),
-        notebook_seconds=float(configured.get("notebook_seconds", usual.notebook_seconds)),
-        cpu_seconds=float(configured.get("cpu_seconds", usual.cpu_seconds)),
-        memory_bytes=int(configured.get("memory_bytes", usual.memory_bytes)),
-        processes=int(configured.get("processes", usual.processes)),
-        scratch_bytes=int(configured.get("scratch_bytes", usual.scratch_bytes)),
-    )
+def _rebuilt(path: Path, master: NotebookNode) -> tuple[NotebookNode, str]:
+    """The notebook that stands for the submitted file, and why it was not taken over (empty where it was)."""
+    try:
+        cells, left_out = parse(read_bytes(path))
+        if is_of_another(master, cells):
+            raise UnreadableSubmission(
+                f"The cells of {path.name} are those of another assignment: the notebook of this one is missing."
+            )
+    except UnreadableSubmission as error:
+        return rebuild_unreadable(master, str(error)), str(error)
+    return rebuild(master, cells, left_out), ""
 
 
 def cells_of(

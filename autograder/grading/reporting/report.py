@@ -39,6 +39,8 @@ class GradeReport:
         written: Submissions entered into the gradebook in this run.
         seconds: Wall time.
         timings: The parts of that time.
+        note: A warning for readers of the points, where the class was graded without boxes; else empty.
+        gradebook: The file of nbgrader's gradebook; None where that is in a database server.
     """
 
     path: Path
@@ -52,18 +54,8 @@ class GradeReport:
     written: int = 0
     seconds: float = 0.0
     timings: Timings = field(default_factory=Timings)
-
-    @property
-    def note(self) -> str:
-        """A warning for readers of the points, where the class was graded without boxes; else empty."""
-        from autograder.grading.running import sandboxing
-
-        return sandboxing.note(self.path)
-
-    @property
-    def gradebook(self) -> Path:
-        """Nbgrader's gradebook."""
-        return self.path / "gradebook.db"
+    note: str = ""
+    gradebook: Path | None = None
 
     @property
     def csv(self) -> Path:
@@ -97,6 +89,7 @@ def report_json(report: GradeReport) -> bytes:
             ],
             "problems": [name_as_text(text) for text in report.problems],
             "notices": [name_as_text(text) for text in report.notices],
+            "would_change": report.would_change,
             "totals": {
                 "executed": report.executed,
                 "reused": report.reused,

@@ -12,6 +12,7 @@ from rich.text import Text
 
 from autograder.cards.readable import printable
 from autograder.grading.reporting.rows import DROPPED, EXCUSED, LATE, NOT_SUBMITTED, WAITS, columns, total
+from autograder.grading.running.progress import plain_line
 from autograder.grading.task import UNREADABLE
 from autograder.kit.in_words import counted
 from autograder.verdict import State
@@ -41,7 +42,7 @@ def show(report: GradeReport, console: Console | None = None) -> None:
     console = console or Console()
     if not report.rows:
         submitted = _near(report.path / "submitted")
-        _line(console, f"Nothing was submitted: put notebooks into {submitted}/<student>/<assignment>/.")
+        plain_line(console, f"Nothing was submitted: put notebooks into {submitted}/<student>/<assignment>/.")
     elif console.width >= _WIDE:
         console.print(*tables(report.rows, console, diagnoses=True))
     else:
@@ -50,32 +51,34 @@ def show(report: GradeReport, console: Console | None = None) -> None:
     if report.would_change is not None:
         count = len(report.would_change)
         found = f"{counted(count, 'result')} would change:" if count else "No result would change."
-        _line(console, f"Nothing was entered. {found}", "bold")
+        plain_line(console, f"Nothing was entered. {found}", "bold")
         for change in report.would_change:
-            _line(console, f"would change {printable(change.line())}")
+            plain_line(console, f"would change {printable(change.line())}")
     for words in _legend(report.rows):
-        _line(console, words)
+        plain_line(console, words)
     for refused in report.refused:
-        _line(console, f"refused      {printable(str(refused.path))}: {printable(refused.reason)}", "yellow")
+        plain_line(
+            console, f"refused      {printable(str(refused.path))}: {printable(refused.reason)}", "yellow"
+        )
     for where, reason in _unreadable(report):
-        _line(console, f"unreadable   {printable(where)}: {printable(reason)}", "yellow")
+        plain_line(console, f"unreadable   {printable(where)}: {printable(reason)}", "yellow")
     for notice in report.notices:
-        _line(console, f"note         {printable(notice)}")
+        plain_line(console, f"note         {printable(notice)}")
     for problem in report.problems:
-        _line(console, f"problem      {printable(problem)}", "red")
+        plain_line(console, f"problem      {printable(problem)}", "red")
     if report.note:
-        _line(console, f"unsafe       {report.note}", "red")
+        plain_line(console, f"unsafe       {report.note}", "red")
     ran, entered = counted(report.executed, "notebook"), counted(report.written, "submission")
-    _line(console, f"{ran} run, {report.reused} unchanged, {entered} entered, {report.seconds:.1f} s")
+    plain_line(console, f"{ran} run, {report.reused} unchanged, {entered} entered, {report.seconds:.1f} s")
     for name, path in (
         ("gradebook", report.gradebook),
         ("grades", report.csv),
         ("feedback", report.feedback),
     ):
-        if path.exists():
-            _line(console, f"{name:<10} {_near(path)}")
+        if path and path.exists():
+            plain_line(console, f"{name:<10} {_near(path)}")
     if report.executed:
-        _line(console, report.timings.line())
+        plain_line(console, report.timings.line())
 
 
 def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterator[Table]:
@@ -204,10 +207,6 @@ def _legend(rows: Sequence[Row]) -> list[str]:
     if waiting:
         found.append(f"?  waits for a person ({waiting} in all): give the points in formgrader")
     return found
-
-
-def _line(console: Console, text: str, style: str = "") -> None:
-    console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
 
 
 def _near(path: Path) -> Path:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from nbgrader.utils import is_grade, is_solution, is_task
 
 from autograder.grading.classes.class_directory import SUFFIX
-from autograder.grading.entering.gradebook_reading import SubmissionEntry, read_entries
+from autograder.grading.entering.gradebook_reading import read_entry
 from autograder.grading.rebuilding import nodes
 from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.returning.page_head import mark_waiting
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
-    from autograder.grading.entering.gradebook_reading import CellEntry
+    from autograder.grading.entering.gradebook_reading import CellEntry, SubmissionEntry
 
 
 class FeedbackPages:
@@ -42,9 +42,7 @@ class FeedbackPages:
         Raises:
             OSError: A page could not be written.
         """
-        student, assignment = submission.student, submission.assignment
-        entries = read_entries(self._directory.gradebook_url, student=student, assignment=assignment)
-        entry = entries.get((student, assignment), SubmissionEntry())
+        entry = read_entry(self._directory.gradebook_url, submission.student, submission.assignment)
         graded = self._directory.path / "autograded" / submission.student / submission.assignment
         folder = self._directory.path / "feedback" / submission.student / submission.assignment
         for name in notebooks:

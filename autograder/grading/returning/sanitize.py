@@ -21,7 +21,7 @@ from pygments.token import STANDARD_TYPES
 from autograder.boxes.execution import CellType
 from autograder.boxes.outputs import IMAGES
 from autograder.grading.rebuilding import nodes
-from autograder.grading.rebuilding.rebuild import is_the_masters
+from autograder.grading.rebuilding.rebuild import is_check, is_the_masters
 from autograder.grading.rebuilding.submission import HARMLESS_LENGTH
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
                 cell.update(nodes.cell(CellType.MARKDOWN, as_typed(cell.source)) | {"id": cell.id})
             elif place in as_they_are:
                 cell.metadata["magics_language"] = "text"  # what nbconvert then takes the code for
-        if cell.cell_type == CellType.CODE and not _is_check(cell):
+        if cell.cell_type == CellType.CODE and not (is_check(cell) and is_the_masters(cell)):
             cell.outputs = [harmless_output(output) for output in cell.outputs]
     return notebook
 
@@ -282,10 +282,6 @@ class _Looking(IPythonRenderer):
 def _as_shown(markdown: str) -> str:
     """The form in which nbconvert will show it."""
     return MarkdownWithMath(renderer=IPythonRenderer(escape=False)).render(markdown)
-
-
-def _is_check(cell: Any) -> bool:
-    return is_the_masters(cell) and bool(cell.metadata.nbgrader.get("grade"))
 
 
 def harmless_output(output: NotebookNode) -> NotebookNode:

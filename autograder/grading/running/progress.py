@@ -26,6 +26,11 @@ _SILENCE = 30.0
 """Seconds after which a log file is told of whoever takes longer than was said."""
 
 
+def plain_line(console: Console, text: str, style: str = "") -> None:
+    """Print a text as it is: not taken for markup, not coloured by what it says, and not broken into lines."""
+    console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+
+
 class _Now(ProgressColumn):
     """The text on what is going on now: asked whenever the bar is drawn, not only when a notebook begins or ends."""
 
@@ -125,14 +130,14 @@ class BatchProgress:
             line = failed or self._done % step == 0 or self._done == self._total
             text = f"{self._did} {self._done} of {self._total}: {label}{note}{self._rest()}"
         if line and not self._lively:
-            self._console.print(text, markup=False, highlight=False, soft_wrap=True)
+            plain_line(self._console, text)
 
     def tell(self) -> None:
         """Say in a log file who takes longer than was said, where somebody does."""
         with self._lock:
             late = self._is_late() and f"still {', '.join(self._now())}"
         if late:
-            self._console.print(late, markup=False, highlight=False, soft_wrap=True)
+            plain_line(self._console, late)
 
     def _break_silence(self) -> None:
         while not self._closed.wait(_SILENCE):

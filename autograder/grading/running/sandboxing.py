@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.errors import GradingError
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from autograder.grading.classes.class_directory import ClassDirectory
 
 NOTE = (
     "Graded without a sandbox: what was handed in ran with all rights of whoever graded it "
@@ -34,11 +35,6 @@ def switched_off(directory: ClassDirectory) -> bool:
     """True if this class is graded without boxes, by its configuration or by :func:`switch_off`."""
     configured = directory.config.WireExecute.get("unsafe_no_sandbox", False)
     return bool(configured) or directory.path.resolve() in _off
-
-
-def note(path: Path) -> str:
-    """A warning for readers of the points, where the class was graded without boxes; else empty."""
-    return NOTE if switched_off(ClassDirectory(path)) else ""
 
 
 def require(directory: ClassDirectory) -> None:

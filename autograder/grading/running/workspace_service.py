@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import shutil
 import sys
@@ -22,7 +21,7 @@ from autograder.workspaces.plans import reference_package
 from autograder.workspaces.service import ServiceSockets, WorkspaceService
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Mapping
     from pathlib import Path
 
     from autograder.boxes.fork_server import Addresses
@@ -86,11 +85,10 @@ def arrange(task: Task, folder: Path) -> Arrangement:
     return arrangement
 
 
-@contextlib.contextmanager
 def served(
     arrangement: Arrangement, place: BoxedPlace | UnboxedPlace, addresses: Addresses
-) -> Iterator[WorkspaceService]:
-    """Open the sockets for as long as the notebook runs.
+) -> WorkspaceService:
+    """The service whose sockets are open for as long as the notebook runs.
 
     Args:
         arrangement: What :func:`arrange` has prepared.
@@ -111,8 +109,7 @@ def served(
         sockets = ServiceSockets(arrangement.judges_socket, None)
     # Programs that hang can be asked where, and what they say comes at once.
     variables = {**ros, "PYTHONUNBUFFERED": "1", "PYTHONFAULTHANDLER": "1"}
-    with WorkspaceService(sockets, jobs, cache.graders_root(), variables, folder) as service:
-        yield service
+    return WorkspaceService(sockets, jobs, cache.graders_root(), variables, folder)
 
 
 def _furnish(shared: Path, *, robot: bool) -> None:

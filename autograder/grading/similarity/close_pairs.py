@@ -110,7 +110,7 @@ def _not_looked_at(directory: ClassDirectory, refused: Iterable[Refused], assign
     beside = tidy(directory, moves=False)
     for one in (*refused, *beside.refused):
         # Where a file is too high for an assignment, it may be for any.
-        _, *below = one.path.relative_to(directory.path / "submitted").parts
+        below = one.path.relative_to(directory.path / "submitted").parts[1:]
         if not assignment or not below or below[0] == assignment:
             yield f"refused      {one.path}: {one.reason}"
     for path, place in beside.waiting:

@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from autograder.cards.readable import printable
+from autograder.grading.running.progress import plain_line
 from autograder.grading.similarity.pairs import HINT, nothing_found
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ def show(found: Similar, page: Path, console: Console | None = None) -> None:
     console = console or Console()
 
     def line(text: str, style: str = "") -> None:
-        console.print(printable(text), style=style, markup=False, highlight=False, soft_wrap=True)
+        plain_line(console, printable(text), style)
 
     if found.pairs:
         console.print(_table(found))

@@ -77,6 +77,21 @@ def test_what_it_does_not_know_is_refused(tiny: TinyClass, line: str, option: st
         check_configuration(ClassDirectory(tiny.path))
 
 
+@pytest.mark.parametrize(
+    "line", ["memory_bytes = '4 GB'", "cell_seconds = None", "processes = -1", "cpu_seconds = float('nan')"]
+)
+def test_a_limit_that_is_no_number_takes_back_nothing(
+    tiny: TinyClass, fake_engine: FakeEngine, line: str
+) -> None:
+    tiny.submit("ada", 4)
+    tiny.grade()
+    tiny.submit("ada", 9)
+    tiny.configure(f"c.WireExecute.{line}")
+    with pytest.raises(ClassIncomplete, match=rf"c\.WireExecute\.{line.split()[0]} .*a number above zero"):
+        tiny.grade()
+    assert tiny.scores("ada")[TALKER] == 4
+
+
 @pytest.mark.parametrize("way", [TinyClass.grade, nbgrader_autograde, nbgrader_generate_feedback])
 def test_where_something_is_refused_nothing_is_touched(
     tiny: TinyClass, fake_engine: FakeEngine, way: Callable[[TinyClass], object]

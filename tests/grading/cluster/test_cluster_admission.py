@@ -135,11 +135,11 @@ def test_outputs_are_cut_and_stripped_here_too(task: Task, execution: Execution)
 
 
 def test_an_offer_is_looked_at_too() -> None:
-    honest = Offer("version", slots=2, sandbox=True)
+    honest = Offer("version", slots=2, obstacle="")
     assert admitted_offer(msgspec.json.encode(honest)) == honest
     for slots in (0, -1, 10**9):
         with pytest.raises(Forged, match="at once"):
-            admitted_offer(msgspec.json.encode(Offer("version", slots=slots, sandbox=True)))
+            admitted_offer(msgspec.json.encode(Offer("version", slots=slots, obstacle="")))
     for data in (b"", b"\x80\x04K\x01.", b'{"version": 1}', b" " * (LARGEST_OFFER + 1)):
         with pytest.raises(Forged, match="its offer"):
             admitted_offer(data)

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
-HERE = Offer("here", slots=2, sandbox=True)
+HERE = Offer("here", slots=2, obstacle="")
 
 
 class FakeLink:
@@ -256,7 +256,7 @@ def test_a_worker_that_forges_is_turned_out_by_name(tasks: list[Task]) -> None:
 
 def test_forgers_use_up_no_attempt_of_a_notebook(tasks: list[Task]) -> None:
     names = [f"bad-{number}" for number in range(ATTEMPTS + 3)]
-    link = FakeLink(*(joined(name, Offer("here", 1, sandbox=True)) for name in names), Asked())
+    link = FakeLink(*(joined(name, Offer("here", 1, obstacle="")) for name in names), Asked())
 
     def answer(give: Give, task: Task) -> News:
         if len({given.worker for given in link.given}) == len(names):
@@ -286,12 +286,12 @@ def test_a_worker_that_falls_silent_is_turned_out(tasks: list[Task], monkeypatch
 @pytest.mark.parametrize(
     ("offer", "words"),
     [
-        (Offer("other", 2, sandbox=True), "it has another version of the course (other, here it is here)"),
+        (Offer("other", 2, obstacle=""), "it has another version of the course (other, here it is here)"),
         (
-            Offer("here", 2, sandbox=False, obstacle="bubblewrap is missing"),
+            Offer("here", 2, obstacle="bubblewrap is missing"),
             "no sandbox: bubblewrap is missing",
         ),
-        (Offer("here", 0, sandbox=True), "it offers to execute 0 notebooks"),
+        (Offer("here", 0, obstacle=""), "it offers to execute 0 notebooks"),
     ],
 )
 def test_a_worker_that_does_not_fit_is_refused_by_name_and_the_others_go_on(
@@ -308,7 +308,7 @@ def test_a_worker_that_does_not_fit_is_refused_by_name_and_the_others_go_on(
 
 
 def test_without_boxes_asked_for_a_worker_without_a_sandbox_will_do(tasks: list[Task]) -> None:
-    link = FakeLink(joined("a", Offer("here", 1, sandbox=False, obstacle="none")), Asked())
+    link = FakeLink(joined("a", Offer("here", 1, obstacle="none")), Asked())
     pool = make_pool(link, boxed=False)
     pool.await_workers()
     assert len(list(pool.execute_all(tasks))) == len(tasks)
@@ -316,7 +316,7 @@ def test_without_boxes_asked_for_a_worker_without_a_sandbox_will_do(tasks: list[
 
 def test_a_worker_cannot_write_on_the_terminal(tasks: list[Task]) -> None:
     told: list[str] = []
-    offer = Offer("other\x1b[2J", 1, sandbox=True)
+    offer = Offer("other\x1b[2J", 1, obstacle="")
     link = FakeLink(Joined("a\x1b[31m", "b\nTotal: 100", msgspec.json.encode(offer)), Asked())
     with pytest.raises(NoWorkers):
         make_pool(link, told).await_workers()
@@ -343,7 +343,7 @@ def test_no_scheduler_says_so() -> None:
 
 
 def test_a_worker_that_comes_later_gets_work_too(tasks: list[Task]) -> None:
-    link = FakeLink(joined("a", Offer("here", 1, sandbox=True)), Asked(), joined("late"))
+    link = FakeLink(joined("a", Offer("here", 1, obstacle="")), Asked(), joined("late"))
     pool = make_pool(link)
     pool.await_workers()
     assert students(list(pool.execute_all(tasks))) == [task.student for task in tasks]

@@ -423,3 +423,18 @@ def test_killed_at_any_write_nothing_is_lost_and_nothing_is_there_twice(
     assert {student for _, student in named(report, State.NOT_PLACED)} == {"eve"}
     kept = (klass.path / ".autograder" / "collected").rglob("*.ipynb")
     assert {work(klass, 1), work(klass, 3)} <= {path.read_text() for path in kept}
+
+
+def test_a_source_that_is_damaged_holds_up_no_work(klass: TinyClass, tmp_path: Path) -> None:
+    add_assignment(klass, "lab_1_3")
+    mine = work(klass, 3)
+    (klass.path / "source" / "lab_1_3" / "lab_1_3.ipynb").write_text("<<<<<<< HEAD")
+    other = mine.replace('"grade_id": "', '"grade_id": "other-')
+    files = {"lab_1_2.ipynb": mine, "lab_1_3.ipynb": other}
+    report = gathered(
+        klass, tmp_path, {MOODLE.format("Ada Lovelace", name): text for name, text in files.items()}
+    )
+    assert not why(report)
+    assert lies(klass, "ada") == mine
+    assert (klass.path / "submitted" / "ada" / "lab_1_3" / "lab_1_3.ipynb").read_text() == other
+    assert any("lab_1_3.ipynb cannot be read" in note for note in report.notes)

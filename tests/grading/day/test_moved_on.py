@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import shutil
+from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING
 
 import pytest
 from conftest import LISTENER, MASTER, TALKER, FakeEngine, TinyClass, write_master
@@ -13,10 +14,7 @@ from rich.console import Console
 
 from autograder.grading.classes import origins
 from autograder.grading.classes.new_class import new_class, renew
-from autograder.grading.errors import GradingError
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from autograder.grading.errors import DiskFull, GradingError
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
@@ -121,3 +119,27 @@ def test_what_nbgrader_refuses_leaves_the_class_as_it_was(tiny: TinyClass, cours
 def test_only_what_the_class_has_is_brought_up_to_date(tiny: TinyClass, course: Path) -> None:
     with pytest.raises(GradingError, match="no assignment lab_9_9"):
         renew(tiny.path, course, ["lab_9_9"])
+
+
+def test_a_class_of_ones_own_assignments_is_not_renewed(tiny: TinyClass, course: Path) -> None:
+    (tiny.path / "source" / "lab_1_2").rename(tiny.path / "source" / "own")
+    released = sorted((tiny.path / "release").rglob("*"))
+    with pytest.raises(GradingError, match=r"none of the course's assignments\. It has: own"):
+        renew(tiny.path, course)
+    assert sorted((tiny.path / "release").rglob("*")) == released
+
+
+def test_a_full_disk_leaves_the_class_as_it_was(
+    tiny: TinyClass, course: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    source = tiny.path / "source" / "lab_1_2" / "lab_1_2.ipynb"
+    before = source.read_bytes()
+
+    def full(path: Path, *_: object, **__: object) -> None:
+        path.write_bytes(b"{")
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_text", full)
+    with pytest.raises(DiskFull):
+        renew(tiny.path, course)
+    assert source.read_bytes() == before

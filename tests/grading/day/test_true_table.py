@@ -145,6 +145,7 @@ def test_a_page_that_cannot_be_made_anew_is_a_problem_until_it_is(
         for _ in range(2):
             report = tiny.grade(feedback=True)
             assert "feedback for ada/lab_1_2 could not be made" in "".join(report.problems)
+            assert "".join(report.problems).count("nbgrader.log") == 1
     assert tiny.grade(feedback=True).problems == ()
     assert "Score: 13.0 / 20.0" in page(tiny, "ada")
 

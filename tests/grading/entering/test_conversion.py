@@ -216,6 +216,7 @@ def test_a_notebook_that_was_replaced_while_it_ran_is_not_given_the_old_ones_poi
     report = tiny.grade()
     assert everything(tiny.path)["grade g"] == []
     assert "was changed while it was graded" in report.problems[0]
+    assert "nbgrader.log" not in report.problems[0], "it says nothing of that"
     fake_engine.before = lambda _: None
     tiny.grade()
     assert tiny.scores("ada")[TALKER] == 1

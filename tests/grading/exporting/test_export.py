@@ -397,3 +397,5 @@ def test_a_column_of_another_name_is_named(graded: TinyClass, tmp_path: Path) ->
     assert CliRunner().invoke(cli, [*command, "--column", "lab_1_2=Lab 1.2"]).exit_code == 0
     lines = rows(graded.path / "export" / "canvas.csv")
     assert [row[-1] for row in lines[2:]] == ["18.5", ""]
+    result = CliRunner().invoke(cli, [*command[:4], "--column", "lab_1_2=Lab 1.2"])
+    assert (result.exit_code, "--column names a column of --into" in result.output) == (2, True)

@@ -63,25 +63,25 @@ WHOLE = [
 
 def test_an_honest_submission_comes_back_as_it_is_without_remarks(master: NotebookNode) -> None:
     rebuilt = rebuild(master, as_submitted(master, **ANSWERS))
-    assert sources(rebuilt.notebook) == WHOLE
-    assert rebuilt.remarks == ()
+    assert sources(rebuilt) == WHOLE
+    assert rebuilt.metadata.autograder.remarks == []
 
 
 def test_locked_and_check_cells_come_from_the_master(master: NotebookNode) -> None:
     forged = as_submitted(master, setup="import evil", **{"check-talker": "10.0"}, **ANSWERS)
     rebuilt = rebuild(master, forged)
-    assert sources(rebuilt.notebook)[1:] == WHOLE
-    assert "`setup` is not yours to change" in " ".join(rebuilt.remarks)
-    assert "`check-talker` is not yours to change" in " ".join(rebuilt.remarks)
+    assert sources(rebuilt)[1:] == WHOLE
+    assert "`setup` is not yours to change" in " ".join(rebuilt.metadata.autograder.remarks)
+    assert "`check-talker` is not yours to change" in " ".join(rebuilt.metadata.autograder.remarks)
 
 
 def test_a_deleted_check_cell_is_put_back_behind_the_students_own_cells(master: NotebookNode) -> None:
     cells = [cell for cell in as_submitted(master, **ANSWERS) if cell.grade_id != "check-talker"]
     cells.insert(3, SubmittedCell(CellType.CODE, "helper = 1"))
     rebuilt = rebuild(master, cells)
-    found = sources(rebuilt.notebook)
+    found = sources(rebuilt)
     assert found.index("helper = 1") < found.index("check(Talker)") < found.index("class Listener: ...")
-    assert "`check-talker` was missing" in " ".join(rebuilt.remarks)
+    assert "`check-talker` was missing" in " ".join(rebuilt.metadata.autograder.remarks)
 
 
 def test_the_stub_of_a_deleted_answer_does_not_overwrite_the_answer_in_another_cell(
@@ -89,7 +89,7 @@ def test_the_stub_of_a_deleted_answer_does_not_overwrite_the_answer_in_another_c
 ) -> None:
     cells = as_submitted(master, **ANSWERS)
     cells[2] = SubmittedCell(CellType.CODE, "class Talker: 'in a cell of my own'")
-    found = sources(rebuild(master, cells).notebook)
+    found = sources(rebuild(master, cells))
     assert (
         found.index("# TODO")
         < found.index("class Talker: 'in a cell of my own'")
@@ -106,34 +106,32 @@ def test_of_a_duplicated_answer_the_last_changed_one_counts_and_all_run(master: 
     ]
     rebuilt = rebuild(master, cells)
     named = {
-        cell.metadata.nbgrader.grade_id: cell.source
-        for cell in rebuilt.notebook.cells
-        if "nbgrader" in cell.metadata
+        cell.metadata.nbgrader.grade_id: cell.source for cell in rebuilt.cells if "nbgrader" in cell.metadata
     }
     assert named["Talker"] == "class Talker: 'second try'"
-    assert "class Talker: 'first try'" in sources(rebuilt.notebook)
-    assert "3 times" in " ".join(rebuilt.remarks)
+    assert "class Talker: 'first try'" in sources(rebuilt)
+    assert "3 times" in " ".join(rebuilt.metadata.autograder.remarks)
 
 
 def test_a_duplicated_check_runs_once(master: NotebookNode) -> None:
     cells = as_submitted(master, **ANSWERS)
     cells.insert(4, SubmittedCell(CellType.CODE, "check(Talker)", "check-talker"))
-    assert sources(rebuild(master, cells).notebook).count("check(Talker)") == 1
+    assert sources(rebuild(master, cells)).count("check(Talker)") == 1
 
 
 def test_cells_that_changed_places_are_in_order_again_with_their_neighbours(master: NotebookNode) -> None:
     cells = as_submitted(master, **ANSWERS)
     cells = [*cells[4:], SubmittedCell(CellType.CODE, "after listener's check"), *cells[:4]]
     rebuilt = rebuild(master, cells)
-    found = [source for source in sources(rebuilt.notebook) if source in WHOLE[1:]]
+    found = [source for source in sources(rebuilt) if source in WHOLE[1:]]
     assert found == WHOLE[1:]
-    assert "changed places" in " ".join(rebuilt.remarks)
+    assert "changed places" in " ".join(rebuilt.metadata.autograder.remarks)
 
 
 def test_a_helper_cell_stays_before_the_answer_that_needs_it(master: NotebookNode) -> None:
     cells = as_submitted(master, **ANSWERS)
     cells.insert(2, SubmittedCell(CellType.CODE, "def text(n): ..."))
-    found = sources(rebuild(master, cells).notebook)
+    found = sources(rebuild(master, cells))
     assert found.index("import rclpy") < found.index("def text(n): ...") < found.index("class Talker: ...")
 
 
@@ -142,50 +140,46 @@ def test_a_retyped_answer_is_code_again(master: NotebookNode, kind: CellType) ->
     cells = as_submitted(master, **ANSWERS)
     cells[2] = SubmittedCell(kind, "class Talker: ...", "Talker")
     rebuilt = rebuild(master, cells)
-    assert [cell.cell_type for cell in rebuilt.notebook.cells if cell.source == "class Talker: ..."] == [
-        "code"
-    ]
-    assert f"had become a {kind} cell" in " ".join(rebuilt.remarks)
+    assert [cell.cell_type for cell in rebuilt.cells if cell.source == "class Talker: ..."] == ["code"]
+    assert f"had become a {kind} cell" in " ".join(rebuilt.metadata.autograder.remarks)
 
 
 def test_a_cell_that_claims_a_name_nobody_gave_is_the_students_own(master: NotebookNode) -> None:
     cells = [*as_submitted(master, **ANSWERS), SubmittedCell(CellType.CODE, "99", "bonus")]
     rebuilt = rebuild(master, cells)
-    assert "nbgrader" not in rebuilt.notebook.cells[-1].metadata
-    assert "no graded cell `bonus`" in " ".join(rebuilt.remarks)
+    assert "nbgrader" not in rebuilt.cells[-1].metadata
+    assert "no graded cell `bonus`" in " ".join(rebuilt.metadata.autograder.remarks)
 
 
 def test_an_empty_submission_gets_every_cell_back(master: NotebookNode) -> None:
     rebuilt = rebuild(master, [])
-    assert [s for s in sources(rebuilt.notebook) if s in {c.source for c in master.cells[1:]}] == sources(
-        master
-    )[1:]
-    assert len(rebuilt.remarks) == 5
+    assert [s for s in sources(rebuilt) if s in {c.source for c in master.cells[1:]}] == sources(master)[1:]
+    assert len(rebuilt.metadata.autograder.remarks) == 5
 
 
 def test_an_unreadable_submission_is_the_master_with_the_reason(master: NotebookNode) -> None:
     rebuilt = rebuild_unreadable(master, "It is not JSON.")
-    assert "It is not JSON." in rebuilt.notebook.cells[0].source
-    assert sources(rebuilt.notebook)[1:] == sources(master)
+    assert "It is not JSON." in rebuilt.cells[0].source
+    assert sources(rebuilt)[1:] == sources(master)
 
 
 def test_a_remark_cannot_carry_markup(master: NotebookNode) -> None:
     cells = [*as_submitted(master), SubmittedCell(CellType.CODE, "1", "<script>alert(1)</script>")]
-    text = rebuild(master, cells).notebook.cells[0].source
+    text = rebuild(master, cells).cells[0].source
     assert "<script" not in text
-    assert "<img" not in rebuild_unreadable(master, "<img src=x onerror=alert(1)>").notebook.cells[0].source
+    assert "<img" not in rebuild_unreadable(master, "<img src=x onerror=alert(1)>").cells[0].source
 
 
 def test_the_same_submission_gives_the_same_bytes_and_a_valid_notebook(master: NotebookNode) -> None:
     cells = [*as_submitted(master, **ANSWERS), SubmittedCell(CellType.RAW, "notes")]
-    first, second = (nbformat.writes(rebuild(master, cells).notebook) for _ in range(2))
+    first, second = (nbformat.writes(rebuild(master, cells)) for _ in range(2))
     assert first == second
     nbformat.validate(nbformat.reads(first, as_version=4))
 
 
 def test_the_master_is_not_changed(master: NotebookNode) -> None:
     before = nbformat.writes(master)
-    rebuild(master, as_submitted(master, **ANSWERS)).notebook.cells[1].source = "changed"
+    rebuild(master, as_submitted(master, **ANSWERS)).cells[1].source = "changed"
     assert nbformat.writes(master) == before
 
 
@@ -194,7 +188,7 @@ def test_the_courses_own_prose_is_nobodys_work_where_its_cells_are_not_locked(ma
     texts = ("# Title", "# Title, and my notes")
     submitted = [SubmittedCell(kind, text) for kind in (CellType.MARKDOWN, CellType.CODE) for text in texts]
     submitted.append(SubmittedCell(CellType.MARKDOWN, "# Title"))
-    cells = cells_of(rebuild(master, submitted).notebook, prose=["# Title"])
+    cells = cells_of(rebuild(master, submitted), prose=["# Title"])
     assert [(cell.kind, cell.source) for cell in cells if cell.own] == [
         (CellType.MARKDOWN, "# Title, and my notes"),
         (CellType.CODE, "# Title"),

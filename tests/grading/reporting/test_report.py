@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
 
-def said(tiny: TinyClass) -> dict[str, Any]:
-    result = CliRunner().invoke(cli, ["grade", str(tiny.path), "--json"])
+def said(tiny: TinyClass, *options: str) -> dict[str, Any]:
+    result = CliRunner().invoke(cli, ["grade", str(tiny.path), "--json", *options])
     printed: dict[str, Any] = json.loads(result.stdout)
     return printed
 
@@ -57,3 +57,19 @@ def test_it_is_one_object_with_submissions_and_totals(
     assert (totals["executed"], totals["reused"], totals["written"], totals["score"]) == (2, 0, 2, 24.0)
     assert set(first["timings"]) >= {"boxes", "students", "judge", "gradebook", "feedback", "last_ended"}
     assert said(tiny)["totals"]["reused"] == 1
+
+
+def test_a_dry_run_says_who_would_get_other_points(
+    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sandboxing, "require", lambda _: None)
+    tiny.submit("ada", 10, 4)
+    assert said(tiny)["would_change"] is None
+    tiny.submit("ada", 10, 7)
+    (change,) = said(tiny, "--dry-run")["would_change"]
+    assert (change["student"], change["exercise"], change["before"], change["after"]) == (
+        "ada",
+        "lab_1_2.listener",
+        4.0,
+        7.0,
+    )

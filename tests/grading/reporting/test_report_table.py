@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,7 +16,7 @@ from autograder.grading.reporting.report_table import show, tables
 from autograder.grading.reporting.rows import Row, columns
 
 if TYPE_CHECKING:
-    from conftest import TinyClass
+    from conftest import FakeEngine, TinyClass
 
 STUDENTS = ("ada", "a-student-with-quite-a-long-id", "zoe")
 EXERCISES = {
@@ -67,3 +68,13 @@ def test_a_file_that_is_not_taken_writes_no_line_of_its_own(tiny: TinyClass) -> 
     assert "ada: 10 of 10" in line
     assert "\x1b[2J" not in line
     assert "\u202e" not in line
+
+
+def test_the_gradebook_is_the_one_of_the_configuration(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    assert tiny.grade().gradebook == tiny.path / "gradebook.db"
+    other = tiny.path / "other.db"
+    shutil.copy(tiny.path / "gradebook.db", other)
+    tiny.configure(f"c.CourseDirectory.db_url = 'sqlite:///{other}'")
+    out = io.StringIO()
+    show(tiny.grade(), Console(file=out, width=200))
+    assert f"gradebook  {other}" in out.getvalue()

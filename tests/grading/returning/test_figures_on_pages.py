@@ -51,20 +51,20 @@ def test_a_page_shows_every_figure_of_the_chapter(chapter: Path) -> None:
         for cell in notebook.cells
     ]
     for rebuilt in (rebuild(notebook, cells), rebuild_unreadable(notebook, "It is a poem.")):
-        page = page_of(rebuilt.notebook)
+        page = page_of(rebuilt)
         assert page.count(PICTURE) == len(figures) > 0
         assert all(figure in page for figure in figures)
         assert "picture left out" not in page
 
 
 def test_a_copied_cell_shows_no_second_picture(master: NotebookNode) -> None:
-    rebuilt = rebuild(master, submitted(SHOWS, SHOWS, f"{SHOWS} {SHOWS}")).notebook
+    rebuilt = rebuild(master, submitted(SHOWS, SHOWS, f"{SHOWS} {SHOWS}"))
     assert [set(cell.get("attachments", {})) for cell in rebuilt.cells] == [{"graph.png"}, set(), set()]
     assert page_of(rebuilt).count(PICTURE) == 1
 
 
 def test_a_picture_that_is_repeated_in_a_cell_is_there_once(master: NotebookNode) -> None:
-    rebuilt = rebuild(master, submitted(SHOWS * 500)).notebook
+    rebuilt = rebuild(master, submitted(SHOWS * 500))
     page = page_of(rebuilt)
     assert page.count(f"{PICTURE}{DATA}") == 1
     assert page.count("picture left out") == 499
@@ -72,13 +72,13 @@ def test_a_picture_that_is_repeated_in_a_cell_is_there_once(master: NotebookNode
 
 def test_html_around_a_figure_leaves_it_there(master: NotebookNode) -> None:
     text = f"<details><summary>more</summary>\n\n{SHOWS}\n\n</details><script>fired()</script>"
-    page = page_of(rebuild(master, submitted(text)).notebook)
+    page = page_of(rebuild(master, submitted(text)))
     assert f"{PICTURE}{DATA}" in page
     assert "fired" not in re.sub(r"&lt;script.*", "", page)
 
 
 def test_a_picture_of_a_student_is_left_out(master: NotebookNode) -> None:
-    rebuilt = rebuild(master, submitted("![mine](attachment:mine.png) " + SHOWS)).notebook
+    rebuilt = rebuild(master, submitted("![mine](attachment:mine.png) " + SHOWS))
     assert set(rebuilt.cells[0].attachments) == {"graph.png"}
     page = page_of(rebuilt)
     assert "[picture left out: mine]" in page
