@@ -41,8 +41,11 @@ class _ShortHeaders(tarfile.TarInfo):
     @classmethod
     def frombuf(cls, buf: bytes | bytearray, encoding: str, errors: str) -> Self:
         found = super().frombuf(buf, encoding, errors)
-        if found.type in (tarfile.XHDTYPE, tarfile.XGLTYPE, tarfile.SOLARIS_XHDTYPE) and found.size > MAX_PAX:
-            raise BadArtefacts(f"the archive says more than {MAX_PAX} bytes of one of its files")
+        is_pax = found.type in (tarfile.XHDTYPE, tarfile.XGLTYPE, tarfile.SOLARIS_XHDTYPE)
+        if is_pax and not 0 <= found.size <= MAX_PAX:
+            raise BadArtefacts(
+                f"the archive says more than {MAX_PAX} bytes, or fewer than none, of one of its files"
+            )
         return found
 
 

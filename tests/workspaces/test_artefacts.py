@@ -135,9 +135,10 @@ BACKWARDS = b"\xff" + ((1 << 88) - 512).to_bytes(11, "big")
         ),
         *(
             pytest.param(
-                header(b"%011o" % 4_194_304, kind) + b"1" * 4_194_304 + EMPTY,
-                id=f"digits for hours, {kind!r}",
+                header(size, kind) + b"1" * 4_194_304 + EMPTY,
+                id=f"digits for hours, {kind!r}, {size[:1].hex()}",
             )
+            for size in (b"%011o" % 4_194_304, BACKWARDS)
             for kind in (tarfile.XHDTYPE, tarfile.XGLTYPE, tarfile.SOLARIS_XHDTYPE)
         ),
     ],
