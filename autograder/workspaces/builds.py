@@ -23,7 +23,7 @@ from autograder.workspaces.interface_packages import holds_only_interfaces
 from autograder.workspaces.jobs import BuildOrder
 from autograder.workspaces.packages import WORKSPACE, sources_of
 from autograder.workspaces.sources import BadSources
-from environment.interface_packages import ONLY_PYTHON
+from environment.interface_packages import ONLY_PYTHON, ONLY_PYTHON_FILE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -208,10 +208,20 @@ def toolchain() -> tuple[str, ...]:
         sys.prefix,
         *_tools(),
         *(f"{program} {state(program)}" for program in programs),
-        f"ros {state(str(Path(sys.prefix, 'share', 'rosidl_default_generators', 'package.xml')))}",
+        f"ros {_underlay()}",
+        hashlib.sha256(ONLY_PYTHON_FILE.read_bytes()).hexdigest(),
         os.environ.get("ROS_DISTRO", ""),
         *variables,
     )
+
+
+def _underlay() -> str:
+    """The ROS that a build finds first, sourced or of the environment, and a mark of it; empty where there is none."""
+    for prefix in filter(None, (*os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep), sys.prefix)):
+        generators = str(Path(prefix, "share", "rosidl_default_generators", "package.xml"))
+        if mark := state(generators):
+            return f"{generators} {mark}"
+    return ""
 
 
 @functools.cache
