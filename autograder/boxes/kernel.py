@@ -18,6 +18,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from autograder.boxes.box import NoSandbox
 from autograder.boxes.execution import Ended
 from autograder.boxes.guards import INTERVAL, NoGuard
 from autograder.boxes.jupyter_messages import SignedMessages
@@ -95,7 +96,7 @@ class Kernel:
         shell, iopub = (_listener(folder / f"k-{number}") for number in (SHELL, IOPUB))
         try:
             self._process = start(Channels(str(folder / "k"), key, shell.fileno(), iopub.fileno(), log))
-        except OSError as error:
+        except (OSError, NoSandbox) as error:
             os.close(self._log)
             raise KernelFailed(f"the kernel could not be started: {error}") from error
         finally:
