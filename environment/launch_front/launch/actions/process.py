@@ -121,6 +121,9 @@ class ExecuteProcess(ProcessAction):
         plan = self._plan(context)
         self.process_description.final_name = plan.name
         self.process_description.final_cmd = list(plan.cmd)
+        plan.output_format.format(
+            line="", this=self
+        )  # what is wrong with it is said here, and not at the first line
         if self._log_cmd:
             context.screen.log(
                 "INFO",
