@@ -59,14 +59,14 @@ def _what_is_missing(package: Path) -> str:
 
 def _has_program(package: Path, name: str) -> bool:
     setup = package / "setup.py"
-    text = setup.read_text(encoding="utf-8") if setup.is_file() else ""
+    text = setup.read_text(encoding="utf-8", errors="replace") if setup.is_file() else ""
     declared = re.search(rf"""^[^#\n]*["']\s*{name}\s*=""", text, re.MULTILINE) is not None
     return declared and not _is_empty(package / PACKAGE / f"{name}.py")
 
 
 def _is_empty(module: Path) -> bool:
     """True if a module is what Lab 1.2's cell writes before anything has been copied into it."""
-    return module.is_file() and not _CLASS.search(module.read_text(encoding="utf-8"))
+    return module.is_file() and not _CLASS.search(module.read_text(encoding="utf-8", errors="replace"))
 
 
 def _add(missing: list[str], package: Path, source: Path) -> str:
