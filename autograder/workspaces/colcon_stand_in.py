@@ -67,6 +67,9 @@ def _told(made: Build) -> int:
     Raises:
         CannotPlace: The install folder cannot take it.
     """
+    if not made.ok and not made.log:
+        print(f"colcon build: {made.line}")  # it did not come to a build
+        return 1
     if not made.ok:
         print(f"{made.log.rstrip()}\nFailed   <<< {made.package} [{made.seconds:.2f}s, exited with code 1]")
         print(f"\nSummary: 0 packages finished [{made.seconds:.2f}s]\n  1 package failed: {made.package}")
