@@ -66,7 +66,7 @@ class Builds:
     Args:
         folder: The cache.
         jobs: Run colcon, and what was built.
-        room: Bytes that all builds made here may add to the cache, where they come to it as archives.
+        room: Bytes that a build may add to the cache, where it comes to it as an archive.
 
     Attributes:
         jobs: The same.
@@ -181,7 +181,7 @@ class Builds:
         try:
             if built.archive is not None:
                 # What is in the cache stays there for a while, and others need the room, too.
-                self._room -= artefacts.unpack(built.archive, install, self._room)
+                artefacts.unpack(built.archive, install, self._room)
         except artefacts.BadArtefacts as error:
             return failed(found, f"{log}\nerror: {error}")
         return replace(found, ok=True, install=install)

@@ -210,7 +210,7 @@ def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[st
         The keys that were removed.
     """
     entries = sorted((used, folder) for folder in base.iterdir() if (used := _last_use(folder)) is not None)
-    sizes = {folder: _size(folder) for _, folder in entries}
+    sizes = {folder: size_of(folder) for _, folder in entries}
     total = sum(sizes.values())
     removed = []
     for used, folder in entries:
@@ -253,7 +253,8 @@ def _last_use(folder: Path) -> float | None:
         return None
 
 
-def _size(folder: Path) -> int:
+def size_of(folder: Path) -> int:
+    """The bytes that a folder and all in it take of a disk, about."""
     size = 0
     for root_, _, names in os.walk(folder):
         size += BLOCK

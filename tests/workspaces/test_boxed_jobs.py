@@ -219,6 +219,7 @@ def test_the_builds_of_one_notebook_have_so_much_room_and_no_more(
     assert "kB are left for it" in second.log
     assert sum(file.stat().st_size for file in cache.rglob("*") if file.is_file()) < 450_000
     assert made(GradedBuilds(cache, jobs), workspace).ok  # somebody else has room
+    assert not made(narrow, workspace).ok  # and who has none gets no build from the cache, either
 
 
 def test_a_big_build_that_nobody_waits_for_gives_up_its_turn(
