@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from autograder.workspaces.colcon import look
 from autograder.workspaces.install_folder import BESIDE, CannotPlace, place
-from autograder.workspaces.own_builds import GRADERS, build
+from autograder.workspaces.own_builds import GRADERS, OwnBuilds
 from autograder.workspaces.packages import needed
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def main(arguments: Sequence[str]) -> int:
     if os.environ.get(GRADERS) and chosen is not None and not found.trouble and not found.unusable:
         option, names = chosen
         if set(names) <= {package.name for package in found.packages}:
-            made = build(found, _targets(option, names))
+            made = OwnBuilds().build(found, _targets(option, names))
             try:
                 return _told(made)
             except CannotPlace:
