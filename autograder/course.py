@@ -144,11 +144,27 @@ def _chapter(folder: Path) -> Chapter:
 
 def _description(file: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(file.read_text(encoding="utf-8"))
+        said = tomllib.loads(file.read_text(encoding="utf-8"))
     except FileNotFoundError:
         return {}
     except (OSError, ValueError) as error:
         raise BrokenChapter(f"{file} cannot be read: {error}") from error
+    orders = said.get("exercises", {})
+    lists = [
+        said.get("labs", []),
+        said.get("interfaces", []),
+        *(orders.values() if isinstance(orders, dict) else [orders]),
+    ]
+    named = isinstance(orders, dict) and all(map(_are_names, lists))
+    if not named or not isinstance(said.get("title", ""), str):
+        raise BrokenChapter(
+            f"{file}: title is a text; labs, interfaces and each lab of the table exercises are lists of names"
+        )
+    return said
+
+
+def _are_names(said: object) -> bool:
+    return isinstance(said, list) and all(isinstance(name, str) for name in said)
 
 
 def _is_lab(folder: Path) -> bool:

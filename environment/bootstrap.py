@@ -176,8 +176,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--token", help="what ./course compares to know that nothing changed since")
     options = parser.parse_args(arguments)
     place = Place(ROOT, _find_base_python())
-    # A lock on the folder of this package: it leaves no file behind, and ends with this process.
-    folder = os.open(place.environment, os.O_RDONLY)
+    # A lock on a folder: it leaves no file behind, and ends with this process.
+    folder = os.open(place.locked, os.O_RDONLY)
     try:
         try:
             fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)

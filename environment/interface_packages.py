@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+ONLY_PYTHON_FILE = Path(__file__).with_name("only_python.cmake")
 ONLY_PYTHON = (
     "-G",
     "Ninja",
-    f"-DCMAKE_PROJECT_INCLUDE={Path(__file__).with_name('only_python.cmake')}",
+    f"-DCMAKE_PROJECT_INCLUDE={ONLY_PYTHON_FILE}",
     "-DCMAKE_C_FLAGS_RELEASE=-O0 -DNDEBUG",
     "-DCMAKE_CXX_FLAGS_RELEASE=-O0 -DNDEBUG",
 )

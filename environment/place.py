@@ -53,6 +53,11 @@ class Place:
         return self.prefix / "course"
 
     @property
+    def locked(self) -> Path:
+        """The folder on which a set-up has its lock: no box sees it, for to lock a folder one needs only to read it."""
+        return self.root
+
+    @property
     def environment(self) -> Path:
         """The folder of this package."""
         return self.root / "environment"

@@ -54,13 +54,13 @@ class Box:
         """
         return self.supervision.end(self.name)
 
-    def wait_end(self, within: float = ANSWER_SECONDS) -> int:
+    def wait_end(self) -> int:
         """Wait until the box has ended of its own; as :meth:`end`.
 
         Raises:
             ChannelClosed: It did not end in time, or the supervisor is gone.
         """
-        return self.supervision.wait_end(self.name, within)
+        return self.supervision.wait_end(self.name)
 
 
 class Supervision:
@@ -115,13 +115,13 @@ class Supervision:
         with self._turn:
             if name not in self._ended:
                 self._channel.send({"say": "kill", "name": name})
-            return self.wait_end(name, ANSWER_SECONDS)
+            return self.wait_end(name)
 
-    def wait_end(self, name: str, within: float) -> int:
+    def wait_end(self, name: str) -> int:
         """Implements :meth:`Box.wait_end`."""
         with self._turn:
             while name not in self._ended:
-                self._take(*self._channel.receive(within))
+                self._take(*self._channel.receive(ANSWER_SECONDS))
             box = self._boxes.pop(name, None)
             if box is not None:
                 close_all([box.pidfd])

@@ -7,7 +7,7 @@ import os
 import select
 import signal
 import time
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Self
 
 from autograder.boxes.box import ANSWER_SECONDS
@@ -50,7 +50,7 @@ class ForkedProcess:
         self._status: int | None = None
         self._lost = False
         try:
-            self._channel.send(entrance.as_message(), [*([box.pidfd] if box else []), *descriptors])
+            self._channel.send(asdict(entrance), [*([box.pidfd] if box else []), *descriptors])
             message, _ = self._channel.receive(_START_SECONDS)
         except BaseException:
             self._channel.close()

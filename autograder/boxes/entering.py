@@ -10,7 +10,7 @@ import signal
 import sys
 import traceback
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any
 
 from autograder.boxes import syscalls
@@ -50,10 +50,6 @@ class Entrance:
     rlimits: Mapping[str, int] = field(default_factory=dict)
     hidden_memory: bool = True
     call: Mapping[str, Any] = field(default_factory=dict)
-
-    def as_message(self) -> dict[str, Any]:
-        """As JSON that :meth:`from_message` reads."""
-        return asdict(self)
 
 
 def enter(channel: Channel, run: Run) -> None:

@@ -15,7 +15,7 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import re2
 
@@ -32,23 +32,6 @@ INTERVAL = 0.25
 """Seconds from one look to the next."""
 _SIZE = re2.compile(r"(?m)^(\w+):[ \t]+(\d+) kB$")
 _TICKS = os.sysconf("SC_CLK_TCK")
-
-
-class Guard(Protocol):
-    """Says whether a limit was exceeded."""
-
-    def exceeded(self, *, at_once: bool = False) -> Ended | None:
-        """The limit that is exceeded now; the box must be ended then. Cheap enough to be asked at any time.
-
-        Args:
-            at_once: Look now, however short the time since the last look is, where nothing else holds the limit on
-                memory.
-        """
-        ...
-
-    def reason(self) -> Ended | None:
-        """The limit that may have cost a process its life, or kept it from going on."""
-        ...
 
 
 class BoxGuard:
@@ -105,7 +88,12 @@ class BoxGuard:
         self._first = first
 
     def exceeded(self, *, at_once: bool = False) -> Ended | None:
-        """The limit that is exceeded, as the last look has shown; looks again every ``INTERVAL`` seconds."""
+        """The limit that is exceeded, as the last look has shown; the box must be ended then.
+
+        Args:
+            at_once: Look again, however short the time since the last look is, where nothing else holds the limit on
+                memory; else every ``INTERVAL`` seconds.
+        """
         now = time.monotonic()
         due = now >= self._next_look or (at_once and not self._memory)
         if self._seen is None and self._first and due:
@@ -257,13 +245,16 @@ class NoGuard:
 
     cpu_seconds = 0.0
 
-    def exceeded(self, *, at_once: bool = False) -> Ended | None:  # noqa: ARG002  (the protocol's signature)
+    def exceeded(self, *, at_once: bool = False) -> Ended | None:  # noqa: ARG002  (as of BoxGuard)
         """Nothing is counted."""
         return None
 
     def reason(self) -> Ended | None:
         """Nothing is known."""
         return None
+
+
+Guard = BoxGuard | NoGuard
 
 
 def guards() -> Mapping[str, str]:

@@ -18,6 +18,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from autograder.boxes.box import NoSandbox
 from autograder.boxes.execution import Ended
 from autograder.boxes.guards import INTERVAL, NoGuard
 from autograder.boxes.jupyter_messages import SignedMessages
@@ -95,7 +96,7 @@ class Kernel:
         shell, iopub = (_listener(folder / f"k-{number}") for number in (SHELL, IOPUB))
         try:
             self._process = start(Channels(str(folder / "k"), key, shell.fileno(), iopub.fileno(), log))
-        except OSError as error:
+        except (OSError, NoSandbox) as error:
             os.close(self._log)
             raise KernelFailed(f"the kernel could not be started: {error}") from error
         finally:
@@ -157,7 +158,7 @@ class Kernel:
             return ended
         stopped_for = Ended.TOO_MUCH_OUTPUT if self._floods else self._guard.reason() or Ended.TIMED_OUT
         self._count_anew()
-        self.interrupt()
+        self._process.interrupt()  # as JupyterLab's stop button does
         # An interrupt that meets the kernel's own code, such as its flush of what was printed, takes the answer away.
         # What is asked behind it is answered all the same.
         next_one = self._ask("kernel_info_request", {})
@@ -165,10 +166,6 @@ class Kernel:
         if self._await_reply(asked, grace, next_one) is None:
             self.kill()
         return stopped_for
-
-    def interrupt(self) -> None:
-        """Interrupt the kernel, as JupyterLab's stop button does."""
-        self._process.interrupt()
 
     def kill(self) -> None:
         """End the process and all that it started."""
@@ -210,7 +207,8 @@ class Kernel:
         if self._iopub.dropped > self._dropped_before:
             self._on_output(request, "stream", {"name": "stdout", "text": _TOO_LARGE})
         if _asks_to_exit(reply):
-            self._await_end()
+            self._process.wait(self._limits.interrupt_grace)
+            self.kill()
             return self._died()
         if self._guard.exceeded(at_once=True):
             # It was over before the watch came by: it ends as it would have ended a moment later.
@@ -250,10 +248,6 @@ class Kernel:
                 if answered and heard:
                     return True
         return False
-
-    def _await_end(self) -> None:
-        self._process.wait(self._limits.interrupt_grace)
-        self.kill()
 
     @property
     def _floods(self) -> bool:

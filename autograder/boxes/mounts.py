@@ -49,26 +49,19 @@ _ETC_FILES = {
 
 @dataclass(frozen=True)
 class Bind:
-    """Something of the host that is to be seen in a box.
+    """Something of the host that is to be seen in a box, which may only read it.
 
     Attributes:
         source: Where it is.
         place: Where the box sees it; at the same path where it is None.
-        writable: Whether the box may change it. What is written is on the host's disk, without a limit: only for
-            boxes in which nothing of a student runs.
     """
 
     source: Path
     place: Path | None = None
-    writable: bool = False
 
     def arguments(self) -> list[str]:
         """As arguments of bubblewrap."""
-        return [
-            "--bind" if self.writable else "--ro-bind",
-            str(self.source),
-            str(self.place or self.source),
-        ]
+        return ["--ro-bind", str(self.source), str(self.place or self.source)]
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from autograder.workspaces.packages import UNREADABLE
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
@@ -62,8 +64,9 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
         programs = _programs(tree)
     except FileNotFoundError:
         return f"There is no {setup}. First make the package, as in Lab 1.1."
-    except SyntaxError as error:
-        return f"{setup} cannot be read: line {error.lineno}: {error.msg}."
+    except UNREADABLE as error:
+        where = f"line {error.lineno}: {error.msg}" if isinstance(error, SyntaxError) else error
+        return f"{setup} cannot be read: {where}."
     if programs is None:
         listed = ", ".join(f'"{entry}"' for entry in wanted)
         return f'{setup} has no list of console_scripts. Add: entry_points={{"console_scripts": [{listed}]}},'

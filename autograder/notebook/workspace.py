@@ -25,7 +25,7 @@ from autograder.workspaces.install_folder import (
     python_folders,
     with_prefixes,
 )
-from autograder.workspaces.own_builds import build
+from autograder.workspaces.own_builds import OwnBuilds
 
 if TYPE_CHECKING:
     from autograder.workspaces.colcon import Build
@@ -84,7 +84,7 @@ def build_workspace(folder: str | os.PathLike[str] = "ros2_ws") -> WorkspaceBuil
     Args:
         folder: The workspace, the folder that holds ``src``.
     """
-    made = build(look(Path(folder)))
+    made = OwnBuilds().build(look(Path(folder)), None)
     if not made.ok:
         return WorkspaceBuild(made)
     try:

@@ -111,6 +111,8 @@ def hand_out(
     if place.is_file() or (place.is_dir() and (as_zip or any(place.iterdir()))):
         raise CannotHandOut(f"{place} is there already, and nothing is overwritten: name another place")
     chapters = _wanted(course.chapters(root), assignments)
+    if not chapters:
+        raise CannotHandOut(f"{root} has no notebook yet: there is nothing to hand out")
     files = dict(_files(root, chapters, with_solutions=with_solutions))
     files["README.md"] = README.format(title=chapters[0].title).encode()
     write = _pack if as_zip else _copy
@@ -203,9 +205,18 @@ def _copy(place: Path, files: dict[str, Path | bytes]) -> None:
 
 def _pack(place: Path, files: dict[str, Path | bytes]) -> None:
     place.parent.mkdir(parents=True, exist_ok=True)
-    with zipfile.ZipFile(place, "x", zipfile.ZIP_DEFLATED) as packed:
+    beside = place.with_name(f"{place.name}.part")  # a zip that is not complete can be opened all the same
+    try:
+        _zip(beside, place.stem, files)
+        beside.replace(place)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+def _zip(place: Path, top: str, files: dict[str, Path | bytes]) -> None:
+    with zipfile.ZipFile(place, "w", zipfile.ZIP_DEFLATED) as packed:
         for name, content in files.items():
-            entry = zipfile.ZipInfo(f"{place.stem}/{name}")  # one date for all: the same files, the same zip
+            entry = zipfile.ZipInfo(f"{top}/{name}")  # one date for all: the same files, the same zip
             entry.compress_type = zipfile.ZIP_DEFLATED
             runs = isinstance(content, Path) and content.stat().st_mode & stat.S_IXUSR
             entry.external_attr = (0o755 if runs else 0o644) << 16

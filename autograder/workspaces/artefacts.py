@@ -41,8 +41,11 @@ class _ShortHeaders(tarfile.TarInfo):
     @classmethod
     def frombuf(cls, buf: bytes | bytearray, encoding: str, errors: str) -> Self:
         found = super().frombuf(buf, encoding, errors)
-        if found.type in (tarfile.XHDTYPE, tarfile.XGLTYPE, tarfile.SOLARIS_XHDTYPE) and found.size > MAX_PAX:
-            raise BadArtefacts(f"the archive says more than {MAX_PAX} bytes of one of its files")
+        is_pax = found.type in (tarfile.XHDTYPE, tarfile.XGLTYPE, tarfile.SOLARIS_XHDTYPE)
+        if is_pax and not 0 <= found.size <= MAX_PAX:
+            raise BadArtefacts(
+                f"the archive says more than {MAX_PAX} bytes, or fewer than none, of one of its files"
+            )
         return found
 
 
@@ -65,16 +68,13 @@ def pack(install: Path) -> bytes:
     return file.getvalue()
 
 
-def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> int:
+def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> None:
     """Write an archive of a build's install folder.
 
     Args:
         archive: A tar file that may be anything: whoever was built could have written it.
         folder: A folder that is not there yet.
         most: Bytes that all files and folders may take together.
-
-    Returns:
-        The bytes that they take.
 
     Raises:
         BadArtefacts: It has entries that lead out of the folder, links to anything but one of its files, devices, or
@@ -93,26 +93,36 @@ def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> int:
                 size += max(member.size, 0)
                 place = PurePosixPath(*_parts(member.name))
                 made.update((place, *place.parents))
-                _check_room(number, size + len(made) * BLOCK, most)
+                check_room(size + len(made) * BLOCK, most, number)
                 if member.issym():
                     links[place] = _target(member)
                 else:
                     _take(tar, member, folder)
         for link in links:
             size += _copy(link, links, folder)
-            _check_room(number, size + len(made) * BLOCK, most)
+            check_room(size + len(made) * BLOCK, most, number)
     except (tarfile.TarError, OSError, ValueError, RecursionError, MemoryError, OverflowError) as error:
         if isinstance(error, BadArtefacts):
             raise
         raise BadArtefacts(f"what the build made cannot be read: {error}") from error
-    return size + len(made) * BLOCK
 
 
-def _check_room(number: int, size: int, most: int) -> None:
+def check_room(size: int, most: int, number: int = 0) -> int:
+    """The size of what a build made.
+
+    Args:
+        size: Bytes that its files and folders take.
+        most: Bytes that they may take.
+        number: Files and folders.
+
+    Raises:
+        BadArtefacts: It is too much.
+    """
     if number > MAX_FILES or size > most:
         raise BadArtefacts(
             f"the build made too much: {MAX_FILES} files and folders, and {most // 1000} kB are left for it"
         )
+    return size
 
 
 def _take(tar: tarfile.TarFile, member: tarfile.TarInfo, folder: Path) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import os
 import shlex
 import shutil
@@ -19,6 +18,7 @@ from autograder.boxes.guards import BoxGuard
 from autograder.boxes.limits import Limits
 from autograder.boxes.mounts import HOME, WORK
 from autograder.boxes.sandbox import Bind, Enclosure
+from autograder.workspaces import cache
 from autograder.workspaces.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, Built
 from autograder.workspaces.plans import ros2
 
@@ -84,16 +84,20 @@ class BoxedJobs:
         """
         built, needs_room = self._build(order, command, entry.folder, BUILD_LIMITS)
         if needs_room:
-            with self._turn():
+            with self._turn(order.cancelled):
                 built, _ = self._build(order, command, entry.folder, replace(BUILD_LIMITS, beside=False))
         return built
 
     @contextlib.contextmanager
-    def _turn(self) -> Iterator[None]:
-        """A lock that all workers of a batch have in common: the folder of the fork servers."""
+    def _turn(self, cancelled: Callable[[], bool]) -> Iterator[None]:
+        """A lock that all workers of a batch have in common: the folder of the fork servers.
+
+        Raises:
+            GivenUp: Nobody waits for the build any more.
+        """
         folder = os.open(Path(self._supervisors).parent, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
         try:
-            fcntl.flock(folder, fcntl.LOCK_EX)
+            cache.await_turn(folder, cancelled)
             yield
         finally:
             os.close(folder)

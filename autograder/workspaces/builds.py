@@ -23,7 +23,7 @@ from autograder.workspaces.interface_packages import holds_only_interfaces
 from autograder.workspaces.jobs import BuildOrder
 from autograder.workspaces.packages import WORKSPACE, sources_of
 from autograder.workspaces.sources import BadSources
-from environment.interface_packages import ONLY_PYTHON
+from environment.interface_packages import ONLY_PYTHON, ONLY_PYTHON_FILE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -66,7 +66,7 @@ class Builds:
     Args:
         folder: The cache.
         jobs: Run colcon, and what was built.
-        room: Bytes that all builds made here may add to the cache, where they come to it as archives.
+        room: Bytes that a build may add to the cache, where it comes to it as an archive.
 
     Attributes:
         jobs: The same.
@@ -181,7 +181,7 @@ class Builds:
         try:
             if built.archive is not None:
                 # What is in the cache stays there for a while, and others need the room, too.
-                self._room -= artefacts.unpack(built.archive, install, self._room)
+                artefacts.unpack(built.archive, install, self._room)
         except artefacts.BadArtefacts as error:
             return failed(found, f"{log}\nerror: {error}")
         return replace(found, ok=True, install=install)
@@ -208,10 +208,20 @@ def toolchain() -> tuple[str, ...]:
         sys.prefix,
         *_tools(),
         *(f"{program} {state(program)}" for program in programs),
-        f"ros {state(str(Path(sys.prefix, 'share', 'rosidl_default_generators', 'package.xml')))}",
+        f"ros {_underlay()}",
+        hashlib.sha256(ONLY_PYTHON_FILE.read_bytes()).hexdigest(),
         os.environ.get("ROS_DISTRO", ""),
         *variables,
     )
+
+
+def _underlay() -> str:
+    """The ROS that a build finds first, sourced or of the environment, and a mark of it; empty where there is none."""
+    for prefix in filter(None, (*os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep), sys.prefix)):
+        generators = str(Path(prefix, "share", "rosidl_default_generators", "package.xml"))
+        if mark := state(generators):
+            return f"{generators} {mark}"
+    return ""
 
 
 @functools.cache

@@ -7,8 +7,10 @@ JupyterLab restarts it, the build is ended too, and has the lock until nothing o
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import fcntl
+import functools
 import os
 import shutil
 import stat
@@ -31,6 +33,8 @@ LIMIT = 1_000_000_000
 """Bytes that all entries may take together; one interface package takes two million."""
 IN_USE = 900.0
 """Seconds after its last use in which an entry is not removed: its programs may still run, as long as a check lasts."""
+MET_FOR = 30 * 86_400.0
+"""Seconds for which it is remembered that a package of some meaning has been built once (``graded_builds``)."""
 ASK_EVERY = 0.1
 """Seconds between two looks whether an entry is free, for those who may give up."""
 _MARKER = "complete"
@@ -82,7 +86,21 @@ def _own(folder: Path) -> Path:
             return folder
     except OSError:
         pass
-    return Path(tempfile.mkdtemp(prefix="workspace-builds-"))
+    return _in_place_of(folder)
+
+
+@functools.cache
+def _in_place_of(folder: Path) -> Path:
+    """A folder for this process alone, and for as long as it lives."""
+    del folder
+    made, owner = Path(tempfile.mkdtemp(prefix="workspace-builds-")), os.getpid()
+
+    @atexit.register
+    def remove() -> None:
+        if os.getpid() == owner:  # and no fork of it, which ends, too
+            shutil.rmtree(made, ignore_errors=True)
+
+    return made
 
 
 def is_ones_own(folder: Path) -> bool:
@@ -143,7 +161,7 @@ def _turn(file: Path, cancelled: Callable[[], bool]) -> Iterator[IO[str]]:
     """Hold a lock. Whoever had it may have removed it with its entry: then another one counts, which is new."""
     while True:
         with file.open("a") as lock:
-            _await_turn(lock, cancelled)
+            await_turn(lock.fileno(), cancelled)
             if _is_at(lock, file):
                 yield lock
                 return
@@ -156,7 +174,16 @@ def _is_at(lock: IO[str], file: Path) -> bool:
         return False
 
 
-def _await_turn(lock: IO[str], cancelled: Callable[[], bool]) -> None:
+def await_turn(lock: int, cancelled: Callable[[], bool]) -> None:
+    """Take a lock once nobody else has it.
+
+    Args:
+        lock: A descriptor of what is locked; whoever closes it gives the lock back.
+        cancelled: Asked now and then whether it is still wanted.
+
+    Raises:
+        GivenUp: It is not.
+    """
     while True:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -183,7 +210,7 @@ def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[st
         The keys that were removed.
     """
     entries = sorted((used, folder) for folder in base.iterdir() if (used := _last_use(folder)) is not None)
-    sizes = {folder: _size(folder) for _, folder in entries}
+    sizes = {folder: size_of(folder) for _, folder in entries}
     total = sum(sizes.values())
     removed = []
     for used, folder in entries:
@@ -195,6 +222,10 @@ def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[st
     for lock in base.glob("*.lock"):
         if _last_use(folder := lock.with_suffix("")) is None:
             _remove(base, folder, None)
+    for met in base.glob("*.met"):
+        with contextlib.suppress(FileNotFoundError):  # another worker has removed it
+            if time.time() - met.stat().st_mtime > MET_FOR:
+                met.unlink()
     return removed
 
 
@@ -222,7 +253,8 @@ def _last_use(folder: Path) -> float | None:
         return None
 
 
-def _size(folder: Path) -> int:
+def size_of(folder: Path) -> int:
+    """The bytes that a folder and all in it take of a disk, about."""
     size = 0
     for root_, _, names in os.walk(folder):
         size += BLOCK

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from autograder.workspaces.colcon import look
 from autograder.workspaces.install_folder import BESIDE, CannotPlace, place
-from autograder.workspaces.own_builds import GRADERS, build
+from autograder.workspaces.own_builds import GRADERS, OwnBuilds
 from autograder.workspaces.packages import needed
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def main(arguments: Sequence[str]) -> int:
     if os.environ.get(GRADERS) and chosen is not None and not found.trouble and not found.unusable:
         option, names = chosen
         if set(names) <= {package.name for package in found.packages}:
-            made = build(found, _targets(option, names))
+            made = OwnBuilds().build(found, _targets(option, names))
             try:
                 return _told(made)
             except CannotPlace:
@@ -67,6 +67,9 @@ def _told(made: Build) -> int:
     Raises:
         CannotPlace: The install folder cannot take it.
     """
+    if not made.ok and not made.log:
+        print(f"colcon build: {made.line}")  # it did not come to a build
+        return 1
     if not made.ok:
         print(f"{made.log.rstrip()}\nFailed   <<< {made.package} [{made.seconds:.2f}s, exited with code 1]")
         print(f"\nSummary: 0 packages finished [{made.seconds:.2f}s]\n  1 package failed: {made.package}")

@@ -11,8 +11,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from autograder.workspaces import cache
+from autograder.workspaces import artefacts, cache
 from autograder.workspaces.builds import Builds, state
+from autograder.workspaces.colcon import failed
 from autograder.workspaces.interface_packages import holds_only_interfaces, simplified
 from autograder.workspaces.plans import course_interfaces
 
@@ -34,11 +35,12 @@ class GradedBuilds(Builds):
     Args:
         folder: The cache. It belongs to the grader alone.
         jobs: Run colcon, and what was built.
-        room: Bytes that all builds made here may add to the cache.
+        room: Bytes that all builds used here may take, whoever made them.
     """
 
     def __init__(self, folder: Path, jobs: Jobs, room: int = ROOM) -> None:
         super().__init__(folder, jobs, room)
+        self._paid: set[str] = set()
 
     def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:
         hidden = _hidden_from(chosen)
@@ -51,8 +53,8 @@ class GradedBuilds(Builds):
     def _shared(self, found: Build, order: BuildOrder, shared: BuildOrder) -> Build:
         """The build itself, or one that means the same, in nobody's words."""
         for one in (order, shared):
-            if (made := self._kept(found, one.key)) is not None:
-                return made
+            if cache.is_complete(one.key, self._folder):  # else it may just be made, and is not waited for
+                return self._entry(found, one)
         met = self._folder / f"{shared.key}.met"
         if met.exists() and (made := self._entry(found, shared)).ok:
             return made
@@ -61,14 +63,17 @@ class GradedBuilds(Builds):
             met.touch()
         return made
 
-    def _kept(self, found: Build, key: str) -> Build | None:
-        """The build that is there already; None where it is not, or is just being made."""
-        if not cache.is_complete(key, self._folder):
-            return None
-        with cache.entry(key, self._folder) as entry:
-            if not entry.complete:
-                return None
-            return replace(found, ok=True, install=entry.folder / "install", reused=True)
+    def _entry(self, found: Build, order: BuildOrder) -> Build:
+        """The build, where there is room for it: who finds it made needs as much as who had it made."""
+        made = super()._entry(found, order)
+        if made.install is None or order.key in self._paid:
+            return made
+        try:
+            self._room -= artefacts.check_room(cache.size_of(made.install), self._room)
+        except artefacts.BadArtefacts as error:
+            return failed(found, f"error: {error}")
+        self._paid.add(order.key)
+        return made
 
 
 def _hidden_from(packages: Sequence[Package]) -> Sequence[Path]:

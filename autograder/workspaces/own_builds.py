@@ -35,21 +35,12 @@ LIMIT = 300.0
 """Seconds of wall time that the grader may take for a build."""
 
 
-def build(found: Build, targets: Targets | None = None) -> Build:
-    """Build packages of a workspace, each time as if for the first time.
-
-    The result is in the cache, not in the workspace: what an earlier build left in ``install`` has no part in it. The
-    workspace is not written to.
-
-    Args:
-        found: The workspace, looked at.
-        targets: See :meth:`autograder.workspaces.builds.Builds.build`.
-    """
-    return OwnBuilds().build(found, targets)
-
-
 class OwnBuilds(Builds):
-    """Builds made in the cache itself; in a graded notebook those that its grader has made."""
+    """Builds made in the cache itself; in a graded notebook those that its grader has made.
+
+    Each is made as if for the first time: the workspace is not written to, and what an earlier build left in its
+    ``install`` has no part in it.
+    """
 
     def __init__(self) -> None:
         super().__init__(cache.root(), PlainJobs(os.environ, handed_in=False))

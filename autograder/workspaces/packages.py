@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 WORKSPACE = "ros2_ws"
 """The name that workspaces have in the course."""
-PACKAGE_VARIABLE = "AUTOGRADER_ROBOT_PACKAGE"
-"""Names the folder of the course's own package where a grader has put it within reach of a notebook."""
 DEFINITIONS = (".msg", ".srv", ".action")
 """The endings of the names of interface files."""
 UNREADABLE = (SyntaxError, ValueError, LookupError, RecursionError, MemoryError)

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from autograder.workspaces.colcon import Build
     from autograder.workspaces.packages import Package
 
-COURSE_PACKAGE = "my_robot_pkg"
-"""The course's own programs, which are launched where a student has none."""
 _LAUNCH_FILES = ("launch.py", ".xml", ".yaml", ".yml")
 """The endings of launch files' names."""
 _LARGEST = 500_000
@@ -141,11 +139,6 @@ def lacks_programs(file: Path, made: Build, course_build: Build) -> bool:
 def reference_workspace() -> Path:
     """The workspace with the course's own talker and listener; not there in what students are handed."""
     return course.root() / "solutions" / WORKSPACE
-
-
-def reference_package() -> Path:
-    """The package with the course's own talker and listener."""
-    return reference_workspace() / "src" / COURSE_PACKAGE
 
 
 @functools.cache

@@ -9,7 +9,7 @@ from autograder.workspaces.colcon import look
 from autograder.workspaces.install_folder import relocated, with_prefixes
 from autograder.workspaces.packages import WORKSPACE
 from autograder.workspaces.plans import lacks_programs, launch_targets, reference_workspace
-from autograder.workspaces.reporting import built_line, found_line
+from autograder.workspaces.reporting import report_line
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -65,11 +65,11 @@ class Preparation:
             None where there is nothing to run; the report says why.
         """
         found = look(folder)
-        self.report(found_line(found, plan))
+        self.report(report_line("found", found, plan))
         made = found if found.trouble else self._built(found, plan.targets)
         missing = plan.missing(made) if made.ok else ""
         self.build_ended()
-        self.report(built_line(made, plan, missing))
+        self.report(report_line("built", made, plan, missing))
         if not made.ok or missing:
             return None
         return Prepared(
@@ -101,7 +101,7 @@ class Preparation:
         if file is not None and workspace is not None:
             made = self._built(look(workspace), launch_targets(file))
             self.build_ended()
-            self.report(built_line(made))
+            self.report(report_line("built", made))
             if not made.ok:
                 return None
             course_first = COURSE in builds and lacks_programs(file, made, builds[COURSE])

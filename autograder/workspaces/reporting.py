@@ -21,37 +21,15 @@ MAX_LOG = 3_000
 """Characters of a build's log that are reported: its end."""
 
 
-def found_line(found: Build, plan: Plan) -> str:
-    """The line on the sources, before they are built.
+def report_line(phase: str, made: Build, plan: Plan | None = None, missing: str = "") -> str:
+    """The line on a workspace.
 
     Args:
-        found: The workspace.
-        plan: What the exercise does with it.
-    """
-    return _line(found, "found", plan)
-
-
-def built_line(made: Build, plan: Plan | None = None, missing: str = "") -> str:
-    """The line on the result of a build.
-
-    Args:
-        made: The build.
-        plan: What the exercise does with the workspace; None where it needs no package more than another.
+        phase: ``"found"`` for its sources, before they are built; ``"built"`` for the result of the build.
+        made: The workspace or its build.
+        plan: What the exercise does with it; None where it needs no package more than another.
         missing: Of what the exercise asks for, what is not there.
     """
-    return _line(made, "built", plan, missing)
-
-
-def no_sources_line(trouble: str) -> str:
-    """The report where there is nothing that could be built.
-
-    Args:
-        trouble: Why, for the student.
-    """
-    return as_line(WorkspaceReport("built", built=False, trouble="no_workspace", line=trouble))
-
-
-def _line(made: Build, phase: str, plan: Plan | None, missing: str = "") -> str:
     needed = set(plan.targets(made)) if plan else set[str]()
     definition = plan.definition if plan else ""
     room = Room(MAX_LOOK)
@@ -72,6 +50,15 @@ def _line(made: Build, phase: str, plan: Plan | None, missing: str = "") -> str:
         ),
         others,
     )
+
+
+def no_sources_line(trouble: str) -> str:
+    """The report where there is nothing that could be built.
+
+    Args:
+        trouble: Why, for the student.
+    """
+    return as_line(WorkspaceReport("built", built=False, trouble="no_workspace", line=trouble))
 
 
 def _described(package: Package, definition: str, made: Build, room: Room) -> PackageReport:

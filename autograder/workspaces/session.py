@@ -160,7 +160,8 @@ class _Run:
         except Hangup:
             pass
         except Exception as error:
-            self._lines.say(messages.Trouble(f"{type(error).__name__}: {error}"[:500]))
+            with contextlib.suppress(Hangup):
+                self._lines.say(messages.Trouble(f"{type(error).__name__}: {error}"[:500]))
 
     def _work(self) -> None:
         what = self._submitted

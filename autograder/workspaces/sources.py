@@ -141,8 +141,13 @@ def collect_workspace(workspace: Path) -> list[Source]:
     Raises:
         BadSources: There is too much.
     """
-    sources = list(_tree(workspace, workspace.resolve().name))
-    return _bounded(sources)
+    if not workspace.is_dir():
+        return []
+    name = workspace.resolve().name
+    # A package in place of a workspace is a mistake that has its own name: show that it is one.
+    package = read_file(workspace / "package.xml", f"{name}/package.xml", MAX_FILE)
+    sources = read(workspace / "src", f"{name}/src", MAX_FILE)
+    return _bounded([Source(name), *([package] if package else []), *sources])
 
 
 def collect_launch(file: Path, workspace: Path | None) -> tuple[str, list[Source]]:
@@ -235,17 +240,6 @@ def check_path(path: str) -> None:
         raise BadSources(f"{shown} is no path inside a workspace")
     if not path.isprintable():
         raise BadSources(f"the path {shown} has characters that cannot be shown")
-
-
-def _tree(folder: Path, name: str) -> Iterator[Source]:
-    """The files of a workspace's folder that a build may need, beginning with the folder itself."""
-    if not folder.is_dir():
-        return
-    yield Source(name)
-    # A package in place of a workspace is a mistake that has its own name: show that it is one.
-    if (package := read_file(folder / "package.xml", f"{name}/package.xml", MAX_FILE)) is not None:
-        yield package
-    yield from read(folder / "src", f"{name}/src", MAX_FILE)
 
 
 def _bounded(sources: list[Source]) -> list[Source]:

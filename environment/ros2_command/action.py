@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from environment.ros2_command.commands import Outcome, Verb
 from environment.ros2_command.graph_node import add_graph_arguments, graph_node
+from environment.ros2_command.names import show
 from environment.ros2_command.node import node_names
 
 if TYPE_CHECKING:
@@ -25,11 +26,7 @@ def _list(args: argparse.Namespace) -> Outcome:
         from rclpy.action.graph import get_action_names_and_types
 
         actions = get_action_names_and_types(node)
-    if args.count_actions:
-        print(len(actions))
-        return None
-    for name, types in actions:
-        print(f"{name} [{', '.join(types)}]" if args.show_types else name)
+    show(actions, count=args.count_actions, types=args.show_types)
     return None
 
 

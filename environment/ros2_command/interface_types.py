@@ -33,7 +33,7 @@ def load_type(name: str, kind: str) -> Any:
     return found
 
 
-def interfaces_of(package: str, kind: str | None = None) -> list[str]:
+def interfaces_of(package: str, kind: str) -> list[str]:
     """Return the interfaces of a package, as `msg/String`, in order.
 
     Raises:
@@ -46,12 +46,10 @@ def interfaces_of(package: str, kind: str | None = None) -> list[str]:
     if not has_resource("rosidl_interfaces", package):
         return []
     content, _ = get_resource("rosidl_interfaces", package)
-    kinds = [kind] if kind else list(_SUFFIXES)
     return sorted(
         {
             line.rpartition(".")[0]
             for line in content.splitlines()
-            for kind in kinds
             # A name with an underscore is part of another interface, as Fibonacci_Goal is of an action.
             if line.startswith(f"{kind}/") and line.endswith(_SUFFIXES[kind]) and "_" not in line
         }

@@ -82,7 +82,7 @@ def launch_file_in_package(package: str, file_name: str | None) -> str:
         share = get_package_share_directory(package)
     except (PackageNotFoundError, ValueError) as error:
         raise RuntimeError(f"Package '{package}' not found: {error}") from error
-    found = [] if file_name is None else sorted(map(str, Path(share).rglob(file_name)))
+    found = sorted(str(path) for path in Path(share).rglob("*") if path.name == file_name)
     if not found:
         raise RuntimeError(
             f"file '{file_name}' was not found in the share directory of package '{package}' which is at "

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 
 def is_hidden(name: str) -> bool:
@@ -26,6 +30,15 @@ class NodeName:
     def hidden(self) -> bool:
         """True if lists leave it out (the command's own node is such a one)."""
         return not self.name or self.name.startswith("_")
+
+
+def show(found: Iterable[tuple[str, list[str]]], *, count: bool, types: bool = False) -> None:
+    """Print names, with their types where they are asked for, or only how many there are."""
+    if count:
+        print(len(list(found)))
+        return
+    for name, its_types in found:
+        print(f"{name} [{', '.join(its_types)}]" if types else name)
 
 
 def absolute(node_name: str) -> str:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from environment.ros2_command.commands import Outcome, Verb
 from environment.ros2_command.graph_node import add_graph_arguments, graph_node
-from environment.ros2_command.names import is_hidden
+from environment.ros2_command.names import is_hidden, show
 
 if TYPE_CHECKING:
     import argparse
@@ -41,12 +41,7 @@ def _list_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _list(args: argparse.Namespace) -> Outcome:
-    services = _services(args)
-    if args.count_services:
-        print(len(services))
-        return None
-    for name, types in services:
-        print(f"{name} [{', '.join(types)}]" if args.show_types else name)
+    show(_services(args), count=args.count_services, types=args.show_types)
     return None
 
 
@@ -76,12 +71,8 @@ def _find_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _find(args: argparse.Namespace) -> Outcome:
-    found = [name for name, types in _services(args) if args.service_type in types]
-    if args.count_services:
-        print(len(found))
-        return None
-    for name in found:
-        print(name)
+    found = [(name, types) for name, types in _services(args) if args.service_type in types]
+    show(found, count=args.count_services)
     return None
 
 

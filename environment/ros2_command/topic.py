@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from environment.ros2_command.commands import Outcome, Verb
 from environment.ros2_command.graph_node import add_graph_arguments, graph_node
-from environment.ros2_command.names import is_hidden
+from environment.ros2_command.names import is_hidden, show
 
 if TYPE_CHECKING:
     import argparse
@@ -50,14 +50,11 @@ def _list(args: argparse.Namespace) -> Outcome:
         topics = names_and_types(node, hidden=args.include_hidden_topics)
         publishers = [(name, types, node.count_publishers(name)) for name, types in topics]
         subscribers = [(name, types, node.count_subscribers(name)) for name, types in topics]
-    if args.count_topics:
-        print(len(topics))
-    elif topics and args.verbose:
+    if topics and args.verbose and not args.count_topics:
         print(_details("Published", "publisher", publishers))
         print(_details("Subscribed", "subscriber", subscribers))
     else:
-        for name, types in topics:
-            print(f"{name} [{', '.join(types)}]" if args.show_types else name)
+        show(topics, count=args.count_topics, types=args.show_types)
     return None
 
 
@@ -118,12 +115,7 @@ def _find_arguments(parser: argparse.ArgumentParser) -> None:
 def _find(args: argparse.Namespace) -> Outcome:
     with graph_node(args) as node:
         topics = names_and_types(node, hidden=args.include_hidden_topics)
-    found = [name for name, types in topics if args.topic_type in types]
-    if args.count_topics:
-        print(len(found))
-    else:
-        for name in found:
-            print(name)
+    show([(name, types) for name, types in topics if args.topic_type in types], count=args.count_topics)
     return None
 
 

@@ -48,6 +48,16 @@ def test_it_is_written_into_the_newest_chapter_or_the_one_that_is_named(root: Pa
 
 @pytest.mark.parametrize(
     "description",
+    ["labs = 5", 'interfaces = "mine"', "title = 1", 'exercises = ["a"]', "[exercises]\nlab_1 = [1]"],
+)
+def test_a_chapter_whose_facts_have_another_form_is_broken(root: Path, description: str) -> None:
+    (root / "solutions/01_first/chapter.toml").write_text(description)
+    with pytest.raises(course.BrokenChapter, match="lists of names"):
+        course.chapters(root)
+
+
+@pytest.mark.parametrize(
+    "description",
     [
         'title = "First"\n',
         'title = "First"\ninterfaces = []\n',

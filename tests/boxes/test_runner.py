@@ -8,11 +8,13 @@ import secrets
 import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from typing import NoReturn
 
 import psutil
 import pytest
 
 from autograder.boxes import kernel
+from autograder.boxes.box import NoSandbox
 from autograder.boxes.execution import Cell, CellType, Check, Ended, Execution
 from autograder.boxes.fork_server import Addresses
 from autograder.boxes.limits import Left, Limits, Patient, wall_time
@@ -283,6 +285,20 @@ def test_a_kernel_that_cannot_start_is_the_graders_trouble(tmp_path: Path) -> No
     )
     assert "could not be started" in execution.trouble
     assert execution.verdicts[0].state is State.NOT_CHECKED
+
+
+def test_a_kernel_without_a_box_is_no_fault_of_the_judge(tmp_path: Path) -> None:
+    def start(_: kernel.Channels) -> NoReturn:
+        raise NoSandbox("no room for a box")
+
+    execution = run_notebook(
+        [check()],
+        judge=contextlib.nullcontext(SayingJudge(passed())),
+        start=start,
+        folder=tmp_path,
+        limits=Limits(),
+    )
+    assert execution.trouble == "the kernel could not be started: no room for a box"
 
 
 def test_two_kernels_of_one_fork_server_have_nothing_in_common(run: Run) -> None:

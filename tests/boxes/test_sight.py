@@ -7,6 +7,7 @@ import json
 import os
 import socket
 import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,8 +21,9 @@ from autograder.boxes.limits import Limits
 from autograder.boxes.mounts import installation
 from autograder.boxes.place import BoxedPlace, JudgeSetting
 from autograder.boxes.runner import run_notebook
-from autograder.boxes.sandbox import Bind, Enclosure
+from autograder.boxes.sandbox import Bind, Enclosure, NoSandbox
 from autograder.boxes.scratch import scratch_folder
+from environment.place import Place
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -309,6 +311,12 @@ def test_a_sourced_ros_is_part_of_the_installation_and_a_workspace_is_not(tmp_pa
     assert found == [ros]
 
 
+def test_the_lock_of_the_set_up_is_out_of_sight() -> None:
+    """A folder can be locked by whoever may read it, and a student's lock would keep everybody's set-up waiting."""
+    locked = Place(course.root(), Path(sys.executable)).locked
+    assert [seen for seen in installation() if locked.is_relative_to(seen)] == []
+
+
 @pytest.fixture
 def enclosure(tmp_path: Path, boxed: Addresses) -> Iterator[Enclosure]:
     with scratch_folder(tmp_path) as folder, Enclosure(boxed.supervisors, folder / "box") as made:
@@ -342,6 +350,18 @@ def test_a_bind_shows_a_folder_and_protects_it(enclosure: Enclosure, tmp_path: P
     assert done.output.startswith(b"text")
     assert done.returncode != 0
     assert (tmp_path / "given" / "file").read_text() == "text"
+
+
+def test_a_command_whose_box_cannot_be_made_is_none_that_runs(enclosure: Enclosure) -> None:
+    """bubblewrap has ended before it could say which process is the first: 0 would be a process group, its killer's."""
+
+    class Nonsense(Bind):
+        def arguments(self) -> list[str]:
+            return ["--no-such-option"]
+
+    with pytest.raises(NoSandbox, match="made no box"):
+        enclosure.start(["true"], binds=[Nonsense(Path("/"))])
+    assert enclosure.run(["true"], limit=10.0).returncode == 0
 
 
 def test_boxes_of_one_submission_share_a_network_and_others_do_not(

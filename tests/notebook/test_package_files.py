@@ -107,14 +107,20 @@ def test_two_entry_points_without_a_comma_between_them_are_told_as_that(workspac
 
 @pytest.mark.parametrize(
     ("text", "words"),
-    [(None, "First make the package"), ("setup(", "cannot be read"), ("setup()", "has no list")],
+    [
+        (None, "First make the package"),
+        ("setup(", "cannot be read"),
+        ("setup()", "has no list"),
+        (b"# caf\xe9", "cannot be read"),
+        ("a = 1\0", "cannot be read"),
+    ],
 )
-def test_a_setup_that_cannot_be_used(workspace: Path, text: str | None, words: str) -> None:
+def test_a_setup_that_cannot_be_used(workspace: Path, text: str | bytes | None, words: str) -> None:
     setup = workspace / "src/my_robot_pkg/setup.py"
     if text is None:
         setup.unlink()
     else:
-        setup.write_text(text)
+        setup.write_bytes(text if isinstance(text, bytes) else text.encode())
     assert words in add_entry_points(workspace, [TALKER])
 
 

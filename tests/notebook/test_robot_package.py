@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from autograder import course
 from autograder.notebook.robot_package import complete_package
 
 if TYPE_CHECKING:
@@ -115,3 +116,12 @@ def test_without_the_courses_own_package_a_finished_one_is_told_apart(
         complete_package(tmp_path / "ros2_ws", nowhere)
         == "Your my_robot_pkg has the programs talker and listener."
     )
+
+
+def test_where_there_is_no_course_nothing_of_it_is_taken(
+    tmp_path: Path, package: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As in the box of a graded notebook: the check brings the course's own programs by itself."""
+    monkeypatch.setenv(course.VARIABLE, str(tmp_path))
+    assert "graded by itself" in complete_package(tmp_path / "ros2_ws")
+    assert not (package / "my_robot_pkg/talker.py").exists()

@@ -16,6 +16,7 @@ import pytest
 
 from autograder import exercises
 from autograder.masters.layout import lab_name, masters
+from autograder.student import handing_out
 from autograder.student.handing_out import CannotHandOut, hand_out
 
 if TYPE_CHECKING:
@@ -161,6 +162,18 @@ def test_the_same_course_gives_the_same_zip(tmp_path: Path) -> None:
     assert first.read_bytes() == second.read_bytes()
     with zipfile.ZipFile(first) as packed:
         assert packed.getinfo("course/course").external_attr >> 16 == 0o755
+
+
+def test_a_zip_that_was_not_finished_is_none(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        handing_out._pack(tmp_path / "course.zip", {"a": b"a", "b": tmp_path / "gone"})
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_course_without_a_notebook_has_nothing_to_hand_out(tmp_path: Path) -> None:
+    (tmp_path / "course" / "solutions").mkdir(parents=True)
+    with pytest.raises(CannotHandOut, match="no notebook yet"):
+        hand_out(tmp_path / "handed", tmp_path / "course")
 
 
 def test_nothing_that_somebody_has_written_in_the_chapters_is_in_it(tmp_path: Path) -> None:

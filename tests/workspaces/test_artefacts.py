@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.workspaces import artefacts
+from autograder.workspaces import artefacts, cache
 from autograder.workspaces.artefacts import BadArtefacts, unpack
 
 if TYPE_CHECKING:
@@ -135,9 +135,10 @@ BACKWARDS = b"\xff" + ((1 << 88) - 512).to_bytes(11, "big")
         ),
         *(
             pytest.param(
-                header(b"%011o" % 4_194_304, kind) + b"1" * 4_194_304 + EMPTY,
-                id=f"digits for hours, {kind!r}",
+                header(size, kind) + b"1" * 4_194_304 + EMPTY,
+                id=f"digits for hours, {kind!r}, {size[:1].hex()}",
             )
+            for size in (b"%011o" % 4_194_304, BACKWARDS)
             for kind in (tarfile.XHDTYPE, tarfile.XGLTYPE, tarfile.SOLARIS_XHDTYPE)
         ),
     ],
@@ -173,7 +174,8 @@ def test_garbage_is_refused(data: bytes, tmp_path: Path) -> None:
 
 def test_empty_files_and_folders_take_room_too(tmp_path: Path) -> None:
     few = packed(*((f"{number}", tarfile.REGTYPE, "", 0) for number in range(9)))
-    assert unpack(few, tmp_path / "few", most=10 * artefacts.BLOCK) == 10 * artefacts.BLOCK
+    unpack(few, tmp_path / "few", most=10 * artefacts.BLOCK)
+    assert cache.size_of(tmp_path / "few") == 10 * artefacts.BLOCK
     many = packed(*((f"{number}", tarfile.REGTYPE, "", 0) for number in range(10)))
     with pytest.raises(BadArtefacts, match="too much"):
         unpack(many, tmp_path / "many", most=10 * artefacts.BLOCK)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,7 +19,7 @@ from autograder.boxes.sandbox import Enclosure, why_impossible
 from autograder.workspaces.boxed_jobs import BoxedJobs, BoxedProgram
 from autograder.workspaces.colcon import look
 from autograder.workspaces.graded_builds import GradedBuilds
-from autograder.workspaces.jobs import ProgramJob
+from autograder.workspaces.jobs import Built, ProgramJob
 from autograder.workspaces.plans import course_interfaces
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -216,3 +219,16 @@ def test_the_builds_of_one_notebook_have_so_much_room_and_no_more(
     assert "kB are left for it" in second.log
     assert sum(file.stat().st_size for file in cache.rglob("*") if file.is_file()) < 450_000
     assert made(GradedBuilds(cache, jobs), workspace).ok  # somebody else has room
+    assert not made(narrow, workspace).ok  # and who has none gets no build from the cache, either
+
+
+def test_a_big_build_that_nobody_waits_for_gives_up_its_turn(
+    jobs: BoxedJobs, supervisors: str, builds: GradedBuilds, workspace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(jobs, "_build", lambda *_: (Built(1, b""), True))
+    another = os.open(Path(supervisors).parent, os.O_RDONLY)
+    fcntl.flock(another, fcntl.LOCK_EX)
+    threading.Timer(20.0, os.close, [another]).start()  # so that a defect fails, and does not hang
+    began = time.monotonic()
+    assert not builds.build(look(workspace), None, cancelled=lambda: True).ok
+    assert time.monotonic() - began < 10.0

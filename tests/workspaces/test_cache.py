@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from pathlib import Path
 
 import pytest
@@ -115,6 +116,7 @@ def test_a_folder_that_others_may_write_to_is_not_used(empty_cache: Path) -> Non
     empty_cache.mkdir()
     empty_cache.chmod(0o777)
     assert cache.root() != empty_cache
+    assert cache.root() == cache.root()
     empty_cache.chmod(0o700)
     assert cache.root() == empty_cache
 
@@ -198,3 +200,22 @@ def test_who_waited_for_a_lock_that_was_removed_takes_the_one_that_is_there(empt
         lock.unlink()
     builder.join(timeout=60)
     assert held == [True]
+
+
+def test_the_folder_in_the_place_of_a_cache_goes_with_its_process(empty_cache: Path) -> None:
+    empty_cache.mkdir()
+    empty_cache.chmod(0o777)
+    code = "import os; from autograder.workspaces import cache; print(cache.root(), flush=True); os.fork()"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    folder = Path(done.stdout.strip())
+    assert folder != empty_cache
+    assert not folder.exists()
+
+
+def test_a_meaning_that_was_met_long_ago_is_forgotten(empty_cache: Path) -> None:
+    folder = cache.root()
+    for name, ago in (("old.met", cache.MET_FOR + 9), ("new.met", 9)):
+        (folder / name).touch()
+        os.utime(folder / name, (time.time() - ago,) * 2)
+    cache.make_room(folder)
+    assert [path.name for path in folder.iterdir()] == ["new.met"]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 def build(workspace: Path, targets: Targets | None = None) -> Build:
     """What comes of building a folder."""
-    return own_builds.build(look(workspace), targets)
+    return own_builds.OwnBuilds().build(look(workspace), targets)
 
 
 def run_program(made: Build) -> str:

@@ -77,6 +77,28 @@ def test_the_toolchain_is_in_the_key(workspace: Path, monkeypatch: pytest.Monkey
     assert key_of(workspace / "src") != before
 
 
+def test_a_sourced_ros_and_its_version_are_in_the_key(
+    workspace: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keys = [key_of(workspace / "src")]
+    monkeypatch.setenv("AMENT_PREFIX_PATH", f"{tmp_path / 'nothing'}:{tmp_path / 'ros'}")
+    generators = tmp_path / "ros" / "share" / "rosidl_default_generators" / "package.xml"
+    generators.parent.mkdir(parents=True)
+    for text in ("1.6.0", "1.6.0-2"):
+        generators.write_text(text)
+        keys.append(key_of(workspace / "src"))
+    assert len(set(keys)) == 3
+
+
+def test_what_cmake_includes_is_in_the_key_and_not_its_path_alone(
+    workspace: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = key_of(workspace / "src")
+    monkeypatch.setattr(builds, "ONLY_PYTHON_FILE", tmp_path / "another.cmake")
+    (tmp_path / "another.cmake").write_text("# another\n")
+    assert key_of(workspace / "src") != before
+
+
 def test_far_too_much_is_refused(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(packages, "MAX_FILES", 2)
     with pytest.raises(BadSources, match="is it a workspace"):

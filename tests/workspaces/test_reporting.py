@@ -24,7 +24,7 @@ from autograder.workspaces.colcon import Build
 from autograder.workspaces.install_folder import LIBRARY
 from autograder.workspaces.packages import Package
 from autograder.workspaces.plans import Plan
-from autograder.workspaces.reporting import built_line, found_line
+from autograder.workspaces.reporting import report_line
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -112,7 +112,7 @@ def test_of_definitions_the_one_that_is_asked_for_is_reported_without_comments(t
     )
     found = Build(tmp_path, ok=True, packages=(Package("a", tmp_path, "ament_cmake"),))
     plan = Plan(lambda _: ["a"], lambda _: "", lambda _: [], definition="B.srv")
-    seen = report_of(part(found_line(found, plan)), "found")
+    seen = report_of(part(report_line("found", found, plan)), "found")
     assert seen is not None
     assert [(i.file, i.text) for i in seen.packages[0].interfaces] == [
         ("srv/B.srv", "int64 a\nstring b '#'  # two\n---\nint64 c"),
@@ -122,7 +122,9 @@ def test_of_definitions_the_one_that_is_asked_for_is_reported_without_comments(t
 
 def test_a_file_whose_name_is_no_text_is_reported(tmp_path: Path) -> None:
     (tmp_path / os.fsdecode(b"f\xfcr.py")).touch()
-    seen = report_of(part(built_line(Build(tmp_path, ok=True, packages=(Package("a", tmp_path, ""),)))))
+    seen = report_of(
+        part(report_line("built", Build(tmp_path, ok=True, packages=(Package("a", tmp_path, ""),))))
+    )
     assert seen is not None
     assert list(seen.packages[0].modules) == ["f?r.py"]
 
@@ -144,7 +146,9 @@ def test_the_packages_that_are_needed_are_looked_into_first_and_only_so_far(
     setup = '"p = a.b:c"  #' + "x" * 40_000
     packages = tuple(package_with(tmp_path, name, setup_py=setup) for name in "abcd")
     found = Build(tmp_path, ok=True, packages=packages)
-    seen = report_of(part(found_line(found, Plan(lambda _: needed, lambda _: "", lambda _: []))), "found")
+    seen = report_of(
+        part(report_line("found", found, Plan(lambda _: needed, lambda _: "", lambda _: []))), "found"
+    )
     assert seen is not None
     assert seen.complete == complete
     assert [package.name for package in seen.packages if package.programs] == [*looked_into]
@@ -154,7 +158,7 @@ def test_a_definition_without_room_is_left_out_and_not_taken_for_missing(tmp_pat
     long = package_with(tmp_path, "a", A_srv="int64 a\n" * 20_000, CMakeLists_txt="#" * 60_000)
     found = Build(tmp_path, ok=True, packages=(long,))
     plan = Plan(lambda _: ["a"], lambda _: "", lambda _: [], definition="A.srv")
-    seen = report_of(part(found_line(found, plan)), "found")
+    seen = report_of(part(report_line("found", found, plan)), "found")
     assert seen is not None
     assert not seen.complete
     assert list(seen.packages[0].interfaces) == [Interface("A.srv", None, True)]
@@ -179,7 +183,7 @@ def test_what_a_package_declares_is_asked_of_its_dependencies_alone(
     found = Build(tmp_path, ok=True, packages=(replace(package, dependencies=depends),))
     plan = Plan(lambda _: ["a"], lambda _: "", lambda _: [], definition="AddTwoInts.srv")
     exercise = exercises.get("lab_1_3.interface")
-    seen = Evidence([part(built_line(found, plan))], reference.load(exercise.id))
+    seen = Evidence([part(report_line("built", found, plan))], reference.load(exercise.id))
     point = next(criterion for criterion in exercise.criteria if criterion.name == "declares")
     finding = point.judge(seen)
     assert (finding.passed, finding.seen) == (declares, says)
@@ -197,11 +201,11 @@ def test_entry_points_are_those_that_are_installed(tmp_path: Path) -> None:
     (prefix / "share" / "a").mkdir(parents=True)
     (prefix / "share" / "a" / "package.xml").write_text("")
     made = Build(tmp_path, ok=True, install=tmp_path / "install", packages=(Package("a", tmp_path, ""),))
-    seen = report_of(part(built_line(made)))
+    seen = report_of(part(report_line("built", made)))
     assert seen is not None
     assert (list(seen.packages[0].programs), list(seen.packages[0].installed)) == (["p = a.b:c"], ["p"])
     (metadata / "entry_points.txt").write_text("p = a.b:c\n" * 20_000)
-    seen = report_of(part(built_line(made)))
+    seen = report_of(part(report_line("built", made)))
     assert seen is not None
     assert list(seen.packages[0].programs) == []
 

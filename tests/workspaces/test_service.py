@@ -20,7 +20,7 @@ from autograder.kit.evidence import REPORTS
 from autograder.kit.runners import ALONE
 from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, Lines
-from autograder.workspaces import colcon_stand_in, own_builds, service, session, sources
+from autograder.workspaces import colcon_stand_in, own_builds, packages, service, session, sources
 from autograder.workspaces.install_folder import LIBRARY
 from autograder.workspaces.jobs import BuildOrder, Built, ProgramJob
 from autograder.workspaces.plain_jobs import PlainProgram
@@ -513,6 +513,42 @@ def test_a_notebook_s_failed_build_shows_what_colcon_said(
     assert colcon_stand_in.main(["build"]) == 1
     assert "SyntaxError" in capsys.readouterr().out
     assert not (lab / "install").exists()
+
+
+def test_sources_that_no_build_takes_are_refused_with_the_reason(
+    sockets: ServiceSockets, lab: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (lab / "src" / "my_robot_pkg" / "large.bin").write_bytes(bytes(200))
+    monkeypatch.setattr(packages, "MAX_BYTES", 100)
+    monkeypatch.setenv(own_builds.GRADERS, str(sockets.notebook))
+    monkeypatch.chdir(lab)
+    assert colcon_stand_in.main(["build"]) == 1
+    assert "a workspace for a check holds text" in capsys.readouterr().out
+
+
+def test_the_judge_may_be_gone_when_the_grader_has_trouble(
+    sockets: ServiceSockets, jobs: FakeJobs, lab: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    raised: list[object] = []
+    monkeypatch.setattr(threading, "excepthook", lambda found: raised.append(found.exc_value))
+    building, gone = threading.Event(), threading.Event()
+
+    def fail(_: object) -> None:
+        building.set()
+        gone.wait(20.0)
+        raise RuntimeError("no disk")
+
+    jobs.waiting = fail
+    judge = FakeJudge(sockets)
+    judge.check(lab)
+    judge.lines.say(messages.Start(1))
+    assert building.wait(20.0)
+    judge.lines.close()
+    gone.set()
+    for thread in threading.enumerate():
+        if "_run" in thread.name:
+            thread.join(20.0)
+    assert raised == []
 
 
 def until_they_hang_up(lines: Lines) -> list[str]:

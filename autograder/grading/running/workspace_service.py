@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -12,12 +11,9 @@ from autograder import exercises
 from autograder.boxes.environment import kernel_environment
 from autograder.boxes.place import SHARED_FOLDER, BoxedPlace
 from autograder.judge.settings import boxed_ros_environment, ros_environment
-from autograder.kit.runners import Launches
 from autograder.workspaces import cache, own_builds
 from autograder.workspaces.boxed_jobs import BoxedJobs
-from autograder.workspaces.packages import PACKAGE_VARIABLE
 from autograder.workspaces.plain_jobs import PlainJobs
-from autograder.workspaces.plans import reference_package
 from autograder.workspaces.service import ServiceSockets, WorkspaceService
 
 if TYPE_CHECKING:
@@ -28,7 +24,7 @@ if TYPE_CHECKING:
     from autograder.boxes.place import UnboxedPlace
     from autograder.grading.task import Task
 
-_BUILDS, _PROGRAMS, _ROBOT = "builds", "bin", "my_robot_pkg"
+_BUILDS, _PROGRAMS = "builds", "bin"
 
 
 @dataclass(frozen=True)
@@ -38,13 +34,11 @@ class Arrangement:
     Attributes:
         folder: Ours alone.
         boxed: Whether there are boxes.
-        robot: Whether its student is handed the course's own package, as exercise 1.1 does.
         runners: The exercises whose subjects the grader builds and starts by itself.
     """
 
     folder: Path
     boxed: bool
-    robot: bool
     runners: frozenset[str]
 
     @property
@@ -61,9 +55,8 @@ class Arrangement:
         """More variables of the notebook's environment."""
         if not self.boxed:
             return {}
-        robot = {PACKAGE_VARIABLE: str(SHARED_FOLDER / _ROBOT)} if self.robot else {}
         path = f"{SHARED_FOLDER / _PROGRAMS}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
-        return {"PATH": path, own_builds.GRADERS: str(SHARED_FOLDER / _BUILDS), **robot}
+        return {"PATH": path, own_builds.GRADERS: str(SHARED_FOLDER / _BUILDS)}
 
 
 def arrange(task: Task, folder: Path) -> Arrangement:
@@ -76,10 +69,7 @@ def arrange(task: Task, folder: Path) -> Arrangement:
     checks = [cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts]
     runners = {name: exercises.get(name).runner for name in checks if name in exercises.all_ids()}
     arrangement = Arrangement(
-        folder,
-        task.boxed,
-        any(isinstance(runner, Launches) for runner in runners.values()),
-        frozenset(name for name, runner in runners.items() if runner),
+        folder, task.boxed, frozenset(name for name, runner in runners.items() if runner)
     )
     arrangement.judges_folder.mkdir()
     return arrangement
@@ -101,7 +91,7 @@ def served(
     if isinstance(place, BoxedPlace):
         jobs = BoxedJobs(addresses.supervisors, place.programs, folder, addresses.programs)
         ros = boxed_ros_environment()
-        _furnish(place.shared, robot=arrangement.robot)
+        _furnish(place.shared)
         sockets = ServiceSockets(arrangement.judges_socket, place.shared / _BUILDS)
     else:
         jobs = PlainJobs(kernel_environment(folder / "home", {}), handed_in=True)
@@ -112,8 +102,8 @@ def served(
     return WorkspaceService(sockets, jobs, cache.graders_root(), variables, folder)
 
 
-def _furnish(shared: Path, *, robot: bool) -> None:
-    """Put into the folder that the student's box can read what stands in for colcon, and the course's package."""
+def _furnish(shared: Path) -> None:
+    """Put into the folder that the student's box can read what stands in for colcon, and nothing of solutions."""
     programs = shared / _PROGRAMS
     programs.mkdir()
     colcon = programs / "colcon"
@@ -121,5 +111,3 @@ def _furnish(shared: Path, *, robot: bool) -> None:
         f'#!/bin/sh\nexec "{sys.executable}" -P -m autograder.workspaces.colcon_stand_in "$@"\n'
     )
     colcon.chmod(0o755)
-    if robot:
-        shutil.copytree(reference_package(), shared / _ROBOT)

@@ -147,11 +147,6 @@ class SpinThreads:
         """True if the nodes are spun and nobody has asked to stop."""
         return self._threads[0].is_alive() and not self._stop.is_set()
 
-    @property
-    def ending(self) -> Ending:
-        """The reason why it ended; only of use when it is not running."""
-        return self._ending
-
     def is_own_thread(self) -> bool:
         """True if the caller is one of the callbacks."""
         return threading.current_thread() in self._threads

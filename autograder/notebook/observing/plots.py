@@ -26,6 +26,8 @@ PERIOD = 0.5
 """Seconds between two pictures, where something has arrived."""
 WINDOW = 30.0
 """Seconds that a plot shows."""
+_LARGEST = 1e300
+"""No value beyond it is drawn, infinity and what is no number included: a laser says ``inf`` where it sees nothing."""
 _MOST = 3_000
 """Points that a plot keeps."""
 _WIDTH, _HEIGHT, _LEFT, _FOOT, _HEAD = 720, 220, 70, 24, 26
@@ -80,6 +82,10 @@ def number_in(message: Any, field: str) -> float:
             raise LookupError(f"{'.'.join(way) or 'the message'} has no field {name}: it has {there}")
         value, way = getattr(value, name), [*way, name]
         if index:
+            if not hasattr(value, "__len__"):
+                raise LookupError(
+                    f"{'.'.join(way)} is a {type(value).__name__}, no list: leave out [{index}]"
+                )
             if not 0 <= int(index) < len(value):
                 raise LookupError(f"{'.'.join(way)} has {len(value)} items: there is no [{index}]")
             value = value[int(index)]
@@ -117,9 +123,9 @@ class PlotPicture:
 
     def __repr__(self) -> str:
         """The plot in words."""
-        if self.note or not self.points:
-            return f"{self.title}: {self.note or 'nothing has arrived yet'}"
-        values = [value for _, value in self.points]
+        if words := self._words():
+            return f"{self.title}: {words}"
+        values = [value for _, value in self._drawn()]
         return (
             f"{self.title}: {len(values)} values in {-self.points[0][0]:.0f} s, from {min(values):.6g} to "
             f"{max(values):.6g}, the last {values[-1]:.6g}"
@@ -130,14 +136,26 @@ class PlotPicture:
 
     def svg(self) -> str:
         """The picture alone."""
-        words = self.note or ("" if self.points else "nothing has arrived yet")
+        words = self._words()
         curve = f'<text x="{_LEFT}" y="{_HEIGHT / 2}">{escape(words)}</text>' if words else self._curve()
         name = f'<text class="name" x="{_LEFT}" y="16">{escape(self.title)}</text>'
         head = f"<title>{escape(repr(self))}</title>"
         return svg_page(_WIDTH, _HEIGHT, head, _STYLE, name + curve)
 
+    def _drawn(self) -> Sequence[tuple[float, float]]:
+        return [(t, value) for t, value in self.points if abs(value) <= _LARGEST]
+
+    def _words(self) -> str:
+        """What stands in the place of a curve, or an empty text."""
+        if not self.points:
+            return self.note or "nothing has arrived yet"
+        return self.note or (
+            "" if self._drawn() else f"the last value is {self.points[-1][1]}: nothing to draw"
+        )
+
     def _curve(self) -> str:
-        low, high = min(value for _, value in self.points), max(value for _, value in self.points)
+        points = self._drawn()
+        low, high = min(value for _, value in points), max(value for _, value in points)
         step = round_step(max(high - low, abs(high) * 1e-6, 1e-9) / 4)
         low, high = math.floor(low / step) * step, math.ceil(high / step + 1e-9) * step
         start = -WINDOW
@@ -161,8 +179,8 @@ class PlotPicture:
             drawn.append(
                 f'<text x="{x(seconds):.1f}" y="{_HEIGHT - 6}" text-anchor="{anchor}">{words}</text>'
             )
-        path = " ".join(f"{x(t):.1f},{y(value):.1f}" for t, value in self.points)
-        last = self.points[-1]
+        path = " ".join(f"{x(t):.1f},{y(value):.1f}" for t, value in points)
+        last = points[-1]
         drawn.append(
             f'<polyline points="{path}"/><circle cx="{x(last[0]):.1f}" cy="{y(last[1]):.1f}" r="3"/>'
         )

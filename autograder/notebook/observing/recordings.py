@@ -93,9 +93,13 @@ class Recording:
 
     def __enter__(self) -> Self:
         """Begin to record."""
-        self._file: IO[bytes] = self._path.open("wb")
+        self._node = hidden_node("_recorder")  # first: without ROS no recording that is there is written over
+        try:
+            self._file: IO[bytes] = self._path.open("wb")
+        except OSError:
+            self._node.destroy_node()
+            raise
         self._messages = MessageFile(self._file, ROS_2)
-        self._node = hidden_node("_recorder")
         self._look_for_topics()
         self._thread = threading.Thread(target=self._record, name="recorder", daemon=True)
         self._thread.start()

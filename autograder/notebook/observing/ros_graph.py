@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 READER = "_graph_reader"
 """The name of the node that looks; names that begin with an underscore are hidden in ROS."""
 
+PATIENCE = 2.0
+"""Seconds to wait for two looks that agree; after that the last one counts."""
 SETTLING = 0.05
 """Seconds between two looks that must agree: a node's ends are announced one after the other."""
 
@@ -106,14 +108,9 @@ _VERBS = {
 }
 
 
-def read_graph(patience: float = 2.0) -> RosGraph:
-    """Look at the graph of this kernel's ROS domain.
-
-    Args:
-        patience: Seconds to wait for two looks in a row that agree. Where the graph keeps changing, the last
-            look counts.
-    """
-    deadline = time.monotonic() + patience
+def read_graph() -> RosGraph:
+    """Look at the graph of this kernel's ROS domain, until two looks in a row agree or it keeps changing."""
+    deadline = time.monotonic() + PATIENCE
     with _reader() as node:
         seen = look(node)
         while True:

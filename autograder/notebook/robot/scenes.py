@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from std_msgs.msg import String
 
@@ -23,24 +23,6 @@ METRES = 0.1
 _TOUR = ((2.5, 2.4), (3.6, 2.0))
 """To the door."""
 _QUARTER = math.pi / 2
-
-
-class Scene(Protocol):
-    """Drives the robot, step by step, until it is over."""
-
-    @property
-    def says(self) -> str:
-        """The text in the robot's bubble; empty for none."""
-        ...
-
-    @property
-    def is_over(self) -> bool:
-        """True if there is nothing to do at present."""
-        ...
-
-    def next(self, pose: Pose, bumped: bool) -> Velocity | None:
-        """The command for the next step, as of :meth:`Walking.next`."""
-        ...
 
 
 class Tour:
@@ -147,3 +129,7 @@ def _quarter_circle(radius: float) -> tuple[Velocity, int]:
     steps = math.ceil(_QUARTER * radius / (speed * TICK))
     turn = _QUARTER / (steps * TICK)
     return Velocity(turn * radius, turn), steps
+
+
+Scene = Tour | Spiral
+"""Drives the robot, step by step, until it is over."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -101,13 +102,10 @@ class RunningProcess:
             os.set_blocking(end, False)
             self.streams[name] = os.fdopen(end, "rb", buffering=0)
 
-    def send(self, number: signal.Signals) -> bool:
-        """Send a signal to the process and to what it has started; return whether it was still there."""
-        try:
+    def send(self, number: signal.Signals) -> None:
+        """Send a signal to the process and to what it has started, where they are still there."""
+        with contextlib.suppress(ProcessLookupError):
             os.killpg(self.pid, number)
-        except ProcessLookupError:
-            return False
-        return True
 
     def poll(self) -> int | None:
         """Return the exit code, None while it runs."""

@@ -96,7 +96,7 @@ class Screen:
     folder: str | None = None
     _files: dict[str, TextIO] = field(default_factory=dict)
 
-    def open_log(self) -> str:
+    def open_log(self) -> None:
         """Make the log folder of this launch, and the link `latest` to it.
 
         Raises:
@@ -113,7 +113,6 @@ class Screen:
                 "set ROS_LOG_DIR to a folder that can be written"
             ) from error
         self._link_latest(base)
-        return self.folder
 
     def _link_latest(self, base: str) -> None:
         """Point `latest` at this launch; another one may do so just now, which is not worth an error."""

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .launch_context import LaunchContext
 
-Scalar = bool | int | float | str
 _SCALARS = (bool, int, float, str)
 
 

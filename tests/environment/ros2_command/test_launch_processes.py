@@ -126,6 +126,7 @@ def test_output_of_all_processes_can_be_shown(ros2: Ros2, write: Callable[[str],
             "Node(package='demo_pkg', executable='says', output='scren'),",
             "scren is not a valid standard output",
         ),
+        ("ExecuteProcess(cmd=['echo', 'a'], output='screen', output_format='{oops}'),", "'oops'"),
         ("LogInfo(msg='a'", "SyntaxError"),
     ],
 )
@@ -137,6 +138,13 @@ def test_an_error_in_the_launch_file(
     assert error in done.stdout
     assert "Traceback" not in done.stdout + done.stderr
     assert done.returncode == 1
+
+
+@pytest.mark.parametrize("name", ["/tmp/none.launch.py", "*.py", ""])
+def test_a_file_that_its_package_has_not_is_said_so(ros2: Ros2, name: str) -> None:
+    done = ros2("launch", "demo_pkg", name)
+    assert f"file '{name}' was not found in the share directory of package 'demo_pkg'" in done.stderr
+    assert "Traceback" not in done.stderr
 
 
 def test_an_error_ends_what_was_started_before(ros2: Ros2, write: Callable[[str], str]) -> None:

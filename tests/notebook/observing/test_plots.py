@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from geometry_msgs.msg import Twist
-from std_msgs.msg import Float64MultiArray, String
+from std_msgs.msg import Float64, Float64MultiArray, String
 
 from autograder.notebook.observing.plots import WINDOW, PlotPicture, number_in, plot
 
@@ -29,6 +29,7 @@ def test_finds_a_number_by_its_way_through_the_message() -> None:
         (Twist(), "linear", "name one of its fields (x, y, z)"),
         (String(data="3.5"), "data", "data is a str, no number"),
         (Float64MultiArray(), "data[0]", "data has 0 items: there is no [0]"),
+        (Float64(), "data[0]", "data is a float, no list: leave out [0]"),
         (Twist(), "speed", "the message has no field speed: it has linear, angular"),
     ],
 )
@@ -56,6 +57,14 @@ def test_a_point_stands_at_its_time_and_value() -> None:
 def test_any_values_can_be_drawn(points: tuple[tuple[float, float], ...]) -> None:
     (line,) = re.findall(r'polyline points="([^"]*)"', PlotPicture("x", points).svg())
     assert all(0 <= float(number) <= 720 for number in re.findall(r"[-\d.]+", line))
+
+
+def test_what_is_not_finite_is_left_out() -> None:
+    inf, nan = float("inf"), float("nan")
+    picture = PlotPicture("/scan ranges[0]", ((-3.0, inf), (-2.0, 1.0), (-1.0, nan), (0.0, -inf)))
+    assert "1 values in 3 s, from 1 to 1" in repr(picture)
+    assert len(re.findall(r'polyline points="[-\d.]+,[-\d.]+"', picture.svg())) == 1
+    assert "the last value is inf: nothing to draw" in PlotPicture("x", ((0.0, inf),)).svg()
 
 
 @pytest.mark.ros

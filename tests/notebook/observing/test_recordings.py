@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 from geometry_msgs.msg import TwistStamped
 from mcap.reader import make_reader
+from rclpy.exceptions import NotInitializedException
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import String
@@ -95,6 +96,13 @@ def test_a_block_that_fails_leaves_a_file_that_can_be_read(ros: None, tmp_path: 
     with pytest.raises(RuntimeError, match="no such robot"):
         fail()
     assert list(read_recording(tmp_path / "a.mcap")) == []
+
+
+def test_without_ros_a_recording_that_is_there_stays(tmp_path: Path) -> None:
+    (tmp_path / "a.mcap").write_bytes(b"recorded yesterday")
+    with pytest.raises(NotInitializedException), recording(tmp_path / "a.mcap"):
+        pass
+    assert (tmp_path / "a.mcap").read_bytes() == b"recorded yesterday"
 
 
 def test_another_ending_is_an_error(tmp_path: Path) -> None:

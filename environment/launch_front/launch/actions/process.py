@@ -14,6 +14,7 @@ from ..running_process import Plan, RunningProcess
 from ..screen import output_plan
 from ..substitution import SomeSubstitutionsType, describe, normalize, perform
 from ..typed import flag, number
+from ..unsupported import refuse_arguments
 
 if TYPE_CHECKING:
     from ..launch_context import LaunchContext
@@ -57,11 +58,9 @@ class ExecuteProcess(ProcessAction):
         condition: Any = None,
         **unknown: Any,
     ) -> None:
-        for argument in _ELSEWHERE:
-            if argument in unknown:
-                from ..unsupported import refuse_arguments
-
-                refuse_arguments(type(self).__name__, {argument: None}, _ELSEWHERE)
+        refuse_arguments(
+            type(self).__name__, {name: None for name in unknown if name in _ELSEWHERE}, _ELSEWHERE
+        )
         super().__init__(condition=condition, **unknown)
         self.cmd = [normalize(part) for part in cmd]
         self.process_description = _Described()
@@ -121,6 +120,9 @@ class ExecuteProcess(ProcessAction):
         plan = self._plan(context)
         self.process_description.final_name = plan.name
         self.process_description.final_cmd = list(plan.cmd)
+        plan.output_format.format(
+            line="", this=self
+        )  # what is wrong with it is said here, and not at the first line
         if self._log_cmd:
             context.screen.log(
                 "INFO",

@@ -1,7 +1,8 @@
 # family = "reading"
-# tries = "The masters with their solutions, and the exercises, are read: in the class, in the repository, and wherever a folder named solutions can be found from the package."
+# assignment = "exercise_1_1"
+# tries = "The masters with their solutions, and the exercises, are read: in the folder that the box shares with the grader, in the class, in the repository, and wherever a folder named solutions can be found from the package."
 # could_earn = "The answers."
-# undefended = "LEAK: the masters of class and repository were read."
+# undefended = "LEAK: the masters of class and repository were read, and in Exercise 1.1 Lab 1.2's talker and listener."
 
 # %% extra
 from pathlib import Path
@@ -10,6 +11,7 @@ import autograder
 
 root = Path(autograder.__file__).resolve().parent.parent
 places = [
+    *Path("/run/judge").rglob("my_robot_pkg/*.py"),
     *Path("<<class>>/source").glob("*/*.ipynb"),
     *Path("<<repository>>/solutions").glob("*/*/lab.md"),
     *Path("<<repository>>/solutions").glob("*/*/*.py"),
