@@ -41,7 +41,7 @@ TOO_SHORT = 0.5
 """The share of its patience that a function must at least wait."""
 PART_OF_A_WAIT = 1.0
 """Seconds that a function may leave out at the end of a longer patience: it may wait in whole seconds."""
-SILENT = "ended without a word"
+SILENT = "ended without saying so"
 """The objection to a client that says nothing of what it misses."""
 _SHUT_DOWN = "rclpy.executors.ExternalShutdownException"
 _NUMBER = re2.compile(r"-?\d+(?:\.\d+)?")

@@ -334,7 +334,7 @@ ABORT_NOT_REPORTED = Mistake("abort_not_reported", _abort_not_reported)
 SILENT_END = mistake(
     "silent_end",
     lambda evidence: given_up(evidence) == SILENT and asked_for(evidence.part(LATE)),
-    "When there is no action server, your client ends without a word.",
-    "Log an error (or raise TimeoutError) before you return.",
+    "When there is no action server, your client ends and does not say so.",
+    "Log an error that says so (or raise TimeoutError) before you return.",
 )
 PATIENCE_NOT_KEPT = patience_not_kept(ABSENT)

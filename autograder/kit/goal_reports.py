@@ -157,17 +157,21 @@ def _are_in_order(numbers: Sequence[str], lines: Sequence[str]) -> bool:
     return True
 
 
+_SEQUENCE = re2.compile(r"[\[(]|[a-z.]+\((?:'\w', )?[\[(]|[a-z.]+\((?:'\w')?\)")
+"""The beginning of a sequence's repr: ``[1``, ``(1``, ``array('i', [1``, ``array('i')``, ``deque([1``."""
+
+
 def returned_instead(part: Part, wanted: Sequence[int]) -> str:
     """The value that a function returned in place of these numbers; empty where it is right, or no function.
 
-    Any kind of sequence is taken for a list.
+    Any kind of sequence is taken for a list, such as a tuple or an array; a message that has one is none.
     """
     if part.returned is None:
         return ""
     # A type may be named beside the numbers, as in np.int32(5).
     numbers = re2.findall(r"\d+", re2.sub(r"int\d+", "", part.returned))
     right = numbers == [str(number) for number in wanted]
-    return "" if right and re2.search(r"[\[(]", part.returned) else part.returned
+    return "" if right and _SEQUENCE.match(part.returned) else part.returned
 
 
 def miscalled(part: Part) -> str:
@@ -327,7 +331,7 @@ def given_up(evidence: Evidence) -> str:
     )
     if part.events and not asked and asks_nowhere(part, late, "action_client"):
         return "does the same, without a goal, where the server is only late"
-    return objection(part, [evidence.main] if asked_for(evidence.main) else [])
+    return objection(part, [other for other in (evidence.main, evidence.part(REFUSED)) if asked_for(other)])
 
 
 # --- criteria -----------------------------------------------------------------------------------------------

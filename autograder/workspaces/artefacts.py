@@ -6,6 +6,7 @@ name to the name with its version) becomes a copy of the file that it names: who
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import shutil
@@ -29,6 +30,18 @@ MAX_LINKS = 8
 MAX_PAX = 2_000
 """Bytes of a pax header; one with a long path has some hundreds. Python searches it in a time that grows with the
 square: hours for a few megabytes of digits."""
+
+
+_OF_THIS_MACHINE = (
+    errno.ENOSPC,
+    errno.EDQUOT,
+    errno.EMFILE,
+    errno.ENFILE,
+    errno.ENOMEM,
+    errno.EIO,
+    errno.EROFS,
+)
+"""What no archive can bring about: a full disk, a used-up quota, too many open files."""
 
 
 class BadArtefacts(ValueError):
@@ -79,6 +92,7 @@ def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> None:
     Raises:
         BadArtefacts: It has entries that lead out of the folder, links to anything but one of its files, devices, or
             too much of anything. What was written until then is left behind.
+        OSError, MemoryError: This machine has no room, or no file to give: no fault of the build's.
     """
     if not archive:
         raise BadArtefacts("what the build made could not be packed")
@@ -102,7 +116,10 @@ def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> None:
             size += _copy(link, links, folder)
             check_room(size + len(made) * BLOCK, most, number)
     except (tarfile.TarError, OSError, ValueError, RecursionError, MemoryError, OverflowError) as error:
-        if isinstance(error, BadArtefacts):
+        if (
+            isinstance(error, (BadArtefacts, MemoryError))
+            or getattr(error, "errno", None) in _OF_THIS_MACHINE
+        ):
             raise
         raise BadArtefacts(f"what the build made cannot be read: {error}") from error
 

@@ -24,6 +24,8 @@ def right(canceled: str, succeeded: str) -> bool:
     ("canceled", "succeeded"),
     [
         ("status=5 canceled=True", "status=4 canceled=False"),
+        ("5 0 1 1 2 3 5", "4 0 1 1 2 3 5 8"),
+        ("0, 1, 1, 2, 3: 5", "0, 1, 1, 2, 3, 5: 4"),
         ("Final status: 5", "Final status: 4"),
         ("Goal was successfully canceled.", "Goal succeeded! Result: [0, 1]"),
         ("canceled, with 5 numbers", "NOT canceled: the goal ended with status 4"),
@@ -77,6 +79,8 @@ def test_who_says_how_each_goal_ended_is_right(canceled: str, succeeded: str) ->
 @pytest.mark.parametrize(
     ("canceled", "succeeded"),
     [
+        ("result: 0 1 1 2 3 5 8 13", "result: 0 1 1 2 3"),
+        ("0, 1, 1, 2, 3, 5", "0, 1, 1, 2, 3, 5, 8"),
         ("status=5 canceled=True", "status=4 canceled=True"),
         ("status=5 canceled=False", "status=4 canceled=True"),
         ("status=5 canceled=False", "status=4 canceled=False"),

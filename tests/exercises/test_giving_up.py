@@ -174,13 +174,13 @@ AT_ONCE = tuple((0.1 + t / 1000, "waiting") for t in range(200))
     ("part", "expected"),
     [
         pytest.param(_waits((5.0, "nobody there"), ends=5.0), "", id="ends and says why"),
-        pytest.param(_waits(ends=5.0), "ended without a word", id="ends silently"),
+        pytest.param(_waits(ends=5.0), "ended without saying so", id="ends silently"),
         pytest.param(
-            _waits(*ABORTED, ends=5.0), "ended without a word", id="is aborted while a thread of it spins"
+            _waits(*ABORTED, ends=5.0), "ended without saying so", id="is aborted while a thread of it spins"
         ),
         pytest.param(
             _waits(*SHUT_DOWN, ends=5.0),
-            "ended without a word",
+            "ended without saying so",
             id="a thread of it sees that ROS is shut down",
         ),
         pytest.param(_waits(*RAISED, ends=5.0), "", id="ends with an exception"),
@@ -268,12 +268,12 @@ NAMELESS = (
     ("part", "expected"),
     [
         pytest.param(_waits(GREETING, GONE, ends=5.0), "", id="greets, and says why it ends"),
-        pytest.param(_waits(GREETING, ends=5.0), "ended without a word", id="greets only"),
+        pytest.param(_waits(GREETING, ends=5.0), "ended without saying so", id="greets only"),
         pytest.param(_waits(GREETING, (2.0, GREETING[1]), ends=5.0), "", id="says it again"),
         pytest.param(_waits((5.0, "servers found: 0"), ends=5.0), "", id="another number, which is no input"),
-        pytest.param(_waits(GREETING, (5.0, "None"), ends=5.0), "ended without a word", id="None"),
-        pytest.param(_waits(GREETING, (5.0, "0"), ends=5.0), "ended without a word", id="a bare number"),
-        pytest.param(_waits(GREETING, *NAMELESS, ends=5.0), "ended without a word", id="a slip"),
+        pytest.param(_waits(GREETING, (5.0, "None"), ends=5.0), "ended without saying so", id="None"),
+        pytest.param(_waits(GREETING, (5.0, "0"), ends=5.0), "ended without saying so", id="a bare number"),
+        pytest.param(_waits(GREETING, *NAMELESS, ends=5.0), "ended without saying so", id="a slip"),
     ],
 )
 def test_what_a_client_says_where_its_server_is_there_too_tells_of_no_trouble(
@@ -311,4 +311,4 @@ def test_a_wait_without_a_limit_is_worth_a_remark() -> None:
 
 def test_what_ros2_run_says_of_an_exit_code_is_no_word_of_the_program() -> None:
     assert objection(run("nobody there", [1, 2])) == ""
-    assert objection(run("[ros2run]: Process exited with failure 3", [1, 2])) == "ended without a word"
+    assert objection(run("[ros2run]: Process exited with failure 3", [1, 2])) == "ended without saying so"

@@ -127,8 +127,10 @@ def files_of(source: Path, *, opened: bool = True) -> Iterator[File]:
         opened: Whether an archive is opened here; otherwise it is a file, as in a download.
     """
     counts: Counter[tuple[str, ...]] = Counter()
+    # In a folder the parts begin with its own name, and a download may have one folder around all.
+    levels = 3 if source.is_dir() else 2
     for file in _of_source(source.absolute(), opened=opened):
-        folder = file.parts[:2]
+        folder = file.parts[:levels]
         counts[folder] += 1
         if counts[folder] <= MOST_FILES:
             yield file

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 MAX_BYTES = 50_000_000
 """A notebook with many pictures in its outputs has a few megabytes."""
+MAX_VALUES = 3_000_000
+"""Lists, objects and the values in them, each of which takes some fifty bytes of memory; a picture is a single text."""
 MAX_CELLS = 2_000
 MAX_CELL_CHARACTERS = 100_000
 """Of one cell; what students write has a few thousand."""
@@ -207,6 +209,10 @@ def _decoded(data: bytes) -> Any:
             f"The file is not a notebook: it is not UTF-8 text (byte {error.start}). "
             "Save the notebook in JupyterLab and hand in that file."
         ) from None
+    if sum(map(text.count, "[{,")) > MAX_VALUES:
+        raise UnreadableSubmission(
+            f"The file has more than {MAX_VALUES:,} values, far more than a notebook has."
+        )
     try:
         # Nothing that is made here can be freed, but the collector would look for it again and again.
         with without_garbage_collection():

@@ -144,6 +144,13 @@ class ServiceType(SeenAsItIs):
         for file, text in self._texts(evidence):
             number = len(fields(text))
             if number != 2:
+                crowded = next((line for line in text.splitlines() if _nearly_dashes(line)), None)
+                if crowded is not None:
+                    return Advice(
+                        f"In {file}, the line “{crowded}” has more in it than three dashes, so ROS does not take it "
+                        "for the line between request and response.",
+                        "Leave nothing in it but ---: no blank, no comment, and no fourth dash.",
+                    )
                 return Advice(
                     f"{file} has {number - 1} lines of three dashes; a service has exactly one, between request "
                     "and response.",
@@ -282,6 +289,10 @@ def fields(text: str) -> list[Fields]:
         elif bare and "=" not in bare:
             sections[-1].append((bare, ""))
     return sections
+
+
+def _nearly_dashes(line: str) -> bool:
+    return line != "---" and re2.fullmatch(r"\s*-{3,}\s*(?:#.*)?", line) is not None
 
 
 def _undeclared(package: PackageReport) -> list[str]:

@@ -282,13 +282,13 @@ def _said_again(evidence: Evidence) -> Advice | None:
     text, times = _most_often(again)
     if len(again) > 2 and all(b > a for a, b in pairwise(again.values())):
         return Advice(
-            f"Each string was sent once, and your program says each more often than the one before, “{text}” {times} "
-            "times: with each message there is one more subscription.",
+            f"Your program says each new string more often than the one before, “{text}” {times} times for one "
+            "message: with each message there is one more subscription.",
             "Call create_subscription once, in __init__, and not in a callback.",
         )
     if len(again) > 1 and min(again.values()) == times:
         return Advice(
-            f"Each string was sent once, and your program says it {times} times, such as “{text}”.",
+            f"Your program says each string {times} times for one message, such as “{text}”.",
             "One subscription is enough: is create_subscription called twice, or is there a second node, or a second "
             "log line? In a notebook, an earlier run of the cell may have left a node of its own.",
         )

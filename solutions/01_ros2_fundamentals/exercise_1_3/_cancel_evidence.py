@@ -18,7 +18,7 @@ AGREED = "the server agrees to cancel, and then fails"
 FIRST_FEEDBACK, LAST_FEEDBACK = 3, 5
 """The cancel request must come after this many feedback messages, at the earliest and at the latest."""
 
-LEFT = "it asked, and ended before the answer"
+LEFT = "it asked, and ended without waiting for what came of it"
 
 
 @dataclass(frozen=True)
@@ -64,8 +64,16 @@ def request_of(part: Part) -> Request | None:
 
 
 def left_before_its_answer(part: Part) -> bool:
-    """True if the client was about to end before its cancel request was answered, so that chance decides on both."""
-    return part.first("cancel") is not None and left_at_once(part, "cancel_answered")
+    """True if the client asked to cancel, and ended without having waited for anything that comes of it.
+
+    Whether its request still arrives, and whether its process is gone before the answer comes, is chance.
+    """
+    cancel, ending = part.first("cancel"), part.ending
+    if cancel is None or ending is None:
+        return False
+    later = part.events[part.events.index(cancel) + 1 : part.events.index(ending)]
+    went_on = any(event.kind in ("cancel", "result", "result_request") for event in later) or part.traceback
+    return left_at_once(part, "cancel_answered") or not (went_on or part.said(after=cancel))
 
 
 def telling_count(evidence: Evidence) -> int | None:

@@ -16,6 +16,7 @@ from exercise_1_3._cancel_evidence import (
     cancels_every_goal,
     expected_order,
     goals,
+    left_before_its_answer,
     orders_as_seen,
     says_nothing_of_its_success,
     telling_count,
@@ -91,8 +92,10 @@ def ended_on_the_way(evidence: Evidence) -> Advice | None:
     before = events[: events.index(ending)]
     if cancel is None and not any(event.kind == "result" for event in before):
         missing = "it had asked to cancel it"
-    elif cancel is not None and not any(event.kind == "cancel_answered" for event in before):
-        missing = "the answer to its cancel request was there"
+    elif left_before_its_answer(part) or (
+        cancel is not None and not any(event.kind == "cancel_answered" for event in before)
+    ):
+        missing = "its result was there"
     else:
         return None
     if part.traceback:

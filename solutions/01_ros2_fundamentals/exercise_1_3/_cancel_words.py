@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Part
 
 _NUMBER = re2.compile(r"\d+(?:\.\d+)*")
+_ROW = re2.compile(r"\b\d{1,18}(?:[ ,;]+\d{1,18}\b)+")
+"""Whole numbers in a row."""
 WAS_CANCELED, WAS_ABORTED = "was canceled", "was aborted, though the server had agreed to cancel it"
 HAS_SUCCEEDED = "succeeded in spite of the cancel request"
 """The ends of the goals."""
@@ -78,12 +80,28 @@ def _has_the_number(line: str, elsewhere: Sequence[str]) -> bool:
 
 
 def _numbers(line: str) -> list[str]:
-    return _NUMBER.findall(without_lists(line))
+    return _NUMBER.findall(_without_sequences(line))
 
 
 def _shape(line: str) -> str:
     """A line with a place for each number, so that two lines for two goals can be compared."""
-    return _NUMBER.sub("#", without_lists(line))
+    return _NUMBER.sub("#", _without_sequences(line))
+
+
+def _without_sequences(line: str) -> str:
+    """A line without the numbers of its goal, in a list or in a row as print(*numbers) says them."""
+    return _ROW.sub(lambda row: " ".join(_other_numbers(row[0])), without_lists(line))
+
+
+def _other_numbers(row: str) -> list[str]:
+    numbers = list(map(int, _NUMBER.findall(row)))
+    begins = next((place for place in range(len(numbers)) if numbers[place : place + 3] == [0, 1, 1]), None)
+    if begins is None:
+        return _NUMBER.findall(row)
+    ends = begins + 3
+    while ends < len(numbers) and numbers[ends] == numbers[ends - 1] + numbers[ends - 2]:
+        ends += 1
+    return [str(number) for number in numbers[:begins] + numbers[ends:]]
 
 
 def false_claim(honoured: Part, refused: Part, aborted: Part | None = None) -> tuple[str, str] | None:
