@@ -352,11 +352,13 @@ def test_a_cell_that_is_too_long_is_left_out_with_a_word() -> None:
 
 
 def test_the_largest_file_that_is_read_is_read_at_once() -> None:
-    """Fifty megabytes of the JSON that costs most: half a minute, were the garbage collector on."""
-    data = notebook("[" + "[]," * ((submission.MAX_BYTES - 100) // 3) + "0]")
+    """The JSON that costs most: fifty megabytes of it took two gigabytes of memory, and half a minute."""
+    most = "[" + "[]," * (submission.MAX_VALUES // 2 - 50) + "0]"
     with pytest.raises(UnreadableSubmission, match="the limit is"):
-        parse(data)
+        parse(notebook(most))
     assert gc.isenabled()
+    with pytest.raises(UnreadableSubmission, match="more than 3,000,000 values"):
+        parse(notebook("[" + "[]," * ((submission.MAX_BYTES - 100) // 3) + "0]"))
 
 
 def test_a_scratch_folder_of_somebody_else_is_not_used(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import tarfile
 from typing import TYPE_CHECKING
@@ -170,6 +171,15 @@ def test_too_much_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 def test_garbage_is_refused(data: bytes, tmp_path: Path) -> None:
     with pytest.raises(BadArtefacts):
         unpack(data, tmp_path / "install")
+
+
+def test_a_full_disk_is_no_fault_of_the_build(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def write(*_: object) -> int:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(artefacts, "_take", write)
+    with pytest.raises(OSError, match="No space left"):
+        unpack(packed(("a", b"1", "", 0o644)), tmp_path / "install")
 
 
 def test_empty_files_and_folders_take_room_too(tmp_path: Path) -> None:

@@ -127,8 +127,7 @@ def files_of(source: Path, *, opened: bool = True) -> Iterator[File]:
         opened: Whether an archive is opened here; otherwise it is a file, as in a download.
     """
     counts: Counter[tuple[str, ...]] = Counter()
-    # In a folder the parts begin with its own name, and a download may have one folder around all.
-    levels = 3 if source.is_dir() else 2
+    levels = 2 + _has_one_folder_around_all(source)
     for file in _of_source(source.absolute(), opened=opened):
         folder = file.parts[:levels]
         counts[folder] += 1
@@ -137,6 +136,15 @@ def files_of(source: Path, *, opened: bool = True) -> Iterator[File]:
         elif counts[folder] == MOST_FILES + 1:
             reason = f"it has more than {MOST_FILES} files; the others in it were not looked at"
             yield File(file.source, folder, _refusing(reason))
+
+
+def _has_one_folder_around_all(source: Path) -> bool:
+    """True of a folder with a single folder in it: an archive is often unpacked into one of its own name."""
+    try:
+        inside = [path for path in source.iterdir() if not path.name.startswith((".", "__MACOSX"))]
+    except OSError:  # also where it is a file
+        return False
+    return len(inside) == 1 and inside[0].is_dir()
 
 
 def _of_source(source: Path, *, opened: bool) -> Iterator[File]:

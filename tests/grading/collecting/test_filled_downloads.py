@@ -163,7 +163,7 @@ def test_what_a_class_hands_in_together_is_in_nobodys_room(
     assert placed(collect(klass.path, [write_zip(tmp_path / "m.zip", files)])).keys() == set(ids)
 
 
-@pytest.mark.parametrize("form", ["folder", "zip"])
+@pytest.mark.parametrize("form", ["folder", "zip", "folder around"])
 def test_who_has_too_many_files_hides_nobody_behind(
     klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, form: str
 ) -> None:
@@ -176,6 +176,9 @@ def test_who_has_too_many_files_hides_nobody_behind(
     if form == "zip":
         files = {str(path.relative_to(tmp_path)): path.read_bytes() for path in download.rglob("*.*")}
         download, label = write_zip(tmp_path / "download.zip", files), "download.zip/download/ben"
+    elif form == "folder around":
+        (tmp_path / "all").mkdir()
+        download, label = download.rename(tmp_path / "all" / "download").parent, "all/download/ben"
     report = collect(klass.path, [download])
     assert placed(report).keys() == {"ada", "zoe"}
     assert f"{label}: it has more than 20 files; the others in it were not looked at" in why(report)
