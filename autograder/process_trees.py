@@ -94,9 +94,10 @@ def kill(processes: Iterable[Known]) -> None:
 
 
 def signal_group(leader: int, number: int) -> None:
-    """Send a signal to a process group, where there still is one."""
+    """Send a signal to a process group, where there still is one; 0, the caller's own, stands for a box without one."""
     with contextlib.suppress(ProcessLookupError, PermissionError):
-        os.killpg(leader, number)
+        if leader > 0:
+            os.killpg(leader, number)
 
 
 def end_soon(process: subprocess.Popen[bytes], within: float) -> None:

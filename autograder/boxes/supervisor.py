@@ -167,9 +167,6 @@ class _Supervisor:
             with contextlib.suppress(ProcessLookupError):  # a command that has ended at once
                 started.first = os.pidfd_open(first)
         if not idle:
-            if not first:  # it says why where the command's output goes
-                self._reap(name)
-                raise ValueError("bubblewrap made no box for a command")
             self._tell_started(name, first)
             return
         assert process.stdin is not None

@@ -21,7 +21,7 @@ from autograder.boxes.limits import Limits
 from autograder.boxes.mounts import installation
 from autograder.boxes.place import BoxedPlace, JudgeSetting
 from autograder.boxes.runner import run_notebook
-from autograder.boxes.sandbox import Bind, Enclosure, NoSandbox
+from autograder.boxes.sandbox import Bind, Enclosure
 from autograder.boxes.scratch import scratch_folder
 from environment.place import Place
 
@@ -352,15 +352,20 @@ def test_a_bind_shows_a_folder_and_protects_it(enclosure: Enclosure, tmp_path: P
     assert (tmp_path / "given" / "file").read_text() == "text"
 
 
-def test_a_command_whose_box_cannot_be_made_is_none_that_runs(enclosure: Enclosure) -> None:
+def test_a_command_whose_box_cannot_be_made_says_why_and_its_ctrl_c_reaches_nobody(
+    enclosure: Enclosure,
+) -> None:
     """bubblewrap has ended before it could say which process is the first: 0 would be a process group, its killer's."""
 
     class Nonsense(Bind):
         def arguments(self) -> list[str]:
             return ["--no-such-option"]
 
-    with pytest.raises(NoSandbox, match="made no box"):
-        enclosure.start(["true"], binds=[Nonsense(Path("/"))])
+    with enclosure.start(["true"], binds=[Nonsense(Path("/"))]) as running:
+        running.interrupt()
+        done = running.wait(10.0)
+    assert b"--no-such-option" in done.output
+    assert done.returncode != 0
     assert enclosure.run(["true"], limit=10.0).returncode == 0
 
 
