@@ -91,13 +91,16 @@ def _sockets(domain: int, tables: Iterable[str]) -> dict[int, int] | None:
 def _held_by_stopped(sockets: dict[int, int], processes: Path) -> frozenset[int]:
     """Return the ports of processes that are stopped (Ctrl-Z, a debugger): they answer when they go on."""
     held: set[int] = set()
-    for status in processes.glob("[0-9]*/stat"):
+    # A glob with a name behind the number asks whether that is there, which raises for a process that ends meanwhile.
+    for process in processes.glob("[0-9]*"):
         try:
-            state = status.read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()[0]
+            state = (
+                (process / "stat").read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()[0]
+            )
         except OSError:  # it has ended
             continue
         if state in _STOPPED:
-            held.update(sockets[inode] for inode in _inodes(status.parent) & sockets.keys())
+            held.update(sockets[inode] for inode in _inodes(process) & sockets.keys())
     return frozenset(held)
 
 

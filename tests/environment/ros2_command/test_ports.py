@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import signal
 import subprocess
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -49,6 +50,21 @@ def processes(tmp_path: Path) -> Path:
 
 
 def test_own_ports_and_those_of_others_that_run(tables: list[str], processes: Path) -> None:
+    assert ports_in_use(42, tables, processes) == Ports(frozenset({17910}), frozenset({17912}))
+
+
+def test_a_process_that_ends_meanwhile_is_passed_over(
+    tables: list[str], processes: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Linux says of its files that there is no such process, and not that there is no such file."""
+    stat = os.stat
+
+    def gone(path: Any, **more: Any) -> os.stat_result:
+        if str(path).endswith("8/stat"):
+            raise ProcessLookupError(errno.ESRCH, "No such process")
+        return stat(path, **more)
+
+    monkeypatch.setattr(os, "stat", gone)
     assert ports_in_use(42, tables, processes) == Ports(frozenset({17910}), frozenset({17912}))
 
 
