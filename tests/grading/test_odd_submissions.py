@@ -357,6 +357,8 @@ def test_the_largest_file_that_is_read_is_read_at_once() -> None:
     with pytest.raises(UnreadableSubmission, match="the limit is"):
         parse(notebook(most))
     assert gc.isenabled()
+    printed = json.dumps({"cell_type": "code", "source": "x", "said": '"1", [2, ' * submission.MAX_VALUES})
+    assert parse(notebook(f"[{printed}]"))[1] == 0, "what a cell has printed is one value"
     with pytest.raises(UnreadableSubmission, match="more than 3,000,000 values"):
         parse(notebook("[" + "[]," * ((submission.MAX_BYTES - 100) // 3) + "0]"))
 

@@ -12,6 +12,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING, Any
 
+import re2
+
 from autograder.boxes.execution import CellType
 from autograder.regular_files import files_below, opened
 
@@ -29,6 +31,8 @@ MAX_CHARACTERS = 1_000_000
 """Of all cells together."""
 HARMLESS_LENGTH = 6_000
 """Of a notebook's own cells that become a page without a trial: the worst of them take less than a page's budget."""
+_QUOTED = re2.compile(r'(?s)"(?:[^"\\]|\\.)*"')
+"""A text in JSON."""
 _LONGEST_SHOWN = 80
 _CELL_TYPES = tuple(CellType)
 _KINDS = {
@@ -209,7 +213,8 @@ def _decoded(data: bytes) -> Any:
             f"The file is not a notebook: it is not UTF-8 text (byte {error.start}). "
             "Save the notebook in JupyterLab and hand in that file."
         ) from None
-    if sum(map(text.count, "[{,")) > MAX_VALUES:
+    # What stands in quotation marks, such as a million numbers that a cell has printed, is a single text.
+    if _values(text) > MAX_VALUES and _values(_QUOTED.sub("", text)) > MAX_VALUES:
         raise UnreadableSubmission(
             f"The file has more than {MAX_VALUES:,} values, far more than a notebook has."
         )
@@ -224,6 +229,10 @@ def _decoded(data: bytes) -> Any:
             f"The file is not a notebook: it is not JSON ({error}). "
             "Save the notebook in JupyterLab and hand in that file."
         ) from None
+
+
+def _values(text: str) -> int:
+    return sum(map(text.count, "[{,"))
 
 
 def _raw_cells(notebook: Mapping[str, Any]) -> list[Any]:
