@@ -12,6 +12,7 @@ import functools
 import hashlib
 import json
 import lzma
+import sys
 import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -26,6 +27,7 @@ from autograder.authoring.judging import Turn, judge_all, warm_up
 from autograder.judge.verdicts import reference
 from autograder.judge.verdicts.keeping import Kept, evidence_of, packed, plain, restored, unpack
 from autograder.verdict import State, to_json
+from autograder.workspaces import cache
 from tests.cards import sweep
 from tests.judge import quoting
 from tests.measure import bank, stimulus
@@ -38,8 +40,6 @@ if TYPE_CHECKING:
 
 FOLDER = Path(__file__).parents[1] / "evidence"
 COMMAND = "python -m tests.measure evidence"
-_ROOT = "/course"
-"""Stands in evidence for the folder of the clone."""
 
 
 class BadEvidence(ValueError):
@@ -108,10 +108,18 @@ def program(answer: Answer) -> str:
 
 
 def _line(record: Record) -> str:
-    """The line of a record, without the place of the clone that it was made in."""
+    """The line of a record, without the places of the machine that it was made on."""
     text = json.dumps(plain(msgspec.to_builtins(record)), ensure_ascii=False)
-    content = json.loads(text.replace(str(course.root()), _ROOT))
+    for place, name in _places().items():
+        text = text.replace(place, name)
+    content = json.loads(text)
     return json.dumps({"mark": _mark(content), **content}, ensure_ascii=False)
+
+
+def _places() -> dict[str, str]:
+    """The clone, the cache of builds and Python's own folder, by the names that stand for them in evidence."""
+    python = f"{sys.base_prefix}/lib/python"
+    return {str(course.root()): "/course", str(cache.root()): "/cache", python: "/usr/lib/python"}
 
 
 def _mark(content: Mapping[str, Any]) -> str:
