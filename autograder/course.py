@@ -150,12 +150,9 @@ def _description(file: Path) -> dict[str, Any]:
     except (OSError, ValueError) as error:
         raise BrokenChapter(f"{file} cannot be read: {error}") from error
     orders = said.get("exercises", {})
-    lists = [
-        said.get("labs", []),
-        said.get("interfaces", []),
-        *(orders.values() if isinstance(orders, dict) else [orders]),
-    ]
-    named = isinstance(orders, dict) and all(map(_are_names, lists))
+    named = isinstance(orders, dict) and all(
+        map(_are_names, (said.get("labs", []), said.get("interfaces", []), *orders.values()))
+    )
     if not named or not isinstance(said.get("title", ""), str):
         raise BrokenChapter(
             f"{file}: title is a text; labs, interfaces and each lab of the table exercises are lists of names"

@@ -7,6 +7,7 @@ with the same ``./course``: its exercises and reference outputs are in ``exercis
 
 from __future__ import annotations
 
+import io
 import shutil
 import stat
 import zipfile
@@ -19,6 +20,7 @@ from autograder.course import HANDED_OUT
 from autograder.exercises import REFERENCE
 from autograder.masters.chapters import holds_work
 from autograder.masters.layout import relinked
+from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -204,20 +206,12 @@ def _copy(place: Path, files: dict[str, Path | bytes]) -> None:
 
 
 def _pack(place: Path, files: dict[str, Path | bytes]) -> None:
-    place.parent.mkdir(parents=True, exist_ok=True)
-    beside = place.with_name(f"{place.name}.part")  # a zip that is not complete can be opened all the same
-    try:
-        _zip(beside, place.stem, files)
-        beside.replace(place)
-    finally:
-        beside.unlink(missing_ok=True)
-
-
-def _zip(place: Path, top: str, files: dict[str, Path | bytes]) -> None:
-    with zipfile.ZipFile(place, "w", zipfile.ZIP_DEFLATED) as packed:
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as packed:
         for name, content in files.items():
-            entry = zipfile.ZipInfo(f"{top}/{name}")  # one date for all: the same files, the same zip
+            entry = zipfile.ZipInfo(f"{place.stem}/{name}")  # one date for all: the same files, the same zip
             entry.compress_type = zipfile.ZIP_DEFLATED
             runs = isinstance(content, Path) and content.stat().st_mode & stat.S_IXUSR
             entry.external_attr = (0o755 if runs else 0o644) << 16
             packed.writestr(entry, content if isinstance(content, bytes) else content.read_bytes())
+    write_whole(place, archive.getvalue())

@@ -94,12 +94,10 @@ def _held_by_stopped(sockets: dict[int, int], processes: Path) -> frozenset[int]
     # A glob with a name behind the number asks whether that is there, which raises for a process that ends meanwhile.
     for process in processes.glob("[0-9]*"):
         try:
-            state = (
-                (process / "stat").read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()[0]
-            )
+            said = (process / "stat").read_text(encoding="utf-8", errors="replace")
         except OSError:  # it has ended
             continue
-        if state in _STOPPED:
+        if said.rpartition(")")[2].split()[0] in _STOPPED:
             held.update(sockets[inode] for inode in _inodes(process) & sockets.keys())
     return frozenset(held)
 

@@ -141,10 +141,14 @@ def files_of(source: Path, *, opened: bool = True) -> Iterator[File]:
 def _has_one_folder_around_all(source: Path) -> bool:
     """True of a folder with a single folder in it: an archive is often unpacked into one of its own name."""
     try:
-        inside = [path for path in source.iterdir() if not path.name.startswith((".", "__MACOSX"))]
+        inside = [path for path in source.iterdir() if not _is_left_by_a_program(path.name)]
     except OSError:  # also where it is a file
         return False
     return len(inside) == 1 and inside[0].is_dir()
+
+
+def _is_left_by_a_program(name: str) -> bool:
+    return name in _LEFT_BY_PROGRAMS or name.startswith("._")
 
 
 def _of_source(source: Path, *, opened: bool) -> Iterator[File]:
@@ -191,7 +195,7 @@ def _of_folder(source: Path) -> Iterator[File]:
         folders[:] = sorted(name for name in folders if name not in _LEFT_BY_PROGRAMS)
         for name in sorted(names):
             path = Path(folder) / name
-            if name in _LEFT_BY_PROGRAMS or name.startswith("._"):
+            if _is_left_by_a_program(name):
                 continue
             yield File(above, (*here, name_as_text(name)), functools.partial(_read_file, path))
         for name in folders:
@@ -222,7 +226,7 @@ def _of_zip(outer: File, data: BinaryIO, largest_list: int, room: Room | None = 
     for entry in entries:
         name = _name_of(entry)
         parts = tuple(part for part in name.replace("\\", "/").split("/") if part not in ("", "."))
-        if any(part in _LEFT_BY_PROGRAMS or part.startswith("._") for part in parts):
+        if any(map(_is_left_by_a_program, parts)):
             continue
         reason = _reason_against(entry, name, parts)
         # The archive stays open as long as any of its files may be read.

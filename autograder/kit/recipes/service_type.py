@@ -143,19 +143,20 @@ class ServiceType(SeenAsItIs):
         """Request and response are not kept apart by exactly one line of dashes."""
         for file, text in self._texts(evidence):
             number = len(fields(text))
-            if number != 2:
-                crowded = next((line for line in text.splitlines() if _nearly_dashes(line)), None)
-                if crowded is not None:
-                    return Advice(
-                        f"In {file}, the line “{crowded}” has more in it than three dashes, so ROS does not take it "
-                        "for the line between request and response.",
-                        "Leave nothing in it but ---: no blank, no comment, and no fourth dash.",
-                    )
+            if number == 2:
+                continue
+            crowded = next(filter(_nearly_dashes, text.splitlines()), None)
+            if crowded is not None:
                 return Advice(
-                    f"{file} has {number - 1} lines of three dashes; a service has exactly one, between request "
-                    "and response.",
-                    "Keep one line with nothing but ---, after the request's fields. Below it come the response's.",
+                    f"In {file}, the line “{crowded}” has more in it than three dashes, so ROS does not take it "
+                    "for the line between request and response.",
+                    "Leave nothing in it but ---: no blank, no comment, and no fourth dash.",
                 )
+            return Advice(
+                f"{file} has {number - 1} lines of three dashes; a service has exactly one, between request "
+                "and response.",
+                "Keep one line with nothing but ---, after the request's fields. Below it come the response's.",
+            )
         return None
 
     def _interface_fields(self, evidence: Evidence) -> Advice | None:

@@ -58,10 +58,8 @@ class ExecuteProcess(ProcessAction):
         condition: Any = None,
         **unknown: Any,
     ) -> None:
-        refuse_arguments(
-            type(self).__name__, {name: None for name in unknown if name in _ELSEWHERE}, _ELSEWHERE
-        )
-        super().__init__(condition=condition, **unknown)
+        refuse_arguments(type(self).__name__, unknown, _ELSEWHERE)
+        super().__init__(condition=condition)
         self.cmd = [normalize(part) for part in cmd]
         self.process_description = _Described()
         self.shell, self.cwd = shell, None if cwd is None else normalize(cwd)
@@ -120,9 +118,8 @@ class ExecuteProcess(ProcessAction):
         plan = self._plan(context)
         self.process_description.final_name = plan.name
         self.process_description.final_cmd = list(plan.cmd)
-        plan.output_format.format(
-            line="", this=self
-        )  # what is wrong with it is said here, and not at the first line
+        # What is wrong with it is said here, and not at the first line.
+        plan.output_format.format(line="", this=self)
         if self._log_cmd:
             context.screen.log(
                 "INFO",
