@@ -93,6 +93,19 @@ def kill(processes: Iterable[Known]) -> None:
         send(processes, number)
 
 
+def end_each(processes: Iterable[int], number: int, within: float) -> None:
+    """Send a signal to one process after the other, and wait each time until it has ended.
+
+    Args:
+        processes: Those that are wanted to end, in this order.
+        number: The signal.
+        within: Seconds for all of them together; after that they get the signal and nobody waits.
+    """
+    deadline = time.monotonic() + within
+    for process in [(pid, started_at(pid)) for pid in processes]:
+        _signal(process, number, max(0.0, deadline - time.monotonic()))
+
+
 def signal_group(leader: int, number: int) -> None:
     """Send a signal to a process group, where there still is one; 0, the caller's own, stands for a box without one."""
     with contextlib.suppress(ProcessLookupError, PermissionError):
@@ -232,8 +245,8 @@ def end_processes_in(folder: Path) -> None:
     kill(known(pid for pid in _processes() if pid != os.getpid() and _mentions(pid, place)))
 
 
-def _signal(process: Known, number: int) -> bool:
-    """Send a signal to a process that is still there.
+def _signal(process: Known, number: int, within: float = 0.0) -> bool:
+    """Send a signal to a process that is still there, and wait so many seconds at most until it has ended.
 
     One handle is open at a time: a family may have more members than we may have open files.
 
@@ -246,6 +259,7 @@ def _signal(process: Known, number: int) -> bool:
         try:
             if began and started_at(pid) == began:
                 signal.pidfd_send_signal(handle, number)
+                select.select([handle], [], [], within)
         except PermissionError:
             return False
         finally:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -8,7 +9,7 @@ import time
 import psutil
 import pytest
 
-from autograder.process_trees import kill, known
+from autograder.process_trees import end_each, kill, known
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="only Linux has it")
 
@@ -102,6 +103,26 @@ def test_a_later_process_of_the_same_number_is_left_alone() -> None:
         assert sleeper.poll() is None
         kill(known([sleeper.pid]))
         assert sleeper.wait(60.0) == -signal.SIGKILL
+
+
+def test_processes_that_are_ended_one_by_one_do_not_end_at_once() -> None:
+    """Each waits a moment with its last line, and writes it whole before the next begins."""
+    last_words = (
+        "import os, signal, sys, time\n"
+        "def leave(*_):\n    os.write(1, b'from ')\n    time.sleep(0.2)\n    os.write(1, b'one\\n')\n    os._exit(0)\n"
+        "signal.signal(signal.SIGTERM, leave)\nos.write(2, b'.')\nwhile True:\n    signal.pause()"
+    )
+    reading, writing = os.pipe()
+    begun, beginning = os.pipe()
+    words = [sys.executable, "-c", last_words]
+    processes = [subprocess.Popen(words, stdout=writing, stderr=beginning) for _ in range(3)]
+    for _ in processes:
+        assert os.read(begun, 1) == b"."
+    end_each([process.pid for process in processes], signal.SIGTERM, 60.0)
+    assert [process.wait(60.0) for process in processes] == [0, 0, 0]
+    assert os.read(reading, 1000) == b"from one\n" * 3
+    for descriptor in (reading, writing, begun, beginning):
+        os.close(descriptor)
 
 
 ENTERED = """

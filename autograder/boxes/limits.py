@@ -35,6 +35,8 @@ class Limits:
         beside_bytes: The same, as long as others are executed beside. Who needs more is executed again, alone, so it
             decides nothing.
         beside: Whether others are.
+        judge_bytes: Memory that the judge's process, and each check of it, may write to: what a subject sends to it
+            ends there.
         processes: Processes and threads of a box together.
         open_files: Files, sockets and pipes that one process may have open.
         all_open_files: What all processes of a box may have open together.
@@ -57,11 +59,17 @@ class Limits:
     memory_bytes: int = 2_000_000_000
     beside_bytes: int = 400_000_000
     beside: bool = False
+    judge_bytes: int = 1_000_000_000
     processes: int = 500
     open_files: int = 1024
     all_open_files: int = 6000
     scratch_bytes: int = 1_000_000_000
     scratch_files: int = 100_000
+
+    @property
+    def of_the_judge(self) -> dict[str, int]:
+        """Limits of a judge's process (setrlimit(2)): address space that can be written to, stacks of threads too."""
+        return {"RLIMIT_DATA": self.judge_bytes}
 
     @property
     def longest(self) -> float:

@@ -144,6 +144,7 @@ class BoxedPlace:
             [listener, orders],
             cwd=HOME,
             environment=box_environment(self._judge.environment),
+            rlimits=self._limits.of_the_judge,
         )
 
     def __enter__(self) -> Self:
@@ -197,7 +198,9 @@ class UnboxedPlace:
         """Let a fork of the judges' fork server be the judge."""
         del of_programs
         environment = kernel_environment(self._folder / "of-the-judge", self._judge.environment)
-        entrance = Entrance(cwd=str(self._folder), environment=environment, boxed=False)
+        entrance = Entrance(
+            cwd=str(self._folder), environment=environment, boxed=False, rlimits=self._limits.of_the_judge
+        )
         return ForkedProcess(self._addresses.judges, entrance, [listener, orders])
 
     def __enter__(self) -> Self:

@@ -111,6 +111,7 @@ class Enclosure:
         cwd: Path,
         environment: Mapping[str, str],
         call: Mapping[str, Any] | None = None,
+        rlimits: Mapping[str, int] | None = None,
     ) -> ForkedProcess:
         """Let a fork of a fork server enter a box.
 
@@ -121,6 +122,7 @@ class Enclosure:
             cwd: Its folder.
             environment: Its whole environment.
             call: What it is told.
+            rlimits: Its limits in a box without a guard (setrlimit(2)).
 
         Raises:
             ChannelClosed: The fork server is gone, or the fork could not enter the box.
@@ -130,7 +132,7 @@ class Enclosure:
             environment=environment,
             boxed=True,
             call=call or {},
-            **(self._guarded() if box.guarded else {}),
+            **(self._guarded() if box.guarded else {"rlimits": rlimits or {}}),
         )
         return ForkedProcess(server, entrance, descriptors, box)
 

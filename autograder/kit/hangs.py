@@ -20,10 +20,6 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
 
 _FRAME = re2.compile(r'^\s*File "(?P<file>[^"]*)", line (?P<line>\d+),? in (?P<function>\S+)')
-_WOVEN = re2.compile(
-    r'(?m)^.+Fatal Python error|^(?:Current t|T)hread 0x[0-9a-f]*[^0-9a-f (]|^ *File *"[^"]*"[^,]|""'
-)
-"""A place in the stacks of two processes where one writes into a line of the other's."""
 _BLOCKING = {
     "client.py": {"call"},
     "action/client.py": {"send_goal", "cancel_goal", "get_result", "_cancel_goal"},
@@ -52,15 +48,9 @@ Stack = Sequence[Frame]
 
 
 def stacks(part: Part) -> list[Stack]:
-    """The stacks of the subject's threads when it hung, innermost call first.
-
-    A command and the program that it has started print theirs at once, now and then into each other's lines: of those
-    nothing can be read.
-    """
+    """The stacks of the subject's threads when it hung, innermost call first."""
     found: list[list[Frame]] = []
     for event in part.of("stack"):
-        if _WOVEN.search(str(event.data["text"])):
-            continue
         for line in str(event.data["text"]).splitlines():
             if "most recent call first" in line:
                 found.append([])

@@ -42,6 +42,8 @@ BUILD_LIMITS = Limits(
 PROGRAM_LIMITS = Limits(cpu_seconds=200.0, memory_bytes=1_500_000_000, processes=400)
 """The resources that a program may take, where the limits of the whole submission are not held by the system
 itself."""
+PACK_SECONDS = 60.0
+"""Wall time in which what a build made must be packed."""
 LOOK_EVERY = 0.5
 """Seconds between two questions whether a build is still wanted."""
 
@@ -128,8 +130,15 @@ class BoxedJobs:
                     return Built(returncode, output, late=BUILD_SECONDS if late else 0.0), needs_room
                 packing = f"exec tar -cf - -C {shlex.quote(str(place / 'install'))} . 2>/dev/null"
                 packed = enclosure.run(
-                    ["/bin/sh", "-c", packing], limit=60.0, cwd=Path("/"), output_bytes=MAX_ARCHIVE_BYTES
+                    ["/bin/sh", "-c", packing],
+                    limit=PACK_SECONDS,
+                    cwd=Path("/"),
+                    output_bytes=MAX_ARCHIVE_BYTES,
                 )
+                if (
+                    packed.returncode is None
+                ):  # a few MB take milliseconds: the machine was busy, and no build fails
+                    return Built(None, output, late=PACK_SECONDS), False
                 whole = packed.returncode == 0 and not packed.cut
                 return Built(returncode, output, packed.output if whole else b""), False
         finally:

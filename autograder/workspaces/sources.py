@@ -37,6 +37,8 @@ MAX_NAME = 120
 """Bytes of each part of a path."""
 MAX_DEPTH = 16
 """Parts of a path."""
+MAX_HELD = MAX_BYTES + MAX_FILES * MAX_PATH
+"""Bytes of content and characters of paths that are held while somebody still sends."""
 LAUNCH_COMPANIONS = (".py", ".xml", ".yaml", ".yml", ".json", ".txt")
 """The endings of the names of files that a launch file may need beside it."""
 _NOT_SOURCES = {"__pycache__", ".git", ".ipynb_checkpoints", ".pytest_cache", ".mypy_cache", ".ruff_cache"}
@@ -211,7 +213,7 @@ def receive(lines: Lines, count: int, path: str, folder: Path) -> None:
     if not 0 <= count <= MAX_FILES:
         raise BadSources("there is too much in src")
     taken: list[Source] = []
-    room = MAX_BYTES + MAX_FILES * MAX_PATH
+    room = MAX_HELD
     for _ in range(count):
         source = lines.hear(Source)
         room -= len(source.data or b"") + len(source.path)

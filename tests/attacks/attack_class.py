@@ -129,9 +129,13 @@ class Graded:
     after: dict[str, str] = field(default_factory=dict)
 
     def points(self, student: str) -> dict[str, float]:
-        """What a student got, by exercise."""
+        """What a student got, by exercise; nothing for what was not handed in or could not be checked."""
         rows = self.rows.get(student, {})
-        return {name: float(row["score"]) for name, row in rows.items() if row["state"] != "not_submitted"}
+        return {
+            name: float(row["score"])
+            for name, row in rows.items()
+            if row["state"] != "not_submitted" and row["score"]
+        }
 
     def written_about(self, student: str) -> str:
         """All that the grader wrote down about a student."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import os
+import resource
+import socket
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -13,10 +15,13 @@ import pytest
 
 from autograder.boxes import cgroups, guards
 from autograder.boxes.execution import Cell, Check, Ended, Execution
+from autograder.boxes.fork_server import ForkServers
 from autograder.boxes.limits import Limits
-from autograder.boxes.place import BoxedPlace, JudgeSetting
+from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.boxes.runner import run_notebook
+from autograder.boxes.sandbox import why_impossible
 from autograder.boxes.scratch import scratch_folder
+from autograder.judge.serving import attached
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -231,6 +236,26 @@ def test_many_small_processes_cannot_take_the_watcher_with_them(run: Run) -> Non
     execution = run(many, memory_bytes=400_000_000)
     # Whoever is ended, it is one of the box, and the submission's own doing.
     assert execution.trouble == ""
+
+
+@pytest.mark.ros
+@pytest.mark.parametrize("kind", [BoxedPlace, UnboxedPlace])
+def test_a_judge_has_a_limit_of_memory(kind: type[BoxedPlace | UnboxedPlace], tmp_path: Path) -> None:
+    boxed = kind is BoxedPlace
+    if boxed and why_impossible():
+        pytest.skip("no sandbox is possible here")
+    limits = Limits()
+    own, its_own = socket.socketpair()
+    with (
+        own, its_own, socket.socket(socket.AF_UNIX) as listener, scratch_folder(tmp_path) as folder,
+        ForkServers(attached.__name__, boxed=boxed) as warm,
+        kind(warm.addresses, folder, {}, {}, "JUDGE", JudgeSetting(attached.environment(boxed=boxed)), limits) as place,
+    ):  # fmt: skip
+        listener.bind(str(place.judge_socket))
+        listener.listen()
+        judge = place.start_judge(listener.fileno(), its_own.fileno())
+        assert own.recv(6) == b"ready\n"
+        assert resource.prlimit(judge.pid, resource.RLIMIT_DATA) == (limits.judge_bytes, limits.judge_bytes)
 
 
 def test_what_is_not_in_its_box_yet_is_not_taken_for_all_that_the_host_does() -> None:

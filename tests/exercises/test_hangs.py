@@ -66,12 +66,6 @@ def test_call_line_and_callback_are_those_of_one_thread() -> None:
     assert "Your callback work() makes the blocking call call() (line 7, in work)" in advice.text
 
 
-def test_the_stacks_of_two_processes_that_wrote_into_each_others_lines_name_nothing() -> None:
-    text = _stack(CALL, OWN).replace('threading.py"', 'threading.py"Fatal Python error: Aborted\n\n', 1)
-    part = Part("part", {}, [Event(9.0, "stack", "subject", {"text": text})])
-    assert not any(mistake.recognise(Evidence([part], Reference("x", {}))) for mistake in HANGS)
-
-
 def test_no_stack_names_nothing() -> None:
     evidence = Evidence([Part("part")], Reference("x", {}))
     assert not any(mistake.recognise(evidence) for mistake in HANGS)

@@ -21,6 +21,8 @@ MAX_TEXT = 50_000
 MAX_TEXTS = 20_000_000
 """Characters of all texts of a part; of what comes after these only the beginning is kept."""
 BEGINNING = 100
+ITEM = 32
+"""Characters that an item of a list counts as: its place there and a number take as much memory."""
 MAX_NAME = 300
 """Characters of a name; DDS allows 255."""
 _SPEECH = ("output", "log")
@@ -185,7 +187,7 @@ def _is_speech(event: Event) -> bool:
 
 
 def _kept(data: Any, limit: int) -> tuple[Any, int]:
-    """A copy of what was seen, and how many characters it has.
+    """A copy of what was seen, and how many characters of room it takes.
 
     It is cut to what a verdict can be made of, since a subject may send gigabytes.
     """
@@ -198,5 +200,5 @@ def _kept(data: Any, limit: int) -> tuple[Any, int]:
         return {key: kept for key, (kept, _) in pairs.items()}, sum(size for _, size in pairs.values())
     if isinstance(data, (list, tuple)):
         items = [_kept(item, limit) for item in data[:limit]]
-        return [kept for kept, _ in items], sum(size for _, size in items) + len(items)
+        return [kept for kept, _ in items], sum(size for _, size in items) + ITEM * len(items)
     return data, 0

@@ -15,8 +15,7 @@ from autograder.process_trees import (
     descendants,
     die_with_parent,
     end_descendants,
-    known,
-    send,
+    end_each,
     signal_group,
 )
 from autograder.standard_output import short_lines
@@ -145,15 +144,14 @@ class CommandSubject(InOwnProcesses):
     def stack(self) -> str:
         """Abort the command: Python's faulthandler, which its environment has switched on, prints the stacks.
 
-        What hangs may be a child of the command: ``ros2 run`` starts the student's program and waits for it.
+        What hangs may be a child of the command: ``ros2 run`` starts the student's program and waits for it. Children
+        come first and each alone, so that no two write into each other's lines.
         """
         process = self._process
         if process is None or self.ended:
             return ""
         self._dying.set()
-        below = known(descendants(process.pid))
-        process.send_signal(signal.SIGABRT)
-        send(below, signal.SIGABRT)
+        end_each((*reversed(descendants(process.pid)), process.pid), signal.SIGABRT, READ_LIMIT)
         self._done.wait(READ_LIMIT)
         return "\n".join(self._last_words)
 

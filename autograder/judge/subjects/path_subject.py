@@ -17,7 +17,7 @@ from autograder.messages import workspaces
 from autograder.messages.checks import Collect, FromNotebook, Sources
 from autograder.messages.lines import Hangup, Lines, NotUnderstood
 from autograder.messages.workspaces import Source
-from autograder.workspaces.sources import MAX_BYTES, MAX_FILES, BadSources, check_path, checked
+from autograder.workspaces.sources import MAX_FILES, MAX_HELD, BadSources, check_path, checked
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -149,12 +149,12 @@ class PathSubject(InOwnProcesses):
         """The sources that the notebook sends, and the reason why they cannot be used."""
         self._notebook.say(Collect())
         sources: list[Source] = []
-        size = 0
+        room = MAX_HELD
         try:
             while not isinstance(said := self._notebook.hear(FromNotebook), Sources):
-                if isinstance(said, Source) and len(sources) <= MAX_FILES and size <= MAX_BYTES:
+                if isinstance(said, Source) and len(sources) <= MAX_FILES and room >= 0:
                     sources.append(said)
-                    size += len(said.data or b"")
+                    room -= len(said.data or b"") + len(said.path)
         except NotUnderstood:
             return [], "a file has not the form of one"
         wrong = "".join(c for c in said.trouble[:500] if c.isprintable())

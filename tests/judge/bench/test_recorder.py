@@ -114,6 +114,17 @@ def test_huge_messages_are_cut() -> None:
     assert len(texts[-1]) == recorder.BEGINNING + 1
 
 
+def test_of_lists_of_small_items_no_more_is_kept_than_of_texts() -> None:
+    book = Recorder()
+    book.begin("part", {})
+    for _ in range(20):
+        book.record("subject", "started", accepted=[""] * recorder.MAX_TEXT)
+    kept = [len(event.data["accepted"]) for event in book.part().events]
+    assert kept[0] == recorder.MAX_TEXT
+    assert kept[-1] == recorder.BEGINNING
+    assert sum(kept) * recorder.ITEM < 2 * recorder.MAX_TEXTS
+
+
 def test_what_is_no_text_can_be_written_down_all_the_same() -> None:
     book = Recorder()
     book.begin("part", {})

@@ -137,7 +137,10 @@ def test_a_hung_program_says_where_and_does_not_count_as_ended() -> None:
 
 def test_a_program_that_another_one_has_started_says_where_it_hangs() -> None:
     hung = "import time\ndef wait_in_vain():\n    print('ready')\n    time.sleep(600)\nwait_in_vain()"
-    program = f"import subprocess, sys\nsubprocess.run([sys.executable, '-u', '-c', {hung!r}])"
+    program = (
+        f"import subprocess, sys, time\nsubprocess.Popen([sys.executable, '-u', '-c', {hung!r}])\n"
+        "def wait_beside():\n    time.sleep(600)\nwait_beside()"
+    )
 
     def ask_then_stop(subject: CommandSubject, recorder: Recorder) -> None:
         assert recorder.wait(lambda: recorder.part().said() != [], 60.0)
@@ -145,7 +148,9 @@ def test_a_program_that_another_one_has_started_says_where_it_hangs() -> None:
         subject.stop()
 
     (event,) = _part(ask_then_stop, program).of("stack")
-    assert "wait_in_vain" in event.data["text"]
+    of_the_program, of_the_command = event.data["text"].split("Fatal Python error: Aborted")[1:]
+    assert "wait_in_vain" in of_the_program
+    assert "wait_beside" in of_the_command  # behind it, and neither in lines of the other's
 
 
 def test_a_command_that_does_not_exist_is_named() -> None:
