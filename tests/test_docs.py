@@ -140,7 +140,8 @@ def test_every_file_that_a_page_names_is_there(path: Path) -> None:
 
 
 def test_the_architecture_fits_on_two_screens() -> None:
-    assert len((ROOT / "docs" / "architecture.md").read_text(encoding="utf-8").split()) <= 900
+    words = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8").split()
+    assert sum(any(map(str.isalnum, word)) for word in words) <= 900  # the lines of a table are none
 
 
 def test_pictures_are_small_and_shown_somewhere() -> None:
