@@ -44,6 +44,8 @@ AT_ONCE = 4.0
 """Seconds after an answer in which a client ends that never meant to take it in. A process takes a tenth of a second to
 end, and more than one on a crowded machine. A client that spins for 5 seconds, as many do, ends half a second later
 than this, though its answer was held back; one that spins for 3 ends a second before."""
+STAYED = 1.5
+"""Seconds after a request of its in which a client that is still there then did not end with it."""
 _CANCELED = "cancel+ed"
 """In other languages one word may stand for canceled and for aborted."""
 _FAILURES = (_CANCELED, words.ABORTED)
@@ -76,11 +78,19 @@ def left_at_once(part: Part, answer: str = "goal_answered") -> bool:
     for event in part.events:
         if event.kind == answer:
             # Who has failed only now has taken something in: the answer, or the feedback behind it.
-            went_on = any(part.of(kind) for kind in ("result_request", "cancel")) or part.traceback
-            return not went_on and not part.said(after=event) and part.ending.t - event.t < AT_ONCE
+            went_on = part.traceback or part.said(after=event) or _stayed_for_more(part, event)
+            return not went_on and part.ending.t - event.t < AT_ONCE
         if event is part.ending or (event.kind == "output" and event.data["text"].startswith(_TRACEBACK)):
             return True
     return False
+
+
+def _stayed_for_more(part: Part, answer: Event) -> bool:
+    """True if it was there for its goal's result, or for a while after what it has asked for behind an answer."""
+    assert part.ending is not None
+    end, later = part.ending.t, part.events[part.events.index(answer) :]
+    stayed = {"result": 0.0, "result_request": STAYED, "cancel": STAYED}
+    return any(event.kind in stayed and end - event.t > stayed[event.kind] for event in later)
 
 
 def goals_as_seen(evidence: Evidence) -> str:

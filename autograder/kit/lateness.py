@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 
 SOON = 0.3
 """Seconds that a server comes late after a client that has missed it by a moment."""
-ANSWERS_LATE, ANSWERS_SOON = 0.5, 0.12
-"""Seconds that an answer is held back; fewer where a person waits, and for a client that has just missed one."""
+ANSWERS_LATE, ANSWERS_SOON = 0.7, 0.12
+"""Seconds that an answer is held back; fewer where a person waits, and for a client that has just missed one. Neither
+is a limit that programs are given, such as half a second."""
 PATIENT_WITH_AN_ANSWER = 0.9
 """Seconds after which a client that has given up on an answer was patient: on a busy machine it may have missed it."""
 TRIES = 3
@@ -143,7 +144,9 @@ def meets_late_action(bench: Bench, meet: Callable[[float, float], bool], reques
     return again_while(bench, missed_an_answer, lambda: meet(SOON, ANSWERS_SOON), done)
 
 
-def meets_present(bench: Bench, meet: Callable[[], bool], request: str, *, known: bool) -> bool:
+def meets_present(
+    bench: Bench, meet: Callable[[], bool], request: str, *, known: bool, wanted: int = 1
+) -> bool:
     """Have the subject meet a server that is there; again where one that knows how to ask it ended without asking.
 
     What a client asks that ends in the same moment is lost now and then: it is started again once. On a very busy
@@ -155,13 +158,14 @@ def meets_present(bench: Bench, meet: Callable[[], bool], request: str, *, known
         meet: One run; whether the subject came to an end of its work.
         request: The kind of the event with which it asks the server.
         known: Whether it has asked a server in an earlier run. One that never asks is not started again.
+        wanted: How many requests it is to send.
 
     Returns:
         Whether it came to an end of its work in the last run.
     """
 
-    def asked_nothing(seen: Part) -> bool:
-        return seen.ending is not None and not seen.of(request)
+    def asked_too_little(seen: Part) -> bool:
+        return seen.ending is not None and len(seen.of(request)) < wanted
 
-    done = again_while(bench, asked_nothing, meet, meet(), 1 if known else 0)
+    done = again_while(bench, asked_too_little, meet, meet(), 1 if known else 0)
     return again_while(bench, _missed(request), meet, done, TRIES - 1 if known else 0)

@@ -7,12 +7,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from autograder.kit import giving_up
+from autograder.kit.evidence import Evidence
 from autograder.kit.in_words import counted
 from autograder.kit.model import Finding
 from autograder.kit.texts_said import mentions, not_filled_in, said_first_after
 
 if TYPE_CHECKING:
-    from autograder.kit.evidence import Event, Evidence, Part, Reference
+    from autograder.kit.evidence import Event, Part, Reference
     from autograder.kit.model import Advice
 
 LATE = "the service comes late"
@@ -50,6 +51,12 @@ class Client:
     def calls(self) -> int:
         """The number of calls where the service comes late."""
         return len(requests(self.late))
+
+    @property
+    def had_client(self) -> bool:
+        """True if a client was seen in any run: one that ends at once may be gone before the graph tells of it."""
+        before = self.evidence.before if isinstance(self.evidence, Evidence) else None
+        return any(part.endpoints("client") for part in (*self.evidence.parts, *(before or ())))
 
     def called_each_time(self) -> bool:
         """True if each run with a service came to a call: time had no part in the number of calls then."""

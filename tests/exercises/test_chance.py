@@ -188,7 +188,10 @@ ANSWERED = Event(0.8, "goal_answered", "/fibonacci")
         ([ANSWERED, *_printed(TRACEBACK, 1.0), Event(1.5, "subject", "exited")], False),
         ([ANSWERED, EXITED], False),
         ([ANSWERED], False),
-        ([ANSWERED, Event(0.9, "result_request", ""), Event(1.5, "subject", "exited")], False),
+        # Its last request arrives, or it is lost with its process.
+        ([ANSWERED, Event(0.9, "result_request", ""), Event(1.5, "subject", "exited")], True),
+        ([ANSWERED, Event(0.9, "result_request", ""), Event(2.9, "subject", "exited")], False),
+        ([ANSWERED, Event(1.4, "result", ""), Event(1.5, "subject", "exited")], False),
     ],
 )
 def test_who_ends_at_once_has_not_shown_a_goal(events: list[Event], early: bool) -> None:

@@ -111,7 +111,7 @@ def test_evidence_depends_on_the_scenario_and_not_on_what_is_said(monkeypatch: p
     exercise = exercises.get(ID)
     monkeypatch.setattr(exercises, "get", lambda _: replace(exercise, criteria=(), mistakes=(), title="?"))
     assert stimulus.digest.__wrapped__(ID) == before
-    monkeypatch.setattr(publisher, "SILENCE", publisher.SILENCE + 1)
+    monkeypatch.setattr(publisher, "PERSISTENT", publisher.PERSISTENT + 1)
     assert stimulus.digest.__wrapped__(ID) != before
 
 

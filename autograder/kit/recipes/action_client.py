@@ -31,8 +31,9 @@ ORDERS = {LATE: (41, 46), REFUSED: (-9, -1), ABORTED: (0, 0), ABSENT: (11, 30)}
 """The smallest and the largest order that the client is given: a large one, a bad one, none at all is each a number."""
 SHOWN_WITHIN = {Pace.FAST: 0.5, Pace.REAL_TIME: 1.5}
 """Seconds at most in which a client shows a feedback message before the next one is sent."""
-HASTE = 0.2
-"""The factor on that time once it was used up, so that a silent client is not waited for again and again."""
+HASTE = {Pace.FAST: 0.1, Pace.REAL_TIME: 0.075}
+"""The same once that time was used up, so that the result of a silent client's goal comes after some 3.5 s: between the
+3 and the 5 seconds for which many a client waits."""
 AT_PACE = 3
 """Feedback messages at the end that come at the pace of the lab's server, whether the ones before were shown or not:
 who shows by a timer of its own what came last leaves some out."""
@@ -152,7 +153,7 @@ def works_on_a_goal(bench: Bench, server: ActionCounterpart, status: str, feedba
             if 0 < left < AT_PACE:
                 bench.pass_time(LAB_PACE, "action_client", action)
             elif not bench.wait_until(lambda seen: not unshown_feedback(seen.main), wait):
-                wait = SHOWN_WITHIN[bench.pace] * HASTE
+                wait = HASTE[bench.pace]
                 # Its queue holds ten messages: a client on a busy machine must have come to those that it has.
                 bench.settle()
         server.await_result_request(END_LIMIT[bench.pace])

@@ -29,8 +29,11 @@ USUAL_PERIOD = 0.5
 LONG_STEP = 2 * STEP
 """Simulated seconds a step while more of a publisher is listened to. A timer that is shorter than a step is called once
 in it: what is counted by such a timer seems uneven in steps of two lengths, and is looked at in real time."""
-SILENCE = 6
-"""Periods of silence after which nothing more is waited for."""
+SILENCE = {Pace.FAST: 3.0, Pace.REAL_TIME: 4.5}
+"""Seconds without any event after which nothing more is waited for. A message that was lost while the two ends met
+holds up all that follow it until its writer's next heartbeat, 3 s later (Fast DDS, ``heartbeatPeriod``)."""
+PERSISTENT = 13
+"""Messages after which a publisher in real time is taken to go on: more than the ten that many a loop is made for."""
 PERSISTS = 1.0
 """Seconds in which a program must not end by itself once it was heard: simulated time may have gone by in a moment."""
 SURE = 2
@@ -201,7 +204,7 @@ class Hears:
     roles = ("publisher",)
 
     def __init__(self, messages: int = 8, long_run: int = 20) -> None:
-        self._messages = {Pace.FAST: messages, Pace.REAL_TIME: ROW}
+        self._messages = messages
         self._long_run = long_run
         self._text: Judge[Publisher] | None = None
         self._course: Judge[Publisher] | None = None
@@ -230,7 +233,7 @@ class Hears:
         bench.stop()
 
     def _hear(self, bench: Bench, topic: str, period: float) -> None:
-        enough = self._enough(bench.before) if bench.pace is Pace.REAL_TIME else self._messages[bench.pace]
+        enough = self._enough(bench.before) if bench.pace is Pace.REAL_TIME else self._messages
         _listen(bench, topic, enough, period)
         if bench.pace is Pace.FAST and bench.wait_until(self._is_simulated, 0.0):
             enough = self._long_run
@@ -240,7 +243,7 @@ class Hears:
         elif bench.pace is Pace.REAL_TIME and bench.heard(topic) >= enough:
             # A row of messages in which none was late has twice the time to come.
             bench.wait_until(
-                lambda evidence: self.keeps_rate(evidence).passed, enough * period, quiet=SILENCE * period
+                lambda evidence: self.keeps_rate(evidence).passed, self._row(bench.before) * period
             )
         if bench.heard(topic) < enough:
             bench.note_whether_it_spins()
@@ -248,15 +251,19 @@ class Hears:
     def _is_simulated(self, evidence: Evidence) -> bool:
         """True if its messages follow the simulated clock: the first ones may have come before it."""
         topic, _ = evidence.reference.only("publisher")
-        return len(simulated(evidence.main.of("message", topic))) >= self._messages[Pace.FAST] // 2
+        return len(simulated(evidence.main.of("message", topic))) >= self._messages // 2
 
     def _enough(self, before: Evidence | None) -> int:
-        """Messages to listen to in real time: as many as in simulated time where it stopped or stumbled in that."""
+        """Messages to listen to in real time: a row where more of them were heard in simulated time before."""
+        return self._row(before) if before is not None and self._is_simulated(before) else PERSISTENT
+
+    def _row(self, before: Evidence | None) -> int:
+        """Messages in a row that must keep to the rate in real time: many where it stumbled in simulated time."""
         if before is None or not self._is_simulated(before):
-            return self._messages[Pace.REAL_TIME]
+            return ROW
         rate = self._simulated_rate(before)
         stumbled = (rate is not None and not rate.even) or not self._holds(self._course, before)
-        return self._long_run if stumbled else self._messages[Pace.REAL_TIME]
+        return self._long_run if stumbled else ROW
 
     def _holds(self, judge: Judge[Publisher] | None, evidence: Evidence) -> bool:
         return judge is None or judge(self.seen(evidence), self.expected(evidence)).passed
@@ -269,7 +276,7 @@ class Hears:
         if evidence.real_time:
             enough = self._enough(evidence.before)
         else:
-            enough = self._long_run if self._is_simulated(evidence) else self._messages[Pace.FAST]
+            enough = self._long_run if self._is_simulated(evidence) else self._messages
         heard = evidence.main.of("message", topic)
         # Who has ended by itself will never have published enough: the task has no end.
         return Publisher(
@@ -315,7 +322,7 @@ class Hears:
             and evidence.main.ending is None
             and _was_faster(evidence.before.main.of("message", topic), wanted)
         )
-        rate = before if exact else rate_of(messages, wanted, self._enough(evidence.before))
+        rate = before if exact else rate_of(messages, wanted, self._row(evidence.before))
         expected = f"one every {wanted:g} s"
         if rate is None:
             return Finding(False, expected, f"{counted(len(messages), 'message')} in all")
@@ -436,7 +443,10 @@ def _was_faster(messages: Sequence[Event], wanted: float) -> bool:
 def _listen(bench: Bench, topic: str, enough: int, period: float, step: float = STEP) -> None:
     missing = enough - bench.heard(topic)
     bench.run_time(
-        2 * missing * period, until=lambda: bench.heard(topic) >= enough, quiet=SILENCE * period, step=step
+        2 * missing * period,
+        until=lambda: bench.heard(topic) >= enough,
+        quiet=SILENCE[bench.pace],
+        step=step,
     )
 
 

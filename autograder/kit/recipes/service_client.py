@@ -52,8 +52,9 @@ AFTERMATH = 1.0
 """Seconds in which a client that has reported its sum may end, or go on and show what else it does."""
 SAYS_MORE = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 """Seconds in which a client that has said something of its last answer, and not the sum, may still say it."""
-HELD = 0.5
-"""Seconds for which an answer is held back: longer than anybody takes who does not really wait for it."""
+HELD = 0.7
+"""Seconds for which an answer is held back: longer than anybody takes who does not really wait for it, and not as long
+as a limit that programs are given, such as half a second."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +103,7 @@ def called(bench: Bench, run: Run, calls: int, *, known: bool = False) -> bool:
     bench.part(run.name, numbers=list(run.numbers), patience_sec=patience)
     meet = partial(meets_service, bench, run, calls, patience)
     if run.name != LATE:
-        done = meets_present(bench, meet, "request", known=known)
+        done = meets_present(bench, meet, "request", known=known, wanted=calls)
     else:
         done = meets_late(bench, lambda lateness: meet(lateness=lateness), "client", "request")
 

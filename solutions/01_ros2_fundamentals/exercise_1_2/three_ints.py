@@ -136,7 +136,7 @@ adder.knows(
 def one_call_only(seen: Client, expected: Client) -> Advice | None:
     """It ends by itself after one call or none."""
     part = next((p for p in seen.served if p.ending and len(requests(p)) < expected.calls), None)
-    if part is None or (not part.endpoints("client") and not requests(part)):
+    if part is None or not (seen.had_client or requests(part)):
         return None
     how_often = "once" if len(requests(part)) == 1 else "not at all"
     return Advice(

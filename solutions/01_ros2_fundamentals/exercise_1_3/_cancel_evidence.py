@@ -68,12 +68,7 @@ def left_before_its_answer(part: Part) -> bool:
 
     Whether its request still arrives, and whether its process is gone before the answer comes, is chance.
     """
-    cancel, ending = part.first("cancel"), part.ending
-    if cancel is None or ending is None:
-        return False
-    later = part.events[part.events.index(cancel) + 1 : part.events.index(ending)]
-    went_on = any(event.kind in ("cancel", "result", "result_request") for event in later) or part.traceback
-    return left_at_once(part, "cancel_answered") or not (went_on or part.said(after=cancel))
+    return part.first("cancel") is not None and left_at_once(part, "cancel_answered")
 
 
 def telling_count(evidence: Evidence) -> int | None:

@@ -60,6 +60,9 @@ FIRST_STATUS = 2
 """Before this feedback message the goal's status is said: a while after its acceptance, before anybody may cancel."""
 FEEDBACK_GAP = {Pace.FAST: 0.03, Pace.REAL_TIME: 0.5}
 """Seconds between two feedback messages outside the window in which a cancel is expected."""
+FIRST_AFTER = 0.25
+"""Seconds from the answer to the goal to its first feedback message in real time: then a client that asks to cancel
+after a whole or a half second does so between two messages."""
 LATE_GAP = 0.2
 """The same in real time after the request."""
 SHORTEST_GAP = 0.25
@@ -232,9 +235,9 @@ def wait_for_next(count: int, elapsed: float) -> float:
 
     Args:
         count: Feedback messages that were sent.
-        elapsed: Seconds since the goal was accepted. The first message follows that at once, at any pace.
+        elapsed: Seconds since the goal was accepted.
     """
-    left = FEEDBACK_GAP[Pace.FAST] + count * FEEDBACK_GAP[Pace.REAL_TIME] - elapsed
+    left = FIRST_AFTER + count * FEEDBACK_GAP[Pace.REAL_TIME] - elapsed
     if count + 1 == FIRST_STATUS:
         # The status takes the rest of the time to the next message.
         left -= LATE_GAP
