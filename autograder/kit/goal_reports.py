@@ -40,12 +40,12 @@ NOT_AWAITED = "it ended without taking in the answer to its goal"
 MANY_REQUESTS = 3
 """Requests for one result that may have a reason; what asks more often goes on asking."""
 
-AT_ONCE = 4.0
+AT_ONCE = 3.6
 """Seconds after an answer in which a client ends that never meant to take it in. A process takes a tenth of a second to
-end, and more than one on a crowded machine. A client that spins for 5 seconds, as many do, ends half a second later
-than this, though its answer was held back; one that spins for 3 ends a second before."""
+end, and more than one on a crowded machine. A client that spins for 5 seconds, as many do, ends later than this by more
+than half a second, though its answer was held back; one that spins for 3 ends a second before."""
 STAYED = 1.5
-"""Seconds after a request of its in which a client that is still there then did not end with it."""
+"""Seconds after a request: of a client that is still there then, it did not go under with its process."""
 _CANCELED = "cancel+ed"
 """In other languages one word may stand for canceled and for aborted."""
 _FAILURES = (_CANCELED, words.ABORTED)
