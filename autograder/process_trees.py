@@ -259,7 +259,9 @@ def _signal(process: Known, number: int, within: float = 0.0) -> bool:
         try:
             if began and started_at(pid) == began:
                 signal.pidfd_send_signal(handle, number)
-                select.select([handle], [], [], within)
+                waiting = select.poll()  # select(2) refuses the descriptors of a grader that has many open
+                waiting.register(handle, select.POLLIN)
+                waiting.poll(within * 1000)
         except PermissionError:
             return False
         finally:

@@ -125,6 +125,26 @@ def test_processes_that_are_ended_one_by_one_do_not_end_at_once() -> None:
         os.close(descriptor)
 
 
+MANY_FILES = """
+import os, resource, subprocess, sys
+from autograder.process_trees import kill, known
+_, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+resource.setrlimit(resource.RLIMIT_NOFILE, (min(hard, 2000), hard))
+sleeper = subprocess.Popen(["sleep", "600"])
+for _ in range(1100):
+    os.dup(0)
+kill(known([sleeper.pid]))
+print(sleeper.wait(60.0))
+"""
+
+
+def test_who_has_many_files_open_can_end_a_process() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", MANY_FILES], capture_output=True, text=True, timeout=180, check=True
+    )
+    assert done.stdout.split() == ["-9"]
+
+
 ENTERED = """
 import os, subprocess, time
 from autograder.process_trees import adopt_orphans, descendants, end_below

@@ -135,9 +135,8 @@ class BoxedJobs:
                     cwd=Path("/"),
                     output_bytes=MAX_ARCHIVE_BYTES,
                 )
-                if (
-                    packed.returncode is None
-                ):  # a few MB take milliseconds: the machine was busy, and no build fails
+                if packed.returncode is None:
+                    # A few MB take milliseconds: the machine was busy, and no build has failed.
                     return Built(None, output, late=PACK_SECONDS), False
                 whole = packed.returncode == 0 and not packed.cut
                 return Built(returncode, output, packed.output if whole else b""), False

@@ -160,11 +160,9 @@ class Asks:
             return Finding(False, expected, f"{name} is a {made[name]}")
         if seen.count > 1:
             return Finding(False, expected, f"{seen.count} servers of {name}")
-        left = (
-            seen.part.ending is not None and not seen.part.traceback and len(seen.answers) < len(seen.asked)
-        )
-        if left or (seen.part.ending is not None and len(seen.answers) < SURE):
-            # The answer of a program that exits with it may or may not get out of it.
+        # The answer of a program that exits with it may or may not get out of it; one that crashes has not given it.
+        enough = SURE if seen.part.traceback else max(SURE, len(seen.asked))
+        if seen.part.ending is not None and len(seen.answers) < enough:
             return Finding(False, expected, "it ended by itself while it was called")
         return Finding(bool(seen.answers), expected, "it answers" if seen.answers else "no call was answered")
 

@@ -88,13 +88,10 @@ def ended_on_the_way(evidence: Evidence) -> Advice | None:
     ending, cancel = part.ending, part.first("cancel")
     if not goals(part) or ending is None or (part.traceback and not meant(part.traceback)):
         return None
-    events = list(part.events)
-    before = events[: events.index(ending)]
+    before = part.events[: part.events.index(ending)]
     if cancel is None and not any(event.kind == "result" for event in before):
         missing = "it had asked to cancel it"
-    elif left_before_its_answer(part) or (
-        cancel is not None and not any(event.kind == "cancel_answered" for event in before)
-    ):
+    elif left_before_its_answer(part):
         missing = "its result was there"
     else:
         return None
