@@ -257,6 +257,10 @@ class Evidence:
         """True if the subject is a class or a function of a notebook, and not a program."""
         return any(e.kind == "subject" and e.name in _OF_A_NOTEBOOK for part in self for e in part.events)
 
+    def ever_had(self, role: str) -> bool:
+        """True if an endpoint was seen in any run of both looks: who ends at once may be gone before it is known."""
+        return any(part.endpoints(role) for part in (*self, *(self.before or ())))
+
     def __iter__(self) -> Iterator[Part]:
         return iter(self.parts)
 

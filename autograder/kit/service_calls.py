@@ -54,9 +54,8 @@ class Client:
 
     @property
     def had_client(self) -> bool:
-        """True if a client was seen in any run: one that ends at once may be gone before the graph tells of it."""
-        before = self.evidence.before if isinstance(self.evidence, Evidence) else None
-        return any(part.endpoints("client") for part in (*self.evidence.parts, *(before or ())))
+        """True if a client was seen in any run."""
+        return isinstance(self.evidence, Evidence) and self.evidence.ever_had("client")
 
     def called_each_time(self) -> bool:
         """True if each run with a service came to a call: time had no part in the number of calls then."""

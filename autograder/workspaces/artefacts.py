@@ -124,8 +124,8 @@ def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> None:
         raise BadArtefacts(f"what the build made cannot be read: {error}") from error
 
 
-def check_room(size: int, most: int, number: int = 0) -> int:
-    """The size of what a build made.
+def check_room(size: int, most: int, number: int = 0) -> None:
+    """Look at the size of what a build made.
 
     Args:
         size: Bytes that its files and folders take.
@@ -139,7 +139,6 @@ def check_room(size: int, most: int, number: int = 0) -> int:
         raise BadArtefacts(
             f"the build made too much: {MAX_FILES} files and folders, and {most // 1000} kB are left for it"
         )
-    return size
 
 
 def _take(tar: tarfile.TarFile, member: tarfile.TarInfo, folder: Path) -> None:

@@ -69,9 +69,10 @@ class GradedBuilds(Builds):
         if made.install is None or order.key in self._paid:
             return made
         try:
-            self._room -= artefacts.check_room(cache.size_of(made.install), self._room)
+            artefacts.check_room(size := cache.size_of(made.install), self._room)
         except artefacts.BadArtefacts as error:
             return failed(found, f"error: {error}")
+        self._room -= size
         self._paid.add(order.key)
         return made
 

@@ -196,6 +196,11 @@ def checked(sources: Iterable[Source]) -> list[Source]:
     return [source for source in _bounded(list(taken.values())) if is_source(source.path)]
 
 
+def room_of(source: Source) -> int:
+    """How much of :data:`MAX_HELD` a source takes."""
+    return len(source.data or b"") + len(source.path)
+
+
 def receive(lines: Lines, count: int, path: str, folder: Path) -> None:
     """Write down sources that somebody else sends, once nothing about them can do harm.
 
@@ -216,7 +221,7 @@ def receive(lines: Lines, count: int, path: str, folder: Path) -> None:
     room = MAX_HELD
     for _ in range(count):
         source = lines.hear(Source)
-        room -= len(source.data or b"") + len(source.path)
+        room -= room_of(source)
         if room >= 0:  # else it is heard, since more may be said behind it, and not kept
             taken.append(source)
     if room < 0:

@@ -178,9 +178,11 @@ class TestBench:
     # --- the subject ---------------------------------------------------------------------------------------
 
     def start(self, *arguments: Any, **options: Any) -> None:
-        """Start the subject, once its participant knows which servers of the judge's there are, and which are gone."""
+        """Start the subject, once it knows what the judge has put on the graph and what is gone from it."""
         if (self._there or self._gone) and not self._subject.knows(there=self._there, gone=self._gone):
-            raise JudgeFailed("the news of which services there are did not arrive; is the machine too busy?")
+            raise JudgeFailed(
+                "the news of the nodes that the judge put on the graph did not arrive; is the machine too busy?"
+            )
         if self._announcements is not None:
             self._older_processes = {process_of(self.wire.node), *self._announcements.heard()}
         self._subject.start(self._recorder, arguments, options)
@@ -266,9 +268,9 @@ class TestBench:
         return publisher
 
     def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
-        """Put a node on the graph, until the next part has planted others."""
+        """Put a node on the graph, until the next part has planted others; a run begins once the subject knows it."""
         assert self._decoys is not None
-        self._decoys.plant(name, publishes=publishes, subscribes=subscribes)
+        self._there |= self._decoys.plant(name, publishes=publishes, subscribes=subscribes)
 
     def serve(self, service: str, type_name: str, answer: Answer, *, hold: int = 0) -> RecordedServer:
         """Serve until the part ends; the answer to the request of the number ``hold`` waits for its release."""

@@ -9,11 +9,14 @@ from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
+from autograder.judge.bench.graph import topic_endpoints
 from autograder.judge.bench.interfaces import interface
 from autograder.ros_participant import receivers_wait
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from autograder.judge.bench.graph import Endpoint
 
 
 class DecoyNodes:
@@ -29,19 +32,24 @@ class DecoyNodes:
         self._decoys: list[_Decoy] = []
         self._planted = 0
 
-    def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
-        """Put a node with these endpoints on the graph, as any node of the course has them; nothing spins it."""
+    def plant(
+        self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]
+    ) -> set[Endpoint]:
+        """Put a node with these topics on the graph, as any node of the course has them; nothing spins it.
+
+        Returns:
+            Its endpoints on these topics.
+        """
         if self._planted == len(self._decoys):
             self._decoys.append(_Decoy(self._domain_id))
-        node = self._decoys[self._planted].plant(name)
+        decoy = self._decoys[self._planted]
         self._planted += 1
-        for topic, type_name in publishes.items():
-            node.create_publisher(interface(type_name), topic, QoSProfile(depth=10))
-        for topic, type_name in subscribes.items():
-            node.create_subscription(interface(type_name), topic, lambda _: None, QoSProfile(depth=10))
+        return decoy.plant(name, publishes, subscribes)
 
     def clear(self) -> None:
-        """Let the nodes be replaced by those that are planted next."""
+        """Take the endpoints off the graph, and let the nodes be replaced by those that are planted next."""
+        for decoy in self._decoys[: self._planted]:
+            decoy.clear()
         self._planted = 0
 
     def close(self) -> None:
@@ -57,15 +65,27 @@ class _Decoy:
         self._context = Context()
         self._context.init(args=["--ros-args", "--disable-external-lib-logs"], domain_id=domain_id)
         self._node: Node | None = None
+        self._ends = contextlib.ExitStack()
 
-    def plant(self, name: str) -> Node:
+    def plant(self, name: str, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> set[Endpoint]:
         with receivers_wait() if self._node is None else contextlib.nullcontext():
             node = Node(name, context=self._context, use_global_arguments=False)
         self._destroy()
         self._node = node
-        return node
+        qos = QoSProfile(depth=10)
+        for topic, type_name in publishes.items():
+            publisher = node.create_publisher(interface(type_name), topic, qos)
+            self._ends.callback(node.destroy_publisher, publisher)
+        for topic, type_name in subscribes.items():
+            subscription = node.create_subscription(interface(type_name), topic, lambda _: None, qos)
+            self._ends.callback(node.destroy_subscription, subscription)
+        return topic_endpoints(node, {*publishes, *subscribes})
+
+    def clear(self) -> None:
+        self._ends.close()
 
     def _destroy(self) -> None:
+        self.clear()
         if self._node is not None:
             self._node.destroy_node()
 

@@ -193,9 +193,7 @@ Endpoint = tuple[str, str]
 
 
 def server_endpoints(node: Node, services: Iterable[str]) -> set[Endpoint]:
-    """The endpoints of a node's servers, by the identifiers under which every participant of the domain knows them.
-
-    Names do not tell one server from the next: the one of an earlier run is taken away, and its name comes again.
+    """The endpoints of a node's servers.
 
     A service is a reader of requests and a writer of replies (rmw_fastrtps_shared_cpp, namespace_prefix.cpp), and a
     client takes it for ready when it knows both.
@@ -204,17 +202,27 @@ def server_endpoints(node: Node, services: Iterable[str]) -> set[Endpoint]:
         node: Whose servers.
         services: Their full names.
     """
-    found: set[Endpoint] = set()
-    for name in services:
-        requests, replies = f"rq{name}Request", f"rr{name}Reply"
-        known = (
-            (requests, node.get_subscriptions_info_by_topic(requests, no_mangle=True)),
-            (replies, node.get_publishers_info_by_topic(replies, no_mangle=True)),
-        )
-        found |= {
-            (topic, bytes(info.endpoint_gid).hex())
-            for topic, infos in known
-            for info in infos
-            if info.node_name == node.get_name()
-        }
-    return found
+    return _endpoints(node, [topic for name in services for topic in (f"rq{name}Request", f"rr{name}Reply")])
+
+
+def topic_endpoints(node: Node, topics: Iterable[str]) -> set[Endpoint]:
+    """The endpoints of a node's publishers and subscriptions on topics, which are given by their full names."""
+    return _endpoints(node, [f"rt{name}" for name in topics])
+
+
+def _endpoints(node: Node, topics: Iterable[str]) -> set[Endpoint]:
+    """A node's endpoints, by the identifiers under which every participant of the domain knows them.
+
+    Names do not tell one endpoint from the next: one of an earlier run is taken away, and its name comes again.
+
+    Args:
+        node: Whose endpoints.
+        topics: The middleware's names of topics.
+    """
+    return {
+        (topic, bytes(info.endpoint_gid).hex())
+        for topic in topics
+        for infos in (node.get_publishers_info_by_topic, node.get_subscriptions_info_by_topic)
+        for info in infos(topic, no_mangle=True)
+        if info.node_name == node.get_name()
+    }

@@ -17,7 +17,7 @@ from autograder.messages import workspaces
 from autograder.messages.checks import Collect, FromNotebook, Sources
 from autograder.messages.lines import Hangup, Lines, NotUnderstood
 from autograder.messages.workspaces import Source
-from autograder.workspaces.sources import MAX_FILES, MAX_HELD, BadSources, check_path, checked
+from autograder.workspaces.sources import MAX_FILES, MAX_HELD, BadSources, check_path, checked, room_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -154,7 +154,7 @@ class PathSubject(InOwnProcesses):
             while not isinstance(said := self._notebook.hear(FromNotebook), Sources):
                 if isinstance(said, Source) and len(sources) <= MAX_FILES and room >= 0:
                     sources.append(said)
-                    room -= len(said.data or b"") + len(said.path)
+                    room -= room_of(said)
         except NotUnderstood:
             return [], "a file has not the form of one"
         wrong = "".join(c for c in said.trouble[:500] if c.isprintable())

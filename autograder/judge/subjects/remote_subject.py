@@ -34,7 +34,7 @@ MAX_SECONDS = 3600.0
 CONSTRUCT_LIMIT = 10.0
 """Seconds of wall time in which a node's constructor must have come to its end."""
 NEWS_LIMIT = 20.0
-"""Seconds in which the notebook's participant must know what the judge serves; it takes milliseconds."""
+"""Seconds in which the notebook's participant must know what the judge has put up; it takes milliseconds."""
 STOP_LIMIT = 3.0
 """Seconds of wall time in which the notebook must have stopped a run."""
 

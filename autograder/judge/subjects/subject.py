@@ -28,7 +28,7 @@ class Subject(Protocol):
         """Begin the next run with a fresh participant: an old one would meet the judge's new one only slowly."""
 
     def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
-        """Wait until the participant of the next run sees what the judge serves, and nothing of what it has taken away.
+        """Wait until the participant of the next run sees what the judge has put up, and nothing of what is gone.
 
         Each participant learns that by itself and in its own time. A subject must not be told, by what it still sees
         of an earlier run, that a service is there.

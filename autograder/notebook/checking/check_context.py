@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 _GLOBAL_EXECUTOR = "__executor"
 """The name in ``rclpy/__init__.py``."""
+_UNNAMED = "_NODE_"
+"""The beginning of the names of nodes that are not known yet (rmw_dds_common)."""
 MEETING = 0.5
 """Seconds of wall time for which a run waits until the judge is met. Without it, it is only met later."""
 MEETING_POLL = 0.002
@@ -108,6 +110,8 @@ class CheckContext:
     def sees(self, there: Sequence[Endpoint], gone: Sequence[Endpoint], within: float) -> bool:
         """Wait until this participant knows all of the first and none of the second; whether that came.
 
+        An endpoint and the node that it belongs to are announced separately; where it is to be there, both are known.
+
         Args:
             there: Endpoints that are on the graph.
             gone: Endpoints that were.
@@ -116,17 +120,19 @@ class CheckContext:
         deadline = time.monotonic() + within
         while True:
             known = self._known({topic for topic, _ in [*there, *gone]})
-            if known.issuperset(map(tuple, there)) and known.isdisjoint(map(tuple, gone)):
+            with_its_node = {end for end, node in known.items() if not node.startswith(_UNNAMED)}
+            if with_its_node.issuperset(map(tuple, there)) and known.keys().isdisjoint(map(tuple, gone)):
                 return True
             if time.monotonic() > deadline:
                 return False
             time.sleep(MEETING_POLL)
 
-    def _known(self, topics: set[str]) -> set[tuple[str, ...]]:
+    def _known(self, topics: set[str]) -> dict[tuple[str, ...], str]:
+        """The endpoints on these topics, each with the name of its node."""
         node = self._keeper
         assert node is not None
         return {
-            (topic, bytes(info.endpoint_gid).hex())
+            (topic, bytes(info.endpoint_gid).hex()): info.node_name
             for topic in topics
             for infos in (node.get_publishers_info_by_topic, node.get_subscriptions_info_by_topic)
             for info in infos(topic, no_mangle=True)

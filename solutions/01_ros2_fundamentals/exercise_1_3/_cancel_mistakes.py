@@ -53,14 +53,7 @@ def not_waited_for(evidence: Evidence) -> Advice | None:
     """It was there, and no goal of its ever reached the server, which came a moment after it."""
     part = evidence.main
     returned_silently = part.returned is not None and not part.said()
-    # One that ends in its first moments may be gone before its endpoints are known: one run with them is enough.
-    runs = [*evidence, *(evidence.before or ())]
-    if (
-        goals(part)
-        or part.traceback
-        or returned_silently
-        or not any(run.endpoints("action_client") for run in runs)
-    ):
+    if goals(part) or part.traceback or returned_silently or not evidence.ever_had("action_client"):
         return None
     return Advice(
         "The server was there, or came a moment after your client, and no goal of your client ever reached it.",
