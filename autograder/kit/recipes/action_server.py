@@ -76,14 +76,14 @@ class SendsGoals(SeenAsItIs):
         )
 
     def _goal_not_succeeded(self, evidence: Evidence) -> Advice | None:
-        """The goal is aborted because nobody said that it succeeded."""
+        """The goal is aborted: the subject says so, or does not say that it succeeded."""
         aborted = [seen for seen in self._good(evidence) if seen.status == ABORTED]
         if not aborted or traceback_of(evidence):
             return None
         return Advice(
-            "The goal ended as ABORTED (6) although the work was done: rclpy assumes so when the execute callback "
-            "returns without saying how the goal ended.",
-            "Call succeed() of the goal handle before you return the result.",
+            "The goal ended as ABORTED (6) although the work was done: the execute callback called abort() or returned "
+            "without a word about how the goal ended, which rclpy takes for abort().",
+            "Call succeed() of the goal handle before you return the result. abort() is for work that has failed.",
         )
 
     def _cancel_refused(self, evidence: Evidence) -> Advice | None:
