@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 from autograder.kit.draft import Draft
 from autograder.kit.model import Advice, Finding
-from autograder.kit.recipes.publisher import Hears, Publisher
+from autograder.kit.recipes.publisher import Hears
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence
+    from autograder.kit.published_texts import Publisher
 
 heard = Hears(messages=8, long_run=20)
 first_move = Draft(

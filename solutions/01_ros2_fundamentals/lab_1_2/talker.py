@@ -9,7 +9,8 @@ import re2
 from autograder.kit.draft import Draft
 from autograder.kit.in_words import counted, first_difference
 from autograder.kit.model import Advice, Finding
-from autograder.kit.recipes.publisher import Hears, Publisher, template
+from autograder.kit.published_texts import Publisher, template
+from autograder.kit.recipes.publisher import Hears
 
 heard = Hears(messages=8, long_run=20)
 MANY = 3

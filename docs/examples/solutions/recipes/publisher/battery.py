@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from autograder.kit.draft import Draft
 from autograder.kit.model import Finding
-from autograder.kit.recipes.publisher import Hears, Publisher
+from autograder.kit.recipes.publisher import Hears
+
+if TYPE_CHECKING:
+    from autograder.kit.published_texts import Publisher
 
 heard = Hears(messages=8, long_run=20)
 battery = Draft(
