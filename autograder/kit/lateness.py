@@ -24,6 +24,9 @@ ANSWERS_LATE, ANSWERS_SOON = 0.7, 0.12
 is a limit that programs are given, such as half a second."""
 PATIENT_WITH_AN_ANSWER = 0.9
 """Seconds after which a client that has given up on an answer was patient: on a busy machine it may have missed it."""
+PATIENT_WITH_A_RESULT = 4.0
+"""The same for the result of a goal, whose feedback takes longer on a busy machine: between the 3 and the 5 seconds for
+which many a client waits."""
 TRIES = 3
 """The number of times that such a client is started again: a slow machine may miss what comes soon."""
 PATIENT = 1.2
@@ -49,6 +52,13 @@ def was_patient_with_an_answer(part: Part, requests: Sequence[str]) -> bool:
     """
     request = next((event for event in reversed(part.events) if event.kind in requests), None)
     return _waited_since(part, request, PATIENT_WITH_AN_ANSWER)
+
+
+def missed_a_result(part: Part) -> bool:
+    """True if a client that ended before its goal did had waited for the result as long as anybody may ask."""
+    result, ending = part.first("result"), part.ending
+    missed = ending is not None and (result is None or ending.t <= result.t)
+    return missed and _waited_since(part, part.first("result_request"), PATIENT_WITH_A_RESULT)
 
 
 def _waited_since(part: Part, beginning: Event | None, seconds: float) -> bool:

@@ -17,6 +17,7 @@ from autograder.kit.lateness import (
     TRIES,
     meets_late_action,
     meets_present,
+    missed_a_result,
     was_patient,
     was_patient_with_an_answer,
 )
@@ -124,6 +125,26 @@ def test_a_patient_client_of_an_action_is_started_again_with_less_to_wait_for(
     bench = FakeBench(*runs)
     meets_late_action(cast("Bench", bench), bench.meet, ["goal"])
     assert bench.met == met
+
+
+ASKED = Event(1.2, "result_request", "/fibonacci")
+
+
+@pytest.mark.parametrize(
+    ("events", "missed"),
+    [
+        ([ASKED, ended(6.2), Event(7.0, "result", "/fibonacci")], True),
+        ([ASKED, ended(6.2)], True),
+        ([ASKED, Event(6.0, "result", "/fibonacci"), ended(6.2)], False),
+        ([ASKED, ended(4.3)], False),  # after 3 s
+        ([GOAL, ended(9.0)], False),
+        ([ASKED], False),
+    ],
+)
+def test_who_waits_for_a_result_for_more_than_four_seconds_has_missed_it(
+    events: list[Event], missed: bool
+) -> None:
+    assert missed_a_result(Part("", {}, events)) is missed
 
 
 @pytest.mark.parametrize(

@@ -63,20 +63,20 @@ class PatientClient:
 
 def test_feedback_begins_when_the_client_has_asked_for_the_result() -> None:
     client = PatientClient()
-    assert works_on_a_goal(cast("Bench", client), cast("ActionCounterpart", client), "succeeded", 2)
+    assert works_on_a_goal(cast("Bench", client), cast("ActionCounterpart", client), "succeeded", 2, 0.5)
     kinds = [event.kind for event in client.events if event.kind != "time"]
     assert kinds == ["goal_answered", "result_request", "feedback", "feedback", "result"]
 
 
 def test_the_last_feedback_comes_at_a_pace_whether_it_was_shown_or_not() -> None:
     client = PatientClient()
-    assert works_on_a_goal(cast("Bench", client), cast("ActionCounterpart", client), "succeeded", 5)
+    assert works_on_a_goal(cast("Bench", client), cast("ActionCounterpart", client), "succeeded", 5, 0.5)
     kinds = [event.kind for event in client.events if event.kind in ("feedback", "time")]
     assert kinds == ["feedback"] * (5 - AT_PACE) + ["feedback", "time"] * (AT_PACE - 1) + ["feedback"]
 
 
 def test_a_result_has_one_number_more_than_its_order_says() -> None:
     client = PatientClient()
-    assert works_on_a_goal(cast("Bench", client), cast("ActionCounterpart", client), "succeeded", 1)
+    assert works_on_a_goal(cast("Bench", client), cast("ActionCounterpart", client), "succeeded", 1, 0.5)
     (result,) = (event for event in client.events if event.kind == "result")
     assert len(result.data["fields"]["sequence"]) == 42

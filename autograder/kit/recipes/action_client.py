@@ -17,7 +17,15 @@ from autograder.kit.draft import SeenAsItIs
 from autograder.kit.giving_up import GIVE_UP_LIMIT, PATIENCE, await_it, drawn_patience
 from autograder.kit.goal_reports import ABORTED, ABSENT, FEEDBACKS, LATE, REFUSED, unshown_feedback
 from autograder.kit.hangs import HANGS
-from autograder.kit.lateness import hold_back, meets_late_action, meets_present
+from autograder.kit.lateness import (
+    ANSWERS_SOON,
+    SOON,
+    again_while,
+    hold_back,
+    meets_late_action,
+    meets_present,
+    missed_a_result,
+)
 from autograder.kit.model import Bench, Mistake, Pace
 
 if TYPE_CHECKING:
@@ -32,7 +40,7 @@ ORDERS = {LATE: (41, 46), REFUSED: (-9, -1), ABORTED: (0, 0), ABSENT: (11, 30)}
 SHOWN_WITHIN = {Pace.FAST: 0.5, Pace.REAL_TIME: 1.5}
 """Seconds at most in which a client shows a feedback message before the next one is sent."""
 HASTE = {Pace.FAST: 0.1, Pace.REAL_TIME: 0.075}
-"""The same once that time was used up, so that the result of a silent client's goal comes after some 3.5 s: between the
+"""The same once it has not shown one, so that the result of a silent client's goal comes after some 3.5 s: between the
 3 and the 5 seconds for which many a client waits."""
 AT_PACE = 3
 """Feedback messages at the end that come at the pace of the lab's server, whether the ones before were shown or not:
@@ -78,14 +86,22 @@ def start(bench: Bench, inputs: Mapping[str, Any], *, spare: float = 0.0) -> Non
 def late(bench: Bench) -> bool:
     """One run with a server that comes late; whether the subject came to an end of its work."""
     inputs = begin(bench, LATE)
-    done = meets_late_action(
-        bench, lambda lateness, held: meets_late_server(bench, inputs, lateness, held), ["goal"]
-    )
+
+    def meet(lateness: float, held: float) -> bool:
+        return meets_late_server(bench, inputs, lateness, held, SHOWN_WITHIN)
+
+    def in_haste() -> bool:
+        return meets_late_server(bench, inputs, SOON, ANSWERS_SOON, HASTE)
+
+    done = meets_late_action(bench, meet, ["goal"])
+    done = again_while(bench, missed_a_result, in_haste, done)
     bench.stop()
     return done
 
 
-def meets_late_server(bench: Bench, inputs: Mapping[str, Any], lateness: float, held: float) -> bool:
+def meets_late_server(
+    bench: Bench, inputs: Mapping[str, Any], lateness: float, held: float, shown_within: Mapping[Pace, float]
+) -> bool:
     """Start the subject and let it wait for its server; whether it came to an end of its work.
 
     Args:
@@ -93,6 +109,7 @@ def meets_late_server(bench: Bench, inputs: Mapping[str, Any], lateness: float, 
         inputs: What the subject is started with.
         lateness: Seconds after its client at which the server comes.
         held: Seconds that the answer to the goal is held back.
+        shown_within: Seconds that it has to show each feedback message, until it has not shown one.
     """
     action, type_name = bench.reference.only("action_client")
     start(bench, inputs, spare=lateness)
@@ -100,7 +117,7 @@ def meets_late_server(bench: Bench, inputs: Mapping[str, Any], lateness: float, 
         return bench.await_end(0.0)
     bench.let_wait(lateness)
     server = bench.serve_action(action, type_name, goal_answer_takes=held)
-    return works_on_a_goal(bench, server, "succeeded", FEEDBACKS)
+    return works_on_a_goal(bench, server, "succeeded", FEEDBACKS, shown_within[bench.pace])
 
 
 def meets_server(bench: Bench, *, accept: bool = True) -> ActionCounterpart:
@@ -124,14 +141,24 @@ def aborted(bench: Bench, known: bool) -> None:
 
     def meet() -> bool:
         start(bench, inputs)
-        return works_on_a_goal(bench, meets_server(bench), "aborted", 1)
+        return works_on_a_goal(bench, meets_server(bench), "aborted", 1, HASTE[bench.pace])
 
     meets_present(bench, meet, "goal", known=known)
     bench.stop()
 
 
-def works_on_a_goal(bench: Bench, server: ActionCounterpart, status: str, feedbacks: int) -> bool:
-    """Send feedback for the subject's goal and end it; whether the subject came to an end of its work."""
+def works_on_a_goal(
+    bench: Bench, server: ActionCounterpart, status: str, feedbacks: int, shown_within: float
+) -> bool:
+    """Send feedback for the subject's goal and end it; whether the subject came to an end of its work.
+
+    Args:
+        bench: Where it happens.
+        server: The judge's server.
+        status: How the goal ends, such as ``"succeeded"``.
+        feedbacks: Feedback messages before that.
+        shown_within: Seconds that the subject has to show each of them, until it has not shown one.
+    """
     # As many as an int32 allows, so that nobody can say them all.
     numbers = bench.random.sample(range(10**8, 10**9), feedbacks + 2)
     newest = bench.random.sample(range(10**8, 10**9), feedbacks)
@@ -141,10 +168,9 @@ def works_on_a_goal(bench: Bench, server: ActionCounterpart, status: str, feedba
     result.insert(-1, result[1])
     done = server.await_goal(GOAL_LIMIT)
     if done:
-        wait = SHOWN_WITHIN[bench.pace]
         # The first feedback must not come together with the goal's answer: what a client that takes in one event and
         # ends has then would be chance. Who goes on asks for the result next.
-        server.await_result_request(wait)
+        server.await_result_request(SHOWN_WITHIN[bench.pace])
         action, _ = bench.reference.only("action_client")
         for count, last in enumerate(newest, start=2):
             # The last number of a message is in no other one: who leaves out a message cannot make up for it.
@@ -152,8 +178,8 @@ def works_on_a_goal(bench: Bench, server: ActionCounterpart, status: str, feedba
             left = feedbacks + 1 - count
             if 0 < left < AT_PACE:
                 bench.pass_time(LAB_PACE, "action_client", action)
-            elif not bench.wait_until(lambda seen: not unshown_feedback(seen.main), wait):
-                wait = HASTE[bench.pace]
+            elif not bench.wait_until(lambda seen: not unshown_feedback(seen.main), shown_within):
+                shown_within = HASTE[bench.pace]
                 # Its queue holds ten messages: a client on a busy machine must have come to those that it has.
                 bench.settle()
         server.await_result_request(END_LIMIT[bench.pace])
