@@ -126,6 +126,8 @@ DRAWS = (
     Draw("tests/workspaces/test_graded_notebooks.py::test_the_master_gets_full_marks[", 1),
     Draw("tests/workspaces/test_graded_notebooks.py::test_answers_are_judged_as_in_a_terminal[", 1),
     Draw("tests/masters/test_programs.py::test_the_program_earns_full_marks[", 2),
+    Draw("tests/notebook/checking/test_patience_in_cells.py::test_who_keeps_the_patience_is_right[", 3),
+    Draw("tests/notebook/checking/test_patience_in_cells.py::test_who_waits_by_another_limit_is_wrong[", 3),
     Draw("tests/environment/ros2_command/test_graph.py::", 8),
     Draw("tests/environment/ros2_command/test_launch_nodes.py::test_nodes_with_remapping", 1),
     Draw("tests/grading/test_fail_closed.py::test_a_disk_that_is_full_at_any_moment[", 4),
