@@ -37,9 +37,8 @@ def test_a_run_waits_until_the_planted_nodes_are_known_and_the_earlier_ones_gone
             return own.sees(sorted(there), sorted(gone), 10.0)
 
         monkeypatch.setattr(CommandSubject, "knows", knows)
-        monkeypatch.setattr(
-            CommandSubject, "shares_participant", True
-        )  # one judge's participant for all parts
+        # So that the judge has one participant for all parts, and what is gone can be asked for.
+        monkeypatch.setattr(CommandSubject, "shares_participant", True)
         for name in ("first", "second"):
             bench.part(name)
             bench.plant(name, **PLANTED)
