@@ -100,7 +100,6 @@ def grade(
     directory = ClassDirectory(Path(path))
     check_configuration(directory)
     if scheduler is None:
-        sandboxing.require(directory)
         backend = backends.local(directory, jobs, judge)
     else:
         from autograder.grading.cluster.connection import check_address, check_dask

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
 
 from rich import box
+from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -91,9 +92,11 @@ def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterato
     """
     grid = _Grid.of(rows, diagnoses=diagnoses)
     left = list(grid.names)
-    # Each column is measured once: a class has many rows, and rich looks at every cell.
+    # A class has many rows, and rich is slow to measure a cell: of each column only the widest one is measured.
+    widest = grid.of_the_widest()
+    no_column = _needs(widest.table([]), console)
+    widths = {key: _needs(widest.table([key]), console) - no_column for key in left}
     without_total, with_total = _needs(grid.table([]), console), _needs(grid.table([], is_last=True), console)
-    widths = {key: _needs(grid.table([key]), console) - without_total for key in left}
 
     def fits(count: int) -> bool:
         bare = with_total if count == len(left) else without_total
@@ -133,6 +136,14 @@ class _Grid:
             students.setdefault(row.student, []).append(row)
         results = {(row.student, row.assignment, row.exercise): row for row in rows}
         return cls(columns(rows), students, results, diagnoses)
+
+    def of_the_widest(self) -> Self:
+        """A grid of one student who has the widest cell of each column."""
+        student = next(iter(self.students))
+        by_width = sorted(self.results.values(), key=lambda row: cell_len(_cell(row, self.diagnoses).plain))
+        # Of the rows of one column the last one stays, which is the widest.
+        results = {(student, row.assignment, row.exercise): row for row in by_width}
+        return replace(self, students={student: self.students[student]}, results=results)
 
     def table(self, keys: Sequence[tuple[str, str]], *, is_last: bool = False) -> Table:
         """A table of these columns; the last one has what being late costs, what is dropped and the total, too."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import functools
 import io
 import unicodedata
 from typing import TYPE_CHECKING
@@ -24,8 +25,9 @@ def csv_text(rows: Iterable[Iterable[str | float]]) -> str:
     """Rows as the text of a CSV file. Texts are defused; numbers stay numbers."""
     text = io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
+    as_text = functools.cache(defused)  # in the rows of a class most texts stand again and again
     for row in rows:
-        writer.writerow([defused(cell) if isinstance(cell, str) else f"{cell:g}" for cell in row])
+        writer.writerow([as_text(cell) if isinstance(cell, str) else f"{cell:g}" for cell in row])
     return text.getvalue()
 
 

@@ -41,9 +41,14 @@ def local(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[E
         directory: The class.
         jobs: Notebooks at once; as many as processors and memory allow where it is None.
         judge: What makes a judge, as ``module:class``; the real one where empty.
+
+    Raises:
+        SandboxMissing: Submissions cannot be boxed on this machine; the message says what to do.
     """
-    from autograder.grading.running import engine
+    from autograder.grading.running import engine, sandboxing
     from autograder.grading.running.worker import JUDGE
+
+    sandboxing.require(directory)
 
     def execute(tasks: Iterable[Task], on_start: Callable[[Task], None]) -> Generator[Done, None, None]:
         scratch = directory.scratch() / _BATCH

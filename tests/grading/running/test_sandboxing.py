@@ -50,6 +50,19 @@ def test_what_was_typed_is_noted_in_the_report_and_in_the_feedback(
     assert NOTE in page
 
 
+def test_a_class_of_which_nothing_is_executed_needs_none(
+    tiny: TinyClass, with_fake_judge: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tiny.submit("ada", 10)
+    tiny.grade(judge=with_fake_judge)
+    monkeypatch.setattr(sandbox, "why_impossible", lambda: WHY)
+    assert tiny.grade(judge=with_fake_judge).reused == 1
+    tiny.submit("bob", 7)
+    with pytest.raises(SandboxMissing):
+        tiny.grade(judge=with_fake_judge)
+    assert tiny.scores("ada") == {"lab_1_2-talker": 10, "lab_1_2-listener": 10}
+
+
 def test_a_result_without_a_sandbox_never_stands_for_one_with(tiny: TinyClass, with_fake_judge: str) -> None:
     tiny.submit("ada", 10)
     sandboxing.switch_off(tiny.path)
