@@ -107,7 +107,7 @@ def read(path: Path) -> Appeal:
 
 def _lines(value: Any, indent: str, before: str = "", after: str = "") -> Iterator[str]:
     """JSON in which what is short stands on one line."""
-    whole = json.dumps(value, ensure_ascii=False)
+    whole = _json(value)
     inside = (
         (list(value.items()) if isinstance(value, dict) else value) if isinstance(value, (dict, list)) else ()
     )
@@ -118,10 +118,18 @@ def _lines(value: Any, indent: str, before: str = "", after: str = "") -> Iterat
     for place, item in enumerate(inside):
         comma = "," if place + 1 < len(inside) else ""
         if isinstance(value, dict):
-            yield from _lines(item[1], f"{indent} ", f"{json.dumps(item[0], ensure_ascii=False)}: ", comma)
+            yield from _lines(item[1], f"{indent} ", f"{_json(item[0])}: ", comma)
         else:
             yield from _lines(item, f"{indent} ", "", comma)
     yield f"{indent}{'}' if isinstance(value, dict) else ']'}{after}"
+
+
+def _json(value: Any) -> str:
+    """JSON on one line, in which what would move a cursor or turn a line around is escaped; it reads back the same."""
+    text = json.dumps(value, ensure_ascii=False)
+    return (
+        text if text.isprintable() else "".join(c if c.isprintable() else json.dumps(c)[1:-1] for c in text)
+    )
 
 
 def _is_event(value: Any) -> bool:

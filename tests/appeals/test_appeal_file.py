@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
+import msgspec
 import pytest
 
 from autograder.appeals import appeal_file
+from autograder.appeals.appeal_file import Appeal, Cell
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-    from autograder.appeals.appeal_file import Appeal
 
 
 def test_what_was_written_is_read_back(file: Path, appeal: Appeal) -> None:
@@ -35,6 +35,17 @@ def test_a_person_finds_each_thing_on_a_line(file: Path) -> None:
     assert len(messages) > 3
     for line in messages:
         assert json.loads(line.rstrip(","))["name"] == "/chatter"
+
+
+def test_nothing_in_it_turns_a_line_around_or_moves_the_cursor(appeal: Appeal, tmp_path: Path) -> None:
+    evil = "# \u202e tset \x9b31m \u2028 \udc80 \U000e0001 \N{LATIN SMALL LETTER E WITH ACUTE}"
+    odd = msgspec.structs.replace(appeal, solution=[Cell("cell", [evil])])
+    file = tmp_path / "odd.json"
+    file.write_bytes(appeal_file.dump(odd))
+    text = file.read_text(encoding="utf-8")
+    assert all(map(str.isprintable, text.split("\n")))
+    assert "\N{LATIN SMALL LETTER E WITH ACUTE}" in text
+    assert appeal_file.read(file) == odd
 
 
 def test_another_layout_and_a_mark_of_earlier_files_change_nothing(file: Path, appeal: Appeal) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 from dataclasses import dataclass
 from datetime import datetime  # noqa: TC003  (msgspec reads the annotations)
 from typing import TYPE_CHECKING
@@ -118,13 +119,14 @@ class CollectedRecords:
         write_whole(self._path(assignment, student), msgspec.json.encode(history))
 
     def keep(self, assignment: str, student: str, content: str, data: bytes) -> None:
-        """Keep the bytes of a notebook that is replaced.
+        """Keep the bytes of a notebook that is replaced, packed: what is kept must not be larger than what was sent.
 
         Raises:
             OSError: They could not be written.
         """
         # No student's record is called so, whatever the student is called.
-        write_whole(self._folder / assignment / f"{student}.kept" / f"{content[:16]}.ipynb", data)
+        file = self._folder / assignment / f"{student}.kept" / f"{content[:16]}.ipynb.gz"
+        write_whole(file, gzip.compress(data, mtime=0))
 
     def _path(self, assignment: str, student: str) -> Path:
         return self._folder / assignment / f"{student}.json"

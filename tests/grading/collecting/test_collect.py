@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import io
 import os
 import struct
@@ -53,6 +54,15 @@ def placed(report: CollectReport) -> dict[str, str]:
 
 def why(report: CollectReport) -> str:
     return "\n".join(f"{one.label}: {one.reason}" for one in report.having(State.NOT_PLACED))
+
+
+def kept_files(klass: TinyClass) -> list[Path]:
+    return list((klass.path / ".autograder" / "collected").rglob("*.kept/*"))
+
+
+def kept(klass: TinyClass) -> list[str]:
+    """The texts of all notebooks that were kept, as others count."""
+    return sorted(gzip.decompress(path.read_bytes()).decode() for path in kept_files(klass))
 
 
 def lies(klass: TinyClass, student: str) -> str:
@@ -250,10 +260,22 @@ def test_the_newest_counts_also_later_and_nothing_is_lost(klass: TinyClass, tmp_
     assert (len(first.having(State.EARLIER)), first.exit_code, lies(klass, "ada")) == (1, 0, two)
     last = collect(klass.path, [blackboard("c.zip", 16, three)])
     assert (last.having(State.PLACED)[0].replaced, lies(klass, "ada")) == (True, three)
-    kept = list((klass.path / ".autograder" / "collected" / "lab_1_2" / "ada.kept").iterdir())
-    assert sorted(path.read_text() for path in kept) == sorted([one, two])
+    assert kept(klass) == sorted([one, two])
     assert collect(klass.path, [second]).having(State.EARLIER)
     assert lies(klass, "ada") == three
+
+
+def test_what_is_kept_is_not_larger_than_what_was_sent(klass: TinyClass, tmp_path: Path) -> None:
+    names = [f"lab_1_2 ({number}).ipynb" for number in range(1, 6)]
+    with zipfile.ZipFile(tmp_path / "work.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+        for name in names:
+            archive.writestr(name, name.encode() + bytes(1_000_000))
+    sent = (tmp_path / "work.zip").read_bytes()
+    write_zip(tmp_path / "a.zip", {"Lab_ada_attempt_2025-10-03-14-00-00_work.zip": sent})
+    report = collect(klass.path, [tmp_path / "a.zip"])
+    assert len(report.having(State.EARLIER)) == 4
+    assert len(kept_files(klass)) == 4
+    assert sum(path.stat().st_size for path in kept_files(klass)) <= len(sent)
 
 
 def test_two_files_of_which_nothing_says_which_is_newer_are_both_listed(

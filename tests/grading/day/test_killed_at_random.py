@@ -81,7 +81,7 @@ def collected(klass: Path) -> tuple[object, ...]:
             [(one.content, one.when) for one in history.now.values()],
             [(one.content, one.when) for one in history.before],
         )
-    kept = {path.name: path.read_bytes() for path in (directory.state / "collected").rglob("*.ipynb")}
+    kept = {path.name: path.read_bytes() for path in (directory.state / "collected").rglob("*.ipynb.gz")}
     waiting = sorted(one.label for one in WaitingList(directory).read())
     return files_below(klass / "submitted"), histories, kept, waiting
 
