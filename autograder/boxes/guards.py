@@ -32,6 +32,7 @@ INTERVAL = 0.25
 """Seconds from one look to the next."""
 _SIZE = re2.compile(r"(?m)^(\w+):[ \t]+(\d+) kB$")
 _TICKS = os.sysconf("SC_CLK_TCK")
+_PROTOCOLS = ("udp", "udp6", "udplite", "udplite6", "tcp", "tcp6")
 
 
 class BoxGuard:
@@ -133,6 +134,8 @@ class BoxGuard:
             return Ended.TOO_MANY_PROCESSES
         if use.files > self._limits.all_open_files:
             return Ended.TOO_MANY_FILES
+        if _waiting_in_sockets(self._first) > self._limits.socket_bytes:
+            return Ended.OUT_OF_MEMORY
         if use.most_memory > self._limits.memory_now:
             return Ended.OUT_OF_MEMORY
         files = 0 if self._memory else _scratch_of(self._first)
@@ -202,6 +205,28 @@ def _files_of(process: str) -> int:
     """Linux 6.2 and later say it as the folder's size (proc_pid_fd(5)); a process without any is rare."""
     folder = f"{process}/fd"
     return os.stat(folder).st_size or len(os.listdir(folder))  # noqa: PTH116, PTH208 (several times a second)
+
+
+def _waiting_in_sockets(first: int) -> int:
+    """Bytes that wait in the sockets of a box's network (proc_pid_net(5)); no process has them, and often no cgroup."""
+    net = Path(f"/proc/{first}/net")
+    waiting = 0
+    try:
+        if Path(f"/proc/{first}/ns/net").stat().st_ino == Path("/proc/self/ns/net").stat().st_ino:
+            return 0  # it is on its way into the box
+        for protocol in _PROTOCOLS:
+            for fields in _rows(net / protocol):
+                sent, _, received = fields[4].partition(":")
+                waiting += int(sent, 16) + int(received, 16)
+        waiting += sum(int(fields[4]) + int(fields[5]) for fields in _rows(net / "netlink"))
+    except (OSError, ValueError, IndexError):
+        return waiting  # it has ended meanwhile
+    return waiting
+
+
+def _rows(table: Path) -> list[list[str]]:
+    """The fields of each line below the heading; none where the system does not know the protocol."""
+    return [line.split() for line in table.read_text().splitlines()[1:]] if table.exists() else []
 
 
 def _scratch_of(first: int) -> int:

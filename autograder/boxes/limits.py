@@ -40,6 +40,8 @@ class Limits:
         processes: Processes and threads of a box together.
         open_files: Files, sockets and pipes that one process may have open.
         all_open_files: What all processes of a box may have open together.
+        socket_bytes: What may wait in the sockets of a box's network. The machine has one limit for those of all boxes;
+            where that is used up, nobody's messages arrive any more.
         scratch_bytes: What a box's files may have together.
         scratch_files: How many files, folders and links a box may have.
     """
@@ -63,6 +65,7 @@ class Limits:
     processes: int = 500
     open_files: int = 1024
     all_open_files: int = 6000
+    socket_bytes: int = 100_000_000
     scratch_bytes: int = 1_000_000_000
     scratch_files: int = 100_000
 

@@ -109,6 +109,20 @@ def test_tables_of_pages_are_memory(tmp_path: Path) -> None:
         assert measure(str(tmp_path)) == (3_000_008 * 1024,) * 2
 
 
+def test_memory_in_sockets_belongs_to_no_process(run: Run) -> None:
+    fill = """
+import socket, time
+held = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(500)]
+for end in held:
+    end.bind(("127.0.0.1", 0))
+    for _ in range(40):
+        end.sendto(bytes(8000), end.getsockname())
+time.sleep(4)
+"""
+    execution = run(fill, socket_bytes=20_000_000)
+    assert (execution.cells[0].ended, key(execution)) == (Ended.OUT_OF_MEMORY, "out_of_memory")
+
+
 def test_memory_that_many_processes_take_together(run: Run) -> None:
     fork = (
         "import os, time\nfor _ in range(5):\n    if os.fork() == 0:\n"

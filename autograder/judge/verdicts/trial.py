@@ -12,6 +12,7 @@ from autograder.judge.bench.bench import TestBench
 from autograder.judge.verdicts import timeline
 from autograder.judge.verdicts.crowding import TOO_BUSY, Crowding, TooBusy
 from autograder.judge.verdicts.deciding import Undecided, limited, undecidable
+from autograder.judge.verdicts.delivery import NOT_DELIVERED, NotDelivered, delivers
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.in_words import of_its_kind, shortened
 from autograder.kit.model import Advice, Exercise, Mistake, Pace
@@ -79,9 +80,10 @@ def check(
 
     Raises:
         TooBusy: It was, and nobody wants a marked verdict.
+        NotDelivered: It did not pass, nothing proves a mistake, and this machine lost messages before or after.
     """
     began = time.monotonic()
-    crowded = False
+    crowded, delivered = False, delivers()
     subject.begin(domain_id)
     look_at = partial(look, exercise, subject, reference, seed=seed, domain_id=domain_id)
     seen = look_at(Pace.FAST)
@@ -98,6 +100,11 @@ def check(
                 verdict = judge(exercise, evidence, seed)
                 # What is asked last goes through all mistakes once more.
                 crowded = crowding.too_busy and not verdict.passed and not is_certain(exercise, evidence)
+        if not verdict.passed and not (delivered and delivers()):
+            with limited():
+                certain = is_certain(exercise, evidence)
+            if not certain:
+                raise NotDelivered(NOT_DELIVERED)
     except Undecided:
         verdict = undecidable(exercise, seed)
     if crowded and not marks_crowded:

@@ -10,6 +10,7 @@ import pytest
 from autograder import exercises
 from autograder.judge.verdicts import reference, trial
 from autograder.judge.verdicts.crowding import Crowding, TooBusy
+from autograder.judge.verdicts.delivery import NotDelivered
 from autograder.kit.evidence import Evidence, Part
 from autograder.kit.model import Advice, Criterion, Finding, Mistake, Pace
 
@@ -104,6 +105,26 @@ def test_who_checks_by_hand_is_told_that_the_machine_is_too_busy_to_tell(
     subject: Any = Anybody()
     with pytest.raises(TooBusy, match="The machine is too busy"):
         trial.check(exercise(), subject, stored, seed="s", domain_id=0)
+
+
+@pytest.mark.parametrize("when", [[False, True], [True, False]], ids=["before", "after"])
+def test_silence_proves_nothing_where_the_machine_loses_messages(
+    monkeypatch: pytest.MonkeyPatch, when: list[bool]
+) -> None:
+    stored = reference.load(USUAL.id)
+    subject: Any = Anybody()
+    monkeypatch.setattr(Crowding, "too_busy", False)
+
+    def checked(judged: Exercise, name: str) -> bool:
+        seen = trial.Seen(Evidence([Part(name)], stored), doubtful=False)
+        monkeypatch.setattr(trial, "look", lambda *_, **__: seen)
+        monkeypatch.setattr(trial, "delivers", iter(when).__next__)
+        return trial.check(judged, subject, stored, seed="s", domain_id=0).verdict.passed
+
+    assert checked(exercise(), "good")
+    assert not checked(exercise(certain=True), "bad")
+    with pytest.raises(NotDelivered, match="delivers no more messages"):
+        checked(exercise(), "bad")
 
 
 @pytest.mark.parametrize(("name", "missed"), [("good", False), ("bad", True)])
