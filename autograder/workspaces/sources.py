@@ -1,8 +1,8 @@
 """Sources as one value, read once: a build is known by their hash, and what is built is written from them.
 
 So nothing can be in a build that is not in its key. What is no source (links, pipes, devices, what tools leave behind,
-what may not be read) is in neither; nor are times, other rights than to execute, and the order of a folder. Names are
-bytes: two that differ in case or in their Unicode normal form are two.
+what a compiler has made, what may not be read) is in neither; nor are times, other rights than to execute, and the
+order of a folder. Names are bytes: two that differ in case or in their Unicode normal form are two.
 
 In a class they are collected where a student's code runs, and checked and written where it does not. The student's side
 may say anything, as it may write any files: only their number, their size and their names have to be harmless.
@@ -43,6 +43,8 @@ LAUNCH_COMPANIONS = (".py", ".xml", ".yaml", ".yml", ".json", ".txt")
 """The endings of the names of files that a launch file may need beside it."""
 _NOT_SOURCES = {"__pycache__", ".git", ".ipynb_checkpoints", ".pytest_cache", ".mypy_cache", ".ruff_cache"}
 """Folders that tools leave among sources."""
+_MACHINE_CODE = (b"\x7fELF", b"!<arch>\n", b"!<thin>\n")
+"""The first bytes of programs, libraries and object files, and of archives of these (elf(5), ar(5))."""
 
 
 class BadSources(ValueError):
@@ -130,6 +132,8 @@ def read_file(file: str | Path, name: str, largest: int, folder: int | None = No
             data = stream.read(largest + 1)
     except OSError:
         return None
+    if data.startswith(_MACHINE_CODE):
+        return None
     if len(data) > largest:
         raise BadSources(f"{name} has more than {largest // 1000} kB: a workspace for a check holds text")
     return Source(name, data, executable)
@@ -178,7 +182,7 @@ def collect_launch(file: Path, workspace: Path | None) -> tuple[str, list[Source
 def checked(sources: Iterable[Source]) -> list[Source]:
     """The sources, once nothing about them can do harm: names, number, sizes; none of them twice.
 
-    What is no source by its name is left out here once more: no box is to see what no key has in it.
+    What is no source is left out here once more: no box is to see what no key has in it.
 
     Raises:
         BadSources: Something could.
@@ -193,7 +197,11 @@ def checked(sources: Iterable[Source]) -> list[Source]:
         above = (str(parent) for parent in PurePosixPath(path).parents)
         if any(taken[name].data is not None for name in above if name in taken):
             raise BadSources(f"{path} lies in a file")
-    return [source for source in _bounded(list(taken.values())) if is_source(source.path)]
+    return [source for source in _bounded(list(taken.values())) if _is_source(source)]
+
+
+def _is_source(source: Source) -> bool:
+    return is_source(source.path) and not (source.data or b"").startswith(_MACHINE_CODE)
 
 
 def room_of(source: Source) -> int:

@@ -66,6 +66,8 @@ def link_to_a_folder(folder: Path) -> None:
 LEFT_OUT: dict[str, Callable[[Path], object]] = {
     "compiled": compiled,
     "folders of tools": tools,
+    "extension module": lambda folder: (folder / "setuptools.abi3.so").write_bytes(b"\x7fELF"),
+    "library under another name": lambda folder: (folder / "notes.txt").write_bytes(b"!<arch>\nx"),
     "link to a file": lambda folder: (folder / "link.py").symlink_to("setup.py"),
     "link to a file of the host": lambda folder: (folder / "link.py").symlink_to("/etc/passwd"),
     "link to a folder": link_to_a_folder,
@@ -88,7 +90,6 @@ KEPT: dict[str, Callable[[Path], object]] = {
     "the other normal form": lambda folder: (folder / TWIN[1]).write_text("x"),
     "egg-info": lambda folder: (folder / "my_pkg.egg-info").mkdir(),
     "build": lambda folder: (folder / "build").mkdir(),
-    "extension module": lambda folder: (folder / "setuptools.abi3.so").write_bytes(b"\x7fELF"),
     "hard link": lambda folder: (folder / "link.py").hardlink_to(folder / "setup.py"),
     "hole in a file": lambda folder: os.truncate(folder / "setup.py", 900),
     "name that is no text": lambda folder: (folder / os.fsdecode(b"\xff.py")).write_text("x"),
@@ -174,12 +175,13 @@ def test_no_two_trees_have_the_same_hash_by_where_a_name_ends() -> None:
     assert len({Tree(tree).digest for tree in trees}) == len(trees)
 
 
-def test_a_grader_takes_no_name_that_no_key_has() -> None:
-    """Whoever speaks as a notebook may send any name: it need not have been read from a folder."""
+def test_a_grader_takes_nothing_that_no_key_has() -> None:
+    """Whoever speaks as a notebook may send anything: it need not have been read from a folder."""
     sent = [
         Source("ws/src/p/setuptools.pyc", b"x"),
         Source("ws/src/p/__pycache__"),
         Source("ws/src/.git/x", b""),
+        Source("ws/src/p/notes.txt", b"\x7fELF"),
     ]
     assert sources.checked([*sent, Source("ws/src/p/setup.py", b"x")]) == [Source("ws/src/p/setup.py", b"x")]
 
