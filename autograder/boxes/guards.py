@@ -10,6 +10,7 @@ late there.
 from __future__ import annotations
 
 import os
+import resource
 import time
 from collections import Counter
 from collections.abc import Callable
@@ -32,6 +33,8 @@ INTERVAL = 0.25
 """Seconds from one look to the next."""
 _SIZE = re2.compile(r"(?m)^(\w+):[ \t]+(\d+) kB$")
 _TICKS = os.sysconf("SC_CLK_TCK")
+_PAGES = re2.compile(r"(?m)^(?:TCP|UDP): .*\bmem (\d+)$")
+"""What waits in the sockets of all networks, in pages; sockets of IPv6 and of UDP-Lite count there, too."""
 _PROTOCOLS = ("udp", "udp6", "udplite", "udplite6", "tcp", "tcp6")
 
 
@@ -134,7 +137,8 @@ class BoxGuard:
             return Ended.TOO_MANY_PROCESSES
         if use.files > self._limits.all_open_files:
             return Ended.TOO_MANY_FILES
-        if _waiting_in_sockets(self._first) > self._limits.socket_bytes:
+        most = self._limits.socket_bytes
+        if _waiting_in_sockets(self._first, most) > most:
             return Ended.OUT_OF_MEMORY
         if use.most_memory > self._limits.memory_now:
             return Ended.OUT_OF_MEMORY
@@ -207,14 +211,21 @@ def _files_of(process: str) -> int:
     return os.stat(folder).st_size or len(os.listdir(folder))  # noqa: PTH116, PTH208 (several times a second)
 
 
-def _waiting_in_sockets(first: int) -> int:
-    """Bytes that wait in the sockets of a box's network (proc_pid_net(5)); no process has them, and often no cgroup."""
+def _waiting_in_sockets(first: int, most: int) -> int:
+    """Bytes that wait in the sockets of a box's network (proc_pid_net(5)); no process has them, and often no cgroup.
+
+    Args:
+        first: The box's first process, as the host counts.
+        most: What may wait there. Where all networks of the machine have no more in UDP and TCP, nobody goes through
+            these tables: that takes ten milliseconds.
+    """
     net = Path(f"/proc/{first}/net")
     waiting = 0
     try:
         if Path(f"/proc/{first}/ns/net").stat().st_ino == Path("/proc/self/ns/net").stat().st_ino:
             return 0  # it is on its way into the box
-        for protocol in _PROTOCOLS:
+        pages = sum(map(int, _PAGES.findall((net / "sockstat").read_text())))
+        for protocol in _PROTOCOLS if pages * resource.getpagesize() > most else ():
             for fields in _rows(net / protocol):
                 sent, _, received = fields[4].partition(":")
                 waiting += int(sent, 16) + int(received, 16)
