@@ -18,6 +18,7 @@ from autograder import course, exercises
 from autograder.judge.serving.process import JudgeDied, JudgeProcess
 from autograder.masters.master_errors import MasterError
 from autograder.masters.solutions import reference_source
+from autograder.messages.checks import SOCKET_VARIABLE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -124,7 +125,7 @@ def _run(file: Path, socket: Path) -> str:
         [sys.executable, str(file)],
         # A solution about files writes them where it runs.
         cwd=file.parent,
-        env=os.environ | {"AUTOGRADER_JUDGE_SOCKET": str(socket)},
+        env=os.environ | {SOCKET_VARIABLE: str(socket)},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,

@@ -30,6 +30,10 @@ _TERMINAL = ("%%bash", "%%sh", "%%script")
 """The beginning of a terminal's cell."""
 
 
+class Unfinished(RuntimeError):
+    """The judge was still at work when its time was over."""
+
+
 class Judge(Protocol):
     """The judge as it is seen from here."""
 
@@ -38,7 +42,11 @@ class Judge(Protocol):
         ...
 
     def close(self) -> Verdict | None:
-        """The exercise's check is over; what came of it, or None where nobody asked."""
+        """The exercise's check is over; what came of it, or None where nobody asked.
+
+        Raises:
+            Unfinished: The check did not come to its end. Any other exception is the judge's own trouble as well.
+        """
         ...
 
 
@@ -182,6 +190,11 @@ class _Run:
         yield
         try:
             verdict = judge.close()
+        except Unfinished as error:
+            # A cell that was not stopped and has left its check behind has not waited: it might choose when it leaves.
+            if self._ended[index] is Ended.TIMED_OUT:
+                self._judge_failed(index, cell.check, error)
+            return
         except Exception as error:
             self._judge_failed(index, cell.check, error)
             return

@@ -79,14 +79,17 @@ class Goal:
 def goal(part: Part, number: int) -> Goal:
     """The goal of that number."""
     events = [event for event in part.events if event.data.get("goal") == number]
-    by_kind = {event.kind: event for event in reversed(events)}
+    first = {event.kind: place for place, event in reversed(list(enumerate(events)))}
+    by_kind = {kind: events[place] for kind, place in first.items()}
     data = {kind: event.data for kind, event in by_kind.items()}
     result = data.get("result_heard", {})
     ended_at = result.get("arrived", math.inf)
-    heard = [e for e in events if e.kind == "feedback_heard" and e.data.get("sent", 0.0) <= ended_at]
-    cancel = by_kind.get("cancel_sent")
-    split = events.index(cancel) if cancel else len(events)
-    answered = events.index(by_kind["cancel_answer"]) if "cancel_answer" in by_kind else len(events)
+    places = [
+        i for i, e in enumerate(events) if e.kind == "feedback_heard" and e.data.get("sent", 0.0) <= ended_at
+    ]
+    heard = [events[place] for place in places]
+    split = first.get("cancel_sent", len(events))
+    answered = first.get("cancel_answer", len(events))
     return Goal(
         request=data.get("goal_sent", {}).get("fields"),
         accepted=data.get("goal_answer", {}).get("accepted"),
@@ -96,8 +99,8 @@ def goal(part: Part, number: int) -> Goal:
         cancel_answered_at=data.get("cancel_answer", {}).get("arrived"),
         cancel_accepted=data.get("cancel_answer", {}).get("accepted"),
         cancelled_too_late=data.get("cancel_answer", {}).get("return_code") == ERROR_GOAL_TERMINATED,
-        before_cancel=sum(events.index(event) < split for event in heard),
-        unread=sum(split < events.index(event) < answered for event in heard),
+        before_cancel=sum(place < split for place in places),
+        unread=sum(split < place < answered for place in places),
         seconds=by_kind["result_heard"].t - by_kind["goal_answer"].t if "result_heard" in by_kind else None,
         status=result.get("status"),
         result=result.get("fields", {}),

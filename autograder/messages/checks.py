@@ -12,6 +12,9 @@ from autograder.messages.lines import Message
 from autograder.messages.workspaces import Source
 from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
 
+SOCKET_VARIABLE = "AUTOGRADER_JUDGE_SOCKET"
+"""The environment variable with the path of the judge's socket; a kernel without it starts a judge of its own."""
+
 # --- What a notebook says: of its check
 
 
@@ -222,9 +225,14 @@ class Stop(Message, frozen=True):
 
 
 class Judged(Message, frozen=True, tag="verdict"):
-    """The last message: the verdict."""
+    """The last message: the check is over.
 
-    verdict: Verdict
+    Attributes:
+        verdict: What came of it. None where a grader has it: a submission that knew how its checks went could choose
+            which of two runs of its notebook counts, by what costs the first one its result.
+    """
+
+    verdict: Verdict | None
 
 
 class Refused(Message, frozen=True):

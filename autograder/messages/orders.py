@@ -17,6 +17,7 @@ class Open(msgspec.Struct, tag="open", frozen=True):
         workspaces: The socket of the grader's side of checks of workspaces, as the judge sees it; empty where there is
             none.
         evidence: Hand over, with the verdict, what it follows from.
+        alone: Nobody is on the judge's network but its subject: a domain whose ports are taken is free all the same.
     """
 
     exercise: str
@@ -24,6 +25,7 @@ class Open(msgspec.Struct, tag="open", frozen=True):
     record: bool = False
     workspaces: str = ""
     evidence: bool = False
+    alone: bool = False
 
 
 class Close(msgspec.Struct, tag="close", frozen=True):
@@ -40,6 +42,7 @@ class Report(msgspec.Struct, frozen=True):
         evidence: What the verdict follows from, as :mod:`autograder.judge.verdicts.keeping` packs it; empty where it
             was not asked for.
         crowded: It did not pass, and that may be because the machine was crowded.
+        unfinished: The trouble is that the judge was still at work when its time was over.
     """
 
     verdict: Verdict | None = None
@@ -47,6 +50,7 @@ class Report(msgspec.Struct, frozen=True):
     trouble: str = ""
     evidence: bytes = b""
     crowded: bool = False
+    unfinished: bool = False
 
 
 Order = Open | Close

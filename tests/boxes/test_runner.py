@@ -19,7 +19,7 @@ from autograder.boxes.execution import Cell, CellType, Check, Ended, Execution
 from autograder.boxes.fork_server import Addresses
 from autograder.boxes.limits import Left, Limits, Patient, wall_time
 from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
-from autograder.boxes.runner import run_notebook
+from autograder.boxes.runner import Unfinished, run_notebook
 from autograder.boxes.scratch import scratch_folder
 from autograder.boxes.zmtp import ZmtpConnection
 from autograder.verdict import State, Verdict
@@ -242,6 +242,18 @@ def test_a_judge_that_dies_is_the_graders_trouble(run: Run) -> None:
     assert verdict.score == 0
     assert "the judge is gone" in execution.trouble
     assert execution.cells[1].ended is Ended.DONE
+
+
+def test_a_cell_that_leaves_its_check_behind_gets_no_points(run: Run) -> None:
+    execution = run([check("print('gone')")], Unfinished("the judge did not finish in time"))
+    assert execution.trouble == ""
+    assert key(execution) == "not_asked"
+
+
+def test_a_check_that_lasts_as_long_as_its_cell_may_is_the_graders_trouble(run: Run) -> None:
+    late = Unfinished("the judge did not finish in time")
+    execution = run([check("import time; time.sleep(60)")], late, check_margin=0.0)
+    assert execution.verdicts[0].state is State.NOT_CHECKED
 
 
 def test_a_verdict_on_another_exercise_does_not_count(run: Run) -> None:

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.judge.serving.process import JudgeProcess
+from autograder.messages.checks import SOCKET_VARIABLE
 from autograder.notebook.checking.check import check
-from autograder.notebook.checking.judge_link import SOCKET_VARIABLE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -26,7 +26,7 @@ from autograder.boxes.execution import Ended, Execution
 from autograder.boxes.fork_server import Addresses
 from autograder.boxes.limits import raise_own
 from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
-from autograder.boxes.runner import run_notebook
+from autograder.boxes.runner import Unfinished, run_notebook
 from autograder.boxes.sandbox import NoSandbox
 from autograder.boxes.scratch import scratch_folder
 from autograder.grading.returning.page_budget import too_costly
@@ -36,6 +36,7 @@ from autograder.judge.bench.patience import Patience
 from autograder.judge.serving import attached
 from autograder.judge.serving.domain import lease
 from autograder.judge.settings import boxed_ros_environment, ros_environment
+from autograder.messages.checks import SOCKET_VARIABLE
 from autograder.messages.lines import Hangup, Lines
 from autograder.process_trees import adopt_orphans, end_descendants
 
@@ -47,7 +48,6 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 JUDGE = "autograder.judge.serving.process:JudgeProcess"
-SOCKET_VARIABLE = "AUTOGRADER_JUDGE_SOCKET"
 LAST_SECONDS = 10.0
 """Seconds that a worker has to end in good order once its grader is gone; a grader that lives gives it less."""
 MOST_EVIDENCE = 4_000_000
@@ -120,6 +120,7 @@ def _execute(
         process = judge(place.judge_socket, seed=task.seed, start=start)
         process.workspaces = str(arrangement.judges_socket)
         process.keeps_evidence = True
+        process.is_alone = boxed
         return process
 
     first = next((cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts), "")
@@ -203,7 +204,7 @@ class _Judges:
     def close(self) -> Verdict | None:
         report = self._judge.close_report()
         if report.verdict is None and report.trouble:
-            raise RuntimeError(report.trouble)
+            raise (Unfinished if report.unfinished else RuntimeError)(report.trouble)
         if sum(map(len, self.evidence.values())) + len(report.evidence) <= MOST_EVIDENCE and report.evidence:
             self.evidence[self._asked] = report.evidence
         self.crowded = self.crowded or report.crowded

@@ -34,7 +34,7 @@ MAX_NAME = 100
 
 
 def converse(connection: socket.socket, order: Open | None) -> Report:
-    """Hear which exercise is asked for, judge it and tell the notebook.
+    """Hear which exercise is asked for, judge it, and tell the notebook what came of it or that it is over.
 
     Args:
         connection: The notebook's end.
@@ -73,17 +73,14 @@ def converse(connection: socket.socket, order: Open | None) -> Report:
         subject = RemoteSubject(lines, is_class=first.kind == "class")
     # A grader has asked for this one exercise: it checks again, alone, what a crowded machine may have spoilt.
     seed = own_seed(wanted.seed, exercise.id)
-    report, checked = _report(exercise, subject, seed, wanted.record, marks_crowded=order is not None)
-    _tell(lines, Judged(_shown(exercise, report)))
-    # Its notebook has its verdict already: nobody waits while the evidence is packed.
+    report, checked = _report(exercise, subject, seed, wanted, marks_crowded=order is not None)
+    _tell(lines, Judged(None if order else _shown(exercise, report)))
+    # Its notebook goes on already: nobody waits while the evidence is packed.
     return replace(report, evidence=keeping.packed(checked)) if wanted.evidence and checked else report
 
 
 def own_seed(seed: str, exercise_id: str) -> str:
-    """The seed of one check, from which nobody can tell that of another.
-
-    A verdict carries it, and the notebook hears its verdict before its next check.
-    """
+    """The seed of one check, from which nobody can tell that of another: a student sees it on the card."""
     return hashlib.sha256(f"{len(seed)}:{seed}{exercise_id}".encode()).hexdigest()[:16]
 
 
@@ -97,13 +94,13 @@ def _report(
     exercise: Exercise,
     subject: RemoteSubject | PathSubject,
     seed: str,
-    recording: bool,
+    wanted: Open,
     *,
     marks_crowded: bool,
 ) -> tuple[Report, Checked | None]:
     try:
-        with domain.lease() as domain_id:
-            if not recording:
+        with domain.lease(alone=wanted.alone) as domain_id:
+            if not wanted.record:
                 stored = reference.load(exercise.id)
                 checked = trial.check(
                     exercise, subject, stored, seed=seed, domain_id=domain_id, marks_crowded=marks_crowded

@@ -32,11 +32,13 @@ class Outcome:
         data: What it returned; None where it returned nothing.
         trouble: Why there is no data, in words; empty otherwise.
         hurried: It was killed although its own time was not over.
+        unfinished: It was killed, as its time or the shorter one was over.
     """
 
     data: bytes | None
     trouble: str = ""
     hurried: bool = False
+    unfinished: bool = False
 
 
 class Child:
@@ -96,7 +98,7 @@ class Child:
                 continue
             if not ready:
                 self.kill()
-                return Outcome(None, "the judge did not finish in time", hurried)
+                return Outcome(None, "the judge did not finish in time", hurried, unfinished=True)
             chunk = os.read(self.reading, 65536)
             if not chunk:
                 break

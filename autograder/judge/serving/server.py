@@ -104,9 +104,8 @@ class JudgeServer:
             # The cell had ended and its check had not: no judge's trouble, but a notebook that did not see it through.
             return msgspec.json.encode(Report())
         if outcome.data is None or b"\n" in outcome.data:
-            return msgspec.json.encode(
-                Report(trouble=outcome.trouble or "the judge said more than one report")
-            )
+            trouble = outcome.trouble or "the judge said more than one report"
+            return msgspec.json.encode(Report(trouble=trouble, unfinished=outcome.unfinished))
         return outcome.data
 
     def _reap(self) -> None:

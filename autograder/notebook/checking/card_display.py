@@ -21,8 +21,8 @@ from autograder import course
 from autograder.cards import bundle
 from autograder.cards.card import Solution
 from autograder.cards.wording import duration
+from autograder.messages.checks import SOCKET_VARIABLE
 from autograder.notebook.cells.cell_output import notebook_shell
-from autograder.notebook.checking.judge_link import SOCKET_VARIABLE
 
 if TYPE_CHECKING:
     from types import TracebackType

@@ -14,7 +14,7 @@ from autograder.notebook.cells.failed_cells import raise_if_stale
 from autograder.notebook.checking.captured_output import CapturedOutput
 from autograder.notebook.checking.card_display import CardDisplay, is_live, is_validating
 from autograder.notebook.checking.check_context import CheckContext
-from autograder.notebook.checking.judge_link import SOCKET_VARIABLE, JudgeLink, JudgeUnreachable
+from autograder.notebook.checking.judge_link import JudgeLink, JudgeUnreachable
 from autograder.notebook.checking.path_run import PathRun, is_path, send_sources
 from autograder.notebook.checking.shorter_waits import GraphQuestions, ShorterWaits
 from autograder.notebook.checking.subject_run import SubjectRun, Tell
@@ -67,7 +67,7 @@ def check(exercise: str, subject: Any) -> float:
             an exercise about files, the path of the workspace or of the launch file.
 
     Returns:
-        The points earned. A grader takes its points from the judge itself, not from here.
+        The points earned; 0 in a grader's kernel, where nothing is shown either: the judge tells its grader alone.
 
     Raises:
         TypeError: The subject is neither a class nor a function nor a path; the message says what to write instead.
@@ -80,6 +80,8 @@ def check(exercise: str, subject: Any) -> float:
     prepare_environment()
     with CardDisplay(exercise, subject) as place:
         verdict = _ask(exercise, subject, place)
+        if verdict is None:
+            return Score(0.0)
         place.show(verdict)
     keep(verdict)
     if is_validating():
@@ -89,7 +91,7 @@ def check(exercise: str, subject: Any) -> float:
     return Score(verdict.score)
 
 
-def _ask(exercise: str, subject: Any, place: CardDisplay) -> Verdict:
+def _ask(exercise: str, subject: Any, place: CardDisplay) -> Verdict | None:
     try:
         link = JudgeLink()
     except JudgeUnreachable as error:
@@ -102,8 +104,8 @@ def _ask(exercise: str, subject: Any, place: CardDisplay) -> Verdict:
         link.close()
 
 
-def converse(link: JudgeLink, exercise: str, subject: Any, card: Place) -> Verdict:
-    """Do what the judge says until it has a verdict.
+def converse(link: JudgeLink, exercise: str, subject: Any, card: Place) -> Verdict | None:
+    """Do what the judge says until it has a verdict; None where that is its grader's.
 
     Args:
         link: To the judge.
@@ -179,7 +181,7 @@ def keep(verdict: Verdict) -> None:
 
     A grader's kernel has no journal. Nothing here can break a check: what cannot be read or written is left out.
     """
-    if notebook_shell() is None or os.environ.get(SOCKET_VARIABLE):
+    if notebook_shell() is None or os.environ.get(messages.SOCKET_VARIABLE):
         return
     try:
         ended = _chapter_ended_by(verdict)
@@ -219,7 +221,7 @@ def _kind(subject: Any) -> str:
     return "path" if is_path(subject) else "function"
 
 
-def _last_words(exercise: str, words: messages.FromJudge) -> Verdict:
+def _last_words(exercise: str, words: messages.FromJudge) -> Verdict | None:
     if isinstance(words, messages.Judged):
         return words.verdict
     why = words.why if isinstance(words, messages.Refused) else "the judge refused"

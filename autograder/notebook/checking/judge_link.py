@@ -16,14 +16,12 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.messages.checks import FromJudge
+from autograder.messages.checks import SOCKET_VARIABLE, FromJudge
 from autograder.messages.lines import Hangup, Lines, NotUnderstood
 
 if TYPE_CHECKING:
     from autograder.messages.lines import Message
 
-SOCKET_VARIABLE = "AUTOGRADER_JUDGE_SOCKET"
-"""The variable in which a grader names the kernel's judge."""
 MAX_TEXT = 4_000
 """Characters of one text of the subject's that the judge looks at; more at once would end the conversation."""
 START_LIMIT = 60.0

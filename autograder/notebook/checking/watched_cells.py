@@ -160,7 +160,8 @@ class Watches:
                 watch.give_way()
                 return
             verdict = not_checked(watch.exercise, watch.exercise, 0.0, str(error), "Run the cell again.")
-        watch.show(verdict)
+        if verdict is not None:  # else a grader's judge, which tells no notebook
+            watch.show(verdict)
 
 
 _watches: Watches | None = None

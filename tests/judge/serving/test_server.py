@@ -118,9 +118,10 @@ def test_an_opened_check_counts_and_a_second_one_does_not(judge: JudgeProcess) -
     assert verdict.diagnosis is not None
     assert verdict.diagnosis.key == "crashed"
     assert verdict.seed
-    # The notebook hears it, and must not learn what the next check draws from.
+    # A student sees it on the card, and must not learn what other checks draw from.
     assert "a seed" not in verdict.seed
-    assert told["verdict"]["score"] == 0
+    # Who knew the verdict could choose whether this run counts.
+    assert told["verdict"] is None
 
 
 def test_another_exercise_than_the_opened_one_is_refused(judge: JudgeProcess) -> None:
@@ -163,26 +164,37 @@ def test_a_judge_that_dies_is_reported_and_never_a_verdict(judge: JudgeProcess) 
         judge.close()
 
 
-class ChildThatSaid:
-    """A check's child that has come to its end with these bytes."""
+class EndedChild:
+    """A check's child that has come to this end."""
 
-    def __init__(self, data: bytes) -> None:
-        self._data = data
+    def __init__(self, outcome: Outcome) -> None:
+        self._outcome = outcome
 
     def result(self, *, within: float) -> Outcome:
         del within
-        return Outcome(self._data)
+        return self._outcome
+
+
+def report_on(outcome: Outcome) -> Report:
+    """What a controlled judge tells its grader of a check that ended so; in one line."""
+    with socket.socket(socket.AF_UNIX) as listener:
+        server = JudgeServer(listener, controlled=True)
+        server._child = cast("Child", EndedChild(outcome))
+        line = server._close()
+    assert b"\n" not in line
+    return msgspec.json.decode(line, type=Report)
 
 
 @pytest.mark.parametrize("data", [b'{"verdict":null}\n{"verdict":null}', b'\n{"verdict":null}'])
 def test_a_child_that_says_more_than_one_line_has_no_verdict(data: bytes) -> None:
     # The rest of it would be taken for the report of the next check.
-    with socket.socket(socket.AF_UNIX) as listener:
-        server = JudgeServer(listener, controlled=True)
-        server._child = cast("Child", ChildThatSaid(data))
-        line = server._close()
-    assert b"\n" not in line
-    assert msgspec.json.decode(line, type=Report).trouble
+    assert report_on(Outcome(data)).trouble
+
+
+def test_a_check_that_was_not_seen_to_its_end_earns_nothing_and_one_whose_time_was_over_says_so() -> None:
+    late = "the judge did not finish in time"
+    assert report_on(Outcome(None, late, hurried=True, unfinished=True)) == Report()
+    assert report_on(Outcome(None, late, unfinished=True)) == Report(trouble=late, unfinished=True)
 
 
 def test_a_judge_that_says_no_report_has_died(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

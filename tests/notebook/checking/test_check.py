@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from autograder import course, exercises
+from autograder.messages.checks import SOCKET_VARIABLE
 from autograder.notebook.checking import check as check_cell
-from autograder.notebook.checking.judge_link import SOCKET_VARIABLE
 from autograder.student import journal
 from autograder.student.journal import Entry
 from autograder.verdict import State, Verdict

@@ -9,9 +9,9 @@ import pytest
 
 from autograder import exercises
 from autograder.cards.wording import SOLUTION
+from autograder.messages.checks import SOCKET_VARIABLE
 from autograder.notebook.checking import card_display
 from autograder.notebook.checking.card_display import solution_of
-from autograder.notebook.checking.judge_link import SOCKET_VARIABLE
 from autograder.student.handing_out import hand_out
 from autograder.verdict import State, Verdict
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from autograder.messages.checks import SOCKET_VARIABLE
 from autograder.notebook.checking import watched_cells
-from autograder.notebook.checking.judge_link import SOCKET_VARIABLE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

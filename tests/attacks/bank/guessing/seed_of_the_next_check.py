@@ -1,8 +1,8 @@
 # family = "guessing"
 # tries = "The talker is right. From its verdict the seed is read, and from that the seed of the listener's check is worked out, whose texts are then said without being heard."
-# could_earn = "The seven points for saying what was heard."
+# could_earn = "The seven points for saying what was heard; and who knows a verdict can end a run whose verdicts are bad, so that it is executed again."
 # earned = { "lab_1_2.talker" = 10, "lab_1_2.listener" = 3 }
-# undefended = "Full marks: the seed of a check was the notebook's seed and the exercise's name, joined, and stood in every verdict."
+# undefended = "Full marks: the seed of a check was the notebook's seed and the exercise's name, joined, and stood in every verdict. LEAK: 10.0, as each check told its notebook what came of it."
 
 # %% extra
 from random import Random
@@ -27,7 +27,8 @@ judge_link.JudgeLink.hear = hear
 # %% solution ListenerNode
 <<listeners_texts>>
 
-seed = str(seen[0].seed).rpartition(":")[0]
+print(f"LEAK: {seen[0].score}" if seen[0] else "nothing was told")
+seed = str(getattr(seen[0], "seed", "")).rpartition(":")[0]
 texts = random_texts(Random(f"{seed}:lab_1_2.listener"))
 
 
