@@ -9,6 +9,7 @@ from random import Random
 import pytest
 from exercise_1_3._cancel_evidence import HONOURED
 from exercise_1_3._cancel_scenario import asked_a_moment_late
+from inspecting_services import question
 from inspecting_topics import mismatch
 from lab_1_2 import listener, talker
 from lab_1_4 import client as action_client
@@ -77,6 +78,32 @@ def test_the_names_that_are_told_give_no_topic_away() -> None:
             told = set(re.findall("[a-z]+", f"{case['talker']} {case['listener']}"))
             asked = set(re.findall("[a-z]+", f"{case['topic_published']} {case['topic_subscribed']}"))
             assert not told & asked
+
+
+def test_a_list_of_all_topics_does_not_tell_which_are_whose() -> None:
+    cases = [case for seed in range(300) for _, case in mismatch.mismatches(Random(seed))]
+    differ = [case for case in cases if case["topic_published"] != case["topic_subscribed"]]
+    plain = sum(re.fullmatch("/[a-z]+/[a-z]+", case["topic_published"]) is not None for case in differ)
+    assert 0.4 < plain / len(differ) < 0.8  # one of the wrong names is a plain one, too
+    typed = [case for case in cases if case["type_published"] != case["type_subscribed"]]
+    assert 0.4 < sum("std_msgs" in case["type_published"] for case in typed) / len(typed) < 0.6
+    for case in cases:
+        names = sorted({case["topic_published"], case["topic_subscribed"], *case["beside"]})
+        assert set(names[1:-1]) > {case["topic_published"], case["topic_subscribed"]}
+
+
+@pytest.mark.parametrize("hidden", [True, False])
+def test_only_its_type_tells_a_service_from_the_others(hidden: bool) -> None:
+    guesses = {"second": 0, "last but one": 0, "middle": 0}
+    for seed in range(300):
+        right, others = question.named_services(Random(seed), "std_srvs/srv/Empty", hidden=hidden)
+        names = sorted([right, *others])
+        assert right not in (names[0], names[-1])
+        assert any(name.endswith(question.HIDDEN) for name in others)
+        guesses["second"] += names[1] == right
+        guesses["last but one"] += names[-2] == right
+        guesses["middle"] += names[len(names) // 2] == right
+    assert max(guesses.values()) < 200
 
 
 def test_a_notebook_s_class_is_held_until_it_is_known() -> None:

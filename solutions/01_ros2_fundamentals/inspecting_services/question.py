@@ -1,7 +1,8 @@
 """Inspecting services: a function that finds a service by its type, as `ros2 service find` does.
 
 The judge serves. The names are drawn anew each time, and so are the types that are asked for and the order of the runs.
-One service carries a tempting name and another type, one comes late, and once there is none of the type.
+Only the type tells the right one from the others: one of these has a tempting name, one comes as late as the one that
+comes late, and once there is none of the type.
 """
 
 from __future__ import annotations
@@ -35,8 +36,10 @@ TEMPTING = {
 }
 """The types that are asked for, each with a name that sounds like it and is given to a service of another type."""
 
+NAMES = (4, 5, 6)
+"""How many services there may be beside the tempting one."""
 HIDDEN = "_parameters"
-"""The end of the name of one service that is asked for."""
+"""The end of the name of one service that is asked for, and of some that are not."""
 
 LATE = "the service comes late"
 OTHER = "another type is asked for"
@@ -65,15 +68,30 @@ def scenario(bench: Bench) -> None:
     asked = random.sample(sorted(TEMPTING), len(TEMPTING))
     for name, type_name in zip(random.sample((LATE, OTHER, ABSENT), 3), asked, strict=True):
         another = random.choice([other for other in asked if other != type_name])
-        # The graph tells of services in the order of their names: the right one is neither the first nor the last.
-        first, right, last = sorted(_name(random) for _ in range(3))
+        right, misleading = named_services(random, another, hidden=name == OTHER)
         # Of the lab's own type in each run, so that who always looks for that one is wrong in each.
-        misleading = {TEMPTING[type_name]: ADDER, first: ADDER, last: another}
+        misleading[TEMPTING[type_name]] = ADDER
         if name == ABSENT:
-            unserved(bench, type_name, misleading)
+            unserved(bench, type_name, {**misleading, right: another})
         else:
-            # The notebook's own list leaves out what has this word in its name, and only the type counts here.
-            served(bench, name, {f"{right}{HIDDEN}" if name == OTHER else right: type_name}, misleading)
+            served(bench, name, {right: type_name}, misleading)
+
+
+def named_services(random: Random, another: str, *, hidden: bool) -> tuple[str, dict[str, str]]:
+    """A name for the service that is asked for, and others with their types: only its type tells it from them.
+
+    Args:
+        random: Draws them.
+        another: A type that is not asked for.
+        hidden: The right name ends as the notebook's own list leaves out, where only the type counts.
+    """
+    # The graph tells of services in the order of their names: the right one is neither the first nor the last.
+    first, *between, last = sorted(_name(random) for _ in range(random.choice(NAMES)))
+    right = between.pop(random.randrange(len(between)))
+    misleading = {f"{first}{HIDDEN}": ADDER, last: another}
+    for name in between:
+        misleading[f"{name}{random.choice(('', HIDDEN))}"] = random.choice((ADDER, another))
+    return f"{right}{HIDDEN}" if hidden else right, misleading
 
 
 def unserved(bench: Bench, type_name: str, others: Mapping[str, str]) -> None:
@@ -92,8 +110,10 @@ def served(bench: Bench, name: str, service: Mapping[str, str], others: Mapping[
     """One run in which there is one service of the type."""
     late = name == LATE
     right, type_name = next(iter(service.items()))
+    # Another one comes as late, before it or after it: what is new is not right for that.
+    comes_late = bench.random.sample([right, bench.random.choice(sorted(others))], 2) if late else []
     patience = giving_up.drawn_patience(bench, PATIENCE_IN_LATE if late else PATIENCE_ELSEWHERE[bench.pace])
-    bench.part(name, type=type_name, right=right, others=dict(others), patience_sec=patience)
+    bench.part(name, type=type_name, right=right, others=dict(others), late=comes_late, patience_sec=patience)
     looks_for(bench, patience, lateness=LATENESS if late else 0.0)
     if late and not names_it(bench.seen()) and was_patient(bench.seen()):
         bench.again()
@@ -107,20 +127,18 @@ def looks_for(bench: Bench, patience: float, *, lateness: float) -> None:
     Args:
         bench: Where it happens.
         patience: Seconds that a function is told to look.
-        lateness: Seconds after the subject's node at which the service comes; 0 where it is there from the start.
+        lateness: Seconds after the subject's node at which those come that come late; 0 where none does.
     """
     inputs = bench.seen().inputs
-    right = {inputs["right"]: inputs["type"]}
-    _serve(bench, inputs["others"])
-    if not lateness:
-        _serve(bench, right)
+    services = {**inputs["others"], inputs["right"]: inputs["type"]}
+    _serve(bench, {name: kind for name, kind in services.items() if name not in inputs["late"]})
     bench.start(inputs["type"], patience_sec=patience)
     if lateness:
         bench.await_node()
         bench.run_time(lateness, until=lambda: len(bench.seen().of("looked")) >= LOOKS)
         if bench.await_end(0.0):
             return
-        _serve(bench, right)
+        _serve(bench, {name: services[name] for name in inputs["late"]})
     if bench.wait_until(
         lambda evidence: evidence.main.ending is not None or names_it(evidence.main), FIND_LIMIT
     ):

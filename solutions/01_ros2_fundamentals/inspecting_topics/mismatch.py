@@ -48,7 +48,7 @@ _OTHER_TYPES = tuple(
     f"geometry_msgs/msg/{name}"
     for name in ("Accel", "Point", "Pose", "Pose2D", "Quaternion", "Transform", "Twist", "Vector3", "Wrench")
 )
-"""Types of another package. Where the two sides differ, the listener has one of these."""
+"""Types of another package. Where the two sides differ, one of them has one of these."""
 
 
 def scenario(bench: Bench) -> None:
@@ -95,43 +95,60 @@ def bystander(planted: Mapping[str, Any]) -> dict[str, dict[str, str]]:
 
 def mismatches(random: Random) -> Iterator[tuple[str, dict[str, Any]]]:
     """Each case with its names and types. No two share one: an answer that is made up fits one case at most."""
-    things, qualities = random.sample(_THINGS, 2 * len(CASES)), random.sample(_QUALITIES, 2 * len(CASES))
+    things, qualities = random.sample(_THINGS, 3 * len(CASES)), random.sample(_QUALITIES, 2 * len(CASES))
     kinds = zip(random.sample(_TYPES, len(CASES)), random.sample(_OTHER_TYPES, len(CASES)), strict=True)
     for case, types in zip(CASES, kinds, strict=True):
         yield (
             case,
-            mismatch(random, case, (things.pop(), things.pop()), (qualities.pop(), qualities.pop()), types),
+            mismatch(
+                random,
+                case,
+                (things.pop(), things.pop(), things.pop()),
+                (qualities.pop(), qualities.pop()),
+                types,
+            ),
         )
 
 
 def mismatch(
-    random: Random, case: str, things: tuple[str, str], qualities: tuple[str, str], types: tuple[str, str]
+    random: Random,
+    case: str,
+    things: tuple[str, str, str],
+    qualities: tuple[str, str],
+    types: tuple[str, str],
 ) -> dict[str, Any]:
     """Names and types of two nodes that do not meet, and of a third that has nothing to do with it.
+
+    A list of all topics with their types does not say which of them are whose.
 
     Args:
         random: Draws the rest.
         case: What the two sides have different.
-        things: The one that the topics are about, and another one.
-        qualities: The same of what is said of it.
-        types: The talker's type, and the listener's where it has another one.
+        things: The one that the topics are about, another one, and one of the third node's.
+        qualities: What is said of it, and something else.
+        types: The type of both, or of one side, and that of the other one.
     """
-    (thing, other), (quality, second), (kind, another) = things, qualities, types
-    third, last = random.choice(_BYSTANDERS), random.choice(_OTHERS)
+    (thing, other, its_own), (quality, second) = things, qualities
+    kind, another = random.sample(types, 2)
+    third = random.choice(_BYSTANDERS)
     topic = f"/{thing}/{quality}"
     # The wrong names are of the kind that happens: an ending, a namespace, another word.
     wrong = random.choice(
         (f"{topic}s", f"/{other}{topic}", f"/{thing}/{second}", f"/{quality}", f"/{thing}_{quality}")
     )
+    published, subscribed = (topic, topic) if case == CASES[1] else random.sample((topic, wrong), 2)
     numbers = random.sample(range(100, 1000), 3)
     return {
         # The subject is told these names: no word of a topic may be among theirs.
         "talker": f"driver_{numbers[0]}",
         "listener": f"monitor_{numbers[1]}",
         "bystander": f"{third}_{numbers[2]}",
-        "beside": {f"/{third}/{quality}": kind, f"/{last}/{quality}": kind},
-        "topic_published": topic,
-        "topic_subscribed": topic if case == CASES[1] else wrong,
+        "beside": {
+            f"/{word}/{random.choice(_QUALITIES)}": random.choice(types)
+            for word in (third, its_own, random.choice(_OTHERS))
+        },
+        "topic_published": published,
+        "topic_subscribed": subscribed,
         "type_published": kind,
         "type_subscribed": kind if case == CASES[0] else another,
     }
@@ -147,19 +164,27 @@ def answer(part: Part) -> Mapping[str, Any] | None:
 
 
 def _dictionary(text: str) -> dict[str, Any] | None:
-    start, end = text.find("{"), text.rfind("}")
-    if start < 0 or end < start:
-        return None
-    body = text[start : end + 1]
-    for read in (ast.literal_eval, json.loads):
+    for begins, ends, read in _FORMS:
+        start, end = text.find(begins), text.rfind(ends)
+        if start < 0 or end < start:
+            continue
         try:
-            value = read(body)
+            value = read(text[start : end + len(ends)])
             # Refuses lone surrogates and numbers of thousands of digits, which no evidence can hold.
             "".join(map(str, value.values())).encode()
         except (ValueError, SyntaxError, TypeError, AttributeError, MemoryError, RecursionError):
             continue
         return value
     return None
+
+
+def _ordered(text: str) -> dict[str, Any]:
+    return dict(ast.literal_eval(text.removeprefix(_ORDERED)))
+
+
+_ORDERED = "OrderedDict"
+_FORMS = (("{", "}", ast.literal_eval), ("{", "}", json.loads), (f"{_ORDERED}([", "])", _ordered))
+"""How a dictionary is shown: its beginning, its end, what reads it. Python 3.11 shows an OrderedDict without braces."""
 
 
 def _same(key: str, given: Any, truth: str) -> bool:
