@@ -45,7 +45,8 @@ SILENT = "ended without saying so"
 """The objection to a client that says nothing of what it misses."""
 _SHUT_DOWN = "rclpy.executors.ExternalShutdownException"
 _NUMBER = re2.compile(r"-?\d+(?:\.\d+)?")
-_VALUE = re2.compile(rf"{_NUMBER.pattern}|\b(?:None|True|False)\b")
+_NO_FLAG = re2.compile(rf"{_NUMBER.pattern}|\bNone\b")
+_VALUE = re2.compile(rf"{_NO_FLAG.pattern}|\b(?:True|False)\b")
 _SIGNS = re2.compile(r"[^\pL\pN#]+")
 AGAIN_AND_AGAIN = 3
 """The number of times that a client says that it waits, to have said it again and again."""
@@ -129,6 +130,11 @@ def _in_letters(line: str) -> str:
 def shape(line: str) -> str:
     """A line with a place for each number or other bare value, so that it can be compared with another line."""
     return _VALUE.sub("#", line)
+
+
+def answer_shape(line: str) -> str:
+    """The shape of a line that reports an answer: "found: False" says something else than "found: True" does."""
+    return _NO_FLAG.sub("#", line)
 
 
 def goes_on_waiting(part: Part) -> bool:

@@ -178,8 +178,8 @@ def returned_instead(part: Part, wanted: Sequence[int]) -> str:
     """
     if part.returned is None:
         return ""
-    # A type may be named beside the numbers, as in np.int32(5).
-    numbers = re2.findall(r"\d+", re2.sub(r"int\d+", "", part.returned))
+    # Beside the numbers may stand their type, as in np.int32(5), and how many there may be, as in deque([5], maxlen=9).
+    numbers = re2.findall(r"\d+", re2.sub(r"int\d+|maxlen=\d+", "", part.returned))
     right = numbers == [str(number) for number in wanted]
     return "" if right and _SEQUENCE.match(part.returned) else part.returned
 
@@ -325,7 +325,7 @@ _NO_OTHER = re2.compile(
 
 
 def _names_another(line: str) -> bool:
-    return _ANOTHER.search(_NO_OTHER.sub("", line)) is not None
+    return _ANOTHER.search(_NO_OTHER.sub("", words.without_denied(line))) is not None
 
 
 def given_up(evidence: Evidence) -> str:

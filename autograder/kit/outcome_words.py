@@ -26,11 +26,10 @@ SUCCESS = r"succe|erfolg"
 _LIST = re2.compile(r"[\[(][^\[\]()\pL]*\d[\s,;][^\[\]()\pL]*[\])]|\[\]|\(\)")
 _EMPTY_BOX = re2.compile(r"(?:\[\s+\]|\(\s+\)|[☐✗✘❌])\s*(?:\d+\W{1,3})?\w+")
 _YES, _NO = r"(?:true|yes|ja|oui|sí|si)", r"(?:false|no|nein|non)"
-_ANSWERED = re2.compile(
-    r"(?i)(?P<question>[^\s,;:=?.|(){}][^,;:=?.|(){}]*?)[\"']?\s*(?:=|:|->|\bis\b|\bwas\b|\bist\b|\?)+\s*[\"']?"
-    rf"(?P<flag>{_YES}|{_NO})\b"
-)
+_QUESTION = r"(?i)(?P<question>[^\s,;:=?.|(){}][^,;:=?.|(){}]*?)[\"']?\s*(?:=|:|->|\bis\b|\bwas\b|\bist\b|\?)+\s*[\"']?"
+_ANSWERED = re2.compile(rf"{_QUESTION}(?P<flag>{_YES}|{_NO})\b")
 """A question and its yes or no, as in ``canceled=True`` and in "goal canceled as asked: no"."""
+_DENIED = re2.compile(rf"{_QUESTION}{_NO}\b")
 _WISH = r"(?i)\bask|request|to be|want|expect|should|hope"
 _NOT = r"(?i)\bnot\b|\bnot_|n't|\bnicht\b"
 
@@ -38,6 +37,11 @@ _NOT = r"(?i)\bnot\b|\bnot_|n't|\bnicht\b"
 def without_lists(line: str) -> str:
     """A line without the sequences in it: their numbers are no status. A single number in brackets is no sequence."""
     return _LIST.sub("", line)
+
+
+def without_denied(line: str) -> str:
+    """A line without each question that it answers by no, as in ``canceled=False``."""
+    return str(_DENIED.sub("", line))
 
 
 def names_canceled(line: str) -> bool:

@@ -174,8 +174,10 @@ def gives_up_in_time(evidence: Evidence) -> Finding:
         wrong = "does the same, without a call, where the service is only late"
     else:
         usual = [other for other in Client(evidence).served if other.name != LATE and reports(other)]
-        reported = {giving_up.shape(line) for other in usual for line in _reporting(other)}
-        wrong = giving_up.objection(part, usual, is_report=lambda line: giving_up.shape(line) in reported)
+        reported = {giving_up.answer_shape(line) for other in usual for line in _reporting(other)}
+        wrong = giving_up.objection(
+            part, usual, is_report=lambda line: giving_up.answer_shape(line) in reported
+        )
     seen = "says again and again that it waits" if giving_up.goes_on_waiting(part) else "it did"
     return Finding(not wrong, "says so and ends by itself", wrong or seen)
 

@@ -171,6 +171,7 @@ def test_names_around_the_true_one_claim_nothing(lines: list[str], false: bool) 
         ("array('i', [1, 2])", True),
         ("[np.int32(1), np.int32(2)]", True),
         ("deque([1, 2])", True),
+        ("deque([1, 2], maxlen=3)", True),
         ("(1, 2)", True),
         ("[2, 1]", False),
         ("my_robot_interfaces.action.Fibonacci_Result(sequence=array('i', [1, 2]))", False),
