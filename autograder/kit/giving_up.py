@@ -45,8 +45,8 @@ SILENT = "ended without saying so"
 """The objection to a client that says nothing of what it misses."""
 _SHUT_DOWN = "rclpy.executors.ExternalShutdownException"
 _NUMBER = re2.compile(r"-?\d+(?:\.\d+)?")
-_NO_FLAG = re2.compile(rf"{_NUMBER.pattern}|\bNone\b")
-_VALUE = re2.compile(rf"{_NO_FLAG.pattern}|\b(?:True|False)\b")
+_NUMBER_OR_NONE = re2.compile(rf"{_NUMBER.pattern}|\bNone\b")
+_VALUE = re2.compile(rf"{_NUMBER_OR_NONE.pattern}|\b(?:True|False)\b")
 _SIGNS = re2.compile(r"[^\pL\pN#]+")
 AGAIN_AND_AGAIN = 3
 """The number of times that a client says that it waits, to have said it again and again."""
@@ -134,7 +134,7 @@ def shape(line: str) -> str:
 
 def answer_shape(line: str) -> str:
     """The shape of a line that reports an answer: "found: False" says something else than "found: True" does."""
-    return _NO_FLAG.sub("#", line)
+    return _NUMBER_OR_NONE.sub("#", line)
 
 
 def goes_on_waiting(part: Part) -> bool:

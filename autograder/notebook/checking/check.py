@@ -117,7 +117,8 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: Place) -> Verdi
         JudgeUnreachable: The judge is gone, or the link was closed.
     """
     link.say(messages.Check(exercise, kind=_kind(subject)))
-    bundle.prepare()  # while the judge makes its node
+    if is_live():
+        bundle.prepare()  # while the judge makes its node
     first = link.hear()
     if isinstance(first, messages.Collect):
         # A grader builds and runs what a path leads to by itself.
