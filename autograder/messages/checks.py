@@ -228,8 +228,8 @@ class Judged(Message, frozen=True, tag="verdict"):
     """The last message: the check is over.
 
     Attributes:
-        verdict: What came of it. None where a grader has it: a submission that knew how its checks went could choose
-            which of two runs of its notebook counts, by what costs the first one its result.
+        verdict: What came of it. None for a submission in its box: one that knew how its checks went could choose which
+            of two runs of its notebook counts, by what costs the first one its result.
     """
 
     verdict: Verdict | None

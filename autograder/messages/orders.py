@@ -17,7 +17,8 @@ class Open(msgspec.Struct, tag="open", frozen=True):
         workspaces: The socket of the grader's side of checks of workspaces, as the judge sees it; empty where there is
             none.
         evidence: Hand over, with the verdict, what it follows from.
-        alone: Nobody is on the judge's network but its subject: a domain whose ports are taken is free all the same.
+        boxed: Judge and notebook are in boxes. Nobody else is on their network, so that a domain whose ports are taken
+            is free all the same; and the notebook is a submission, which hears no verdict.
     """
 
     exercise: str
@@ -25,7 +26,7 @@ class Open(msgspec.Struct, tag="open", frozen=True):
     record: bool = False
     workspaces: str = ""
     evidence: bool = False
-    alone: bool = False
+    boxed: bool = False
 
 
 class Close(msgspec.Struct, tag="close", frozen=True):

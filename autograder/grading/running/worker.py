@@ -120,7 +120,7 @@ def _execute(
         process = judge(place.judge_socket, seed=task.seed, start=start)
         process.workspaces = str(arrangement.judges_socket)
         process.keeps_evidence = True
-        process.is_alone = boxed
+        process.is_boxed = boxed
         return process
 
     first = next((cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts), "")

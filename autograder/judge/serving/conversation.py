@@ -74,7 +74,7 @@ def converse(connection: socket.socket, order: Open | None) -> Report:
     # A grader has asked for this one exercise: it checks again, alone, what a crowded machine may have spoilt.
     seed = own_seed(wanted.seed, exercise.id)
     report, checked = _report(exercise, subject, seed, wanted, marks_crowded=order is not None)
-    _tell(lines, Judged(None if order else _shown(exercise, report)))
+    _tell(lines, Judged(None if wanted.boxed else _shown(exercise, report)))
     # Its notebook goes on already: nobody waits while the evidence is packed.
     return replace(report, evidence=keeping.packed(checked)) if wanted.evidence and checked else report
 
@@ -99,7 +99,7 @@ def _report(
     marks_crowded: bool,
 ) -> tuple[Report, Checked | None]:
     try:
-        with domain.lease(alone=wanted.alone) as domain_id:
+        with domain.lease(alone=wanted.boxed) as domain_id:
             if not wanted.record:
                 stored = reference.load(exercise.id)
                 checked = trial.check(

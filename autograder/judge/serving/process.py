@@ -63,8 +63,8 @@ class JudgeProcess:
         """The socket of the grader's side of checks of workspaces, as the judge sees it; empty where there is none."""
         self.keeps_evidence = False
         """True if reports carry the evidence of their verdicts."""
-        self.is_alone = False
-        """True if nobody is on its network but the one who is checked."""
+        self.is_boxed = False
+        """True if it is in a box, beside that of a submission."""
         self._start = start or _Child
         self._process: StartedJudge | None = None
         self._orders: Lines | None = None
@@ -99,7 +99,7 @@ class JudgeProcess:
             JudgeDied: The judge is gone.
         """
         seed = f"{self._seed}:{exercise_id}"
-        self._order(Open(exercise_id, seed, record, self.workspaces, self.keeps_evidence, self.is_alone))
+        self._order(Open(exercise_id, seed, record, self.workspaces, self.keeps_evidence, self.is_boxed))
 
     def close(self) -> Verdict | None:
         """The verdict of the opened check; None where nobody asked for it or there is none.

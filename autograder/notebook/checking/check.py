@@ -67,7 +67,7 @@ def check(exercise: str, subject: Any) -> float:
             an exercise about files, the path of the workspace or of the launch file.
 
     Returns:
-        The points earned; 0 in a grader's kernel, where nothing is shown either: the judge tells its grader alone.
+        The points earned; 0 in the box of a submission, where no card is shown: the judge tells its grader alone.
 
     Raises:
         TypeError: The subject is neither a class nor a function nor a path; the message says what to write instead.
@@ -105,7 +105,7 @@ def _ask(exercise: str, subject: Any, place: CardDisplay) -> Verdict | None:
 
 
 def converse(link: JudgeLink, exercise: str, subject: Any, card: Place) -> Verdict | None:
-    """Do what the judge says until it has a verdict; None where that is its grader's.
+    """Do what the judge says until it has a verdict; None where it tells its grader alone.
 
     Args:
         link: To the judge.

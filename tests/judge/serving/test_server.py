@@ -120,8 +120,14 @@ def test_an_opened_check_counts_and_a_second_one_does_not(judge: JudgeProcess) -
     assert verdict.seed
     # A student sees it on the card, and must not learn what other checks draw from.
     assert "a seed" not in verdict.seed
-    # Who knew the verdict could choose whether this run counts.
-    assert told["verdict"] is None
+    assert told["verdict"]["score"] == 0
+
+
+def test_a_submission_in_its_box_hears_no_verdict(judge: JudgeProcess) -> None:
+    judge.is_boxed = True
+    judge.open("lab_1_2.talker")
+    assert Kernel(judge).fail_at_once("lab_1_2.talker")["verdict"] is None
+    assert judge.close() is not None
 
 
 def test_another_exercise_than_the_opened_one_is_refused(judge: JudgeProcess) -> None:

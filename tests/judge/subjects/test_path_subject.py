@@ -61,7 +61,9 @@ def test_what_a_notebook_says_besides_its_sources_is_not_heard(judge: JudgeProce
         kernel.say(Output(run, "Hello, ROS 2! From SimpleNode."))
         kernel.say(Constructed(run, "/x"))
     kernel.say(Sources("ros2_ws"))
-    assert kernel.hear(Judged).verdict is None
+    told = kernel.hear(Judged).verdict
+    assert told is not None
+    assert told.score == 0
     verdict = verdict_of(judge)
     assert verdict.score == 0
     assert verdict.diagnosis is not None
