@@ -1,4 +1,4 @@
-"""Make a participant that hears the answers to its own first announcement.
+"""Participants that have just begun: what they call others, and how one hears the answers to its first announcement.
 
 Fast DDS 2.14 announces a new participant before its receivers are registered. Whoever is there already answers within
 0.1 ms, once; if a receiving thread reads that answer too early it is lost, and the next one comes with the periodic
@@ -16,6 +16,9 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+UNNAMED = "_NODE_"
+"""The beginning of the names of nodes that a participant does not know by name yet (rmw_dds_common)."""
 
 
 @contextlib.contextmanager

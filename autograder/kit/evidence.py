@@ -84,9 +84,9 @@ class Part:
         ending = self.ending
         return str(ending.data.get("value")) if ending is not None and ending.name == "returned" else None
 
-    @property
+    @functools.cached_property
     def traceback(self) -> str:
-        """The last traceback that the subject showed, else an empty string.
+        """The last traceback that the subject showed, else an empty string; read once, as most mistakes ask for it.
 
         One that comes from being stopped by the judge does not count: it means nothing.
         """

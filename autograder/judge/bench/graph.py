@@ -15,6 +15,8 @@ from rclpy.action.graph import (
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node, NodeNameNonExistentError
 
+from autograder.ros_participant import UNNAMED
+
 RCLError = rclpy_implementation.RCLError
 
 ROLES = ("publisher", "subscription", "service", "client", "action_server", "action_client")
@@ -45,9 +47,6 @@ class NodeName:
         """Its full name, such as ``/robot/talker``."""
         return f"{self.namespace.rstrip('/')}/{self.name}"
 
-
-UNNAMED = "_NODE_"
-"""The beginning of the names of nodes that are not named yet (rmw_dds_common)."""
 
 Interface = dict[str, dict[str, str]]
 """Role -> {name: type}; where a name has several types they are joined with a comma."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import secrets
 import threading
+import time
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -34,7 +35,8 @@ MAX_SECONDS = 3600.0
 CONSTRUCT_LIMIT = 10.0
 """Seconds of wall time in which a node's constructor must have come to its end."""
 NEWS_LIMIT = 20.0
-"""Seconds in which the notebook's participant must know what the judge has put up; it takes milliseconds."""
+"""Seconds that a notebook's participant may take in all runs of a check to know what the judge has put up; it takes
+milliseconds."""
 STOP_LIMIT = 3.0
 """Seconds of wall time in which the notebook must have stopped a run."""
 
@@ -66,6 +68,7 @@ class RemoteSubject:
         self._stopped = threading.Event()
         self._answered = threading.Event()
         self._seen_as_told = False
+        self._news_left = NEWS_LIMIT
         self._gone = threading.Event()
         self._stack = ""
         self._told_stack = threading.Event()
@@ -86,8 +89,10 @@ class RemoteSubject:
         self._answered.clear()
         self._seen_as_told = False
         fresh, self._fresh = self._fresh, False
-        self._tell(checks.Meet(fresh, sorted(there), sorted(gone), NEWS_LIMIT))
-        self._answered.wait(NEWS_LIMIT + STOP_LIMIT)
+        asked_at = time.monotonic()
+        self._tell(checks.Meet(fresh, sorted(there), sorted(gone), max(0.0, self._news_left)))
+        self._answered.wait(max(0.0, self._news_left) + STOP_LIMIT)
+        self._news_left -= time.monotonic() - asked_at
         # Who has left the conversation is not kept waiting, and gets no points.
         return self._seen_as_told or self._gone.is_set()
 

@@ -34,7 +34,7 @@ class Subject(Protocol):
         of an earlier run, that a service is there.
 
         Returns:
-            False where that did not come within a generous limit: nothing can be said about the subject then.
+            False where that did not come within a generous limit, or nobody says so.
         """
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:

@@ -34,10 +34,12 @@ class Seen:
     Attributes:
         evidence: What happened.
         doubtful: Whether even a pass must be confirmed in real time.
+        unmet: Whether a run began before the subject's participant had met what the judge put up, as far as it says.
     """
 
     evidence: Evidence
     doubtful: bool
+    unmet: bool = False
 
 
 @dataclass(frozen=True)
@@ -47,8 +49,8 @@ class Checked:
     Attributes:
         verdict: What the judge found.
         evidence: What that follows from.
-        crowded: It did not pass in real time, nothing proves a mistake, and the machine was more crowded than the
-            judge's limits allow for.
+        crowded: It did not pass, nothing proves a mistake, and the machine was more crowded in a look in real time than
+            the judge's limits allow for, or the subject had not met what the judge put up.
     """
 
     verdict: Verdict
@@ -95,11 +97,13 @@ def check(
             again = again and not is_certain(exercise, evidence)
         if again:
             with Crowding() as crowding:
-                evidence = replace(look_at(Pace.REAL_TIME, before=evidence).evidence, before=evidence)
+                seen = look_at(Pace.REAL_TIME, before=evidence)
+            evidence = replace(seen.evidence, before=evidence)
             with limited():
                 verdict = judge(exercise, evidence, seed)
-                # What is asked last goes through all mistakes once more.
-                crowded = crowding.too_busy and not verdict.passed and not is_certain(exercise, evidence)
+        if (seen.unmet or (again and crowding.too_busy)) and not verdict.passed:
+            with limited():
+                crowded = not is_certain(exercise, evidence)
         if not verdict.passed and not (delivered and delivers()):
             with limited():
                 certain = is_certain(exercise, evidence)
@@ -140,7 +144,7 @@ def look(
     # A scenario may draw the order of its parts; what is said of them must not depend on it.
     places = {part.name: place for place, part in enumerate(reference.parts)}
     parts = sorted(bench.parts, key=lambda part: places.get(part.name, len(places)))
-    return Seen(Evidence(parts, reference, pace is Pace.REAL_TIME), bench.doubtful)
+    return Seen(Evidence(parts, reference, pace is Pace.REAL_TIME), bench.doubtful, bench.unmet)
 
 
 def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:

@@ -18,7 +18,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from autograder.notebook.nodes.background import destroy_nodes_on
 from autograder.ros_domain import DOMAIN_VARIABLE
-from autograder.ros_participant import receivers_wait
+from autograder.ros_participant import UNNAMED, receivers_wait
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
 _GLOBAL_EXECUTOR = "__executor"
 """The name in ``rclpy/__init__.py``."""
-_UNNAMED = "_NODE_"
-"""The beginning of the names of nodes that are not known yet (rmw_dds_common)."""
 MEETING = 0.5
 """Seconds of wall time for which a run waits until the judge is met. Without it, it is only met later."""
 MEETING_POLL = 0.002
@@ -120,7 +118,7 @@ class CheckContext:
         deadline = time.monotonic() + within
         while True:
             known = self._known({topic for topic, _ in [*there, *gone]})
-            with_its_node = {end for end, node in known.items() if not node.startswith(_UNNAMED)}
+            with_its_node = {end for end, node in known.items() if not node.startswith(UNNAMED)}
             if with_its_node.issuperset(map(tuple, there)) and known.keys().isdisjoint(map(tuple, gone)):
                 return True
             if time.monotonic() > deadline:

@@ -57,7 +57,7 @@ class Kernel:
         self._lines.close()
         self._socket.close()
 
-    def fail_at_once(self, exercise: str) -> dict[str, Any]:
+    def fail_at_once(self, exercise: str, *, met: bool = True) -> dict[str, Any]:
         """Ask for a check whose subject raises whenever it is started; the last words of the judge."""
         self.say(say="check", exercise=exercise)
         while True:
@@ -65,7 +65,7 @@ class Kernel:
             if words["say"] == "begin":
                 self.say(say="ready")
             elif words["say"] == "meet":
-                self.say(say="met", seen=True)
+                self.say(say="met", seen=met)
             elif words["say"] == "start":
                 self.say(say="raised", run=words["run"], traceback="Traceback\nRuntimeError: no")
             elif words["say"] == "stop":
@@ -128,6 +128,14 @@ def test_a_submission_in_its_box_hears_no_verdict(judge: JudgeProcess) -> None:
     judge.open("lab_1_2.talker")
     assert Kernel(judge).fail_at_once("lab_1_2.talker")["verdict"] is None
     assert judge.close() is not None
+
+
+def test_a_notebook_that_denies_to_have_met_the_judge_is_judged_all_the_same(judge: JudgeProcess) -> None:
+    judge.open("inspecting_topics.mismatch")
+    Kernel(judge).fail_at_once("inspecting_topics.mismatch", met=False)
+    verdict = judge.close()
+    assert verdict is not None
+    assert verdict.score == 0
 
 
 def test_another_exercise_than_the_opened_one_is_refused(judge: JudgeProcess) -> None:

@@ -77,6 +77,8 @@ def test_the_last_look_that_is_needed_decides(
         pytest.param(exercise(), ["bad", "bad"], False, False, id="it was not"),
         pytest.param(exercise(), ["bad", "good"], True, False, id="a pass is a pass"),
         pytest.param(exercise(certain=True), ["bad"], True, False, id="as a mistake that is certain"),
+        pytest.param(exercise(), ["bad", "unmet"], False, True, id="it had not met what is there"),
+        pytest.param(exercise(certain=True), ["unmet"], False, False, id="which no certain mistake needs"),
     ],
 )
 def test_a_failure_that_may_be_the_machines_is_marked(
@@ -86,7 +88,9 @@ def test_a_failure_that_may_be_the_machines_is_marked(
     looks = iter(seen)
 
     def look(*_: Any, **__: object) -> trial.Seen:
-        return trial.Seen(Evidence([Part(next(looks))], stored), doubtful=False)
+        name = next(looks)
+        part = Part("bad" if name == "unmet" else name)
+        return trial.Seen(Evidence([part], stored), doubtful=False, unmet=name == "unmet")
 
     monkeypatch.setattr(trial, "look", look)
     monkeypatch.setattr(Crowding, "too_busy", too_busy)
