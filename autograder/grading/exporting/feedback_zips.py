@@ -53,7 +53,8 @@ def feedback_zip(
                 continue
             for page in pages:
                 if lms == "canvas":
-                    called = f"{_canvas(there.file)}.html"
+                    several = f"_{page.stem}" if len(pages) > 1 else ""
+                    called = f"{_canvas(there.file)}{several}.html"
                 else:
                     called = _moodle(table.roster.students[student].name or student, there.number, page.name)
                 # The same class gives the same zip: no time of this machine is in it.

@@ -124,16 +124,20 @@ class _List(NamedTuple):
         has: The columns by which it is known.
         sure: Those that name one student, the surest first.
         called: Those in which people name themselves.
+        numbered: The first of the sure ones has numbers that this LMS gives, and nobody else knows.
     """
 
     has: frozenset[str]
     sure: tuple[str, ...]
     called: tuple[str, ...] = ()
+    numbered: bool = False
 
 
 LISTS = {
     "moodle": _List(frozenset({"Identifier", "Grade"}), ("Email address", "ID number"), ("Full name",)),
-    "canvas": _List(frozenset({"Student", "ID", "Section"}), ("ID", "SIS Login ID"), ("Student",)),
+    "canvas": _List(
+        frozenset({"Student", "ID", "Section"}), ("ID", "SIS Login ID"), ("Student",), numbered=True
+    ),
     "gradescope": _List(frozenset({"SID", "Email"}), ("SID", "Email")),
 }
 """The lists that can be filled in, by the system that exports them."""
@@ -247,9 +251,18 @@ def _column(header: Sequence[str], called: str) -> int:
 
 def _who(table: ClassTable, lms: str, values: Iterable[str]) -> tuple[Student, int] | None:
     """The student of a line, and the place of the value that says so: those that say it best come first."""
-    for place, value in enumerate(values):
-        for identity in (Identity(lms, number=value), Identity(lms, login=value), Identity(lms, name=value)):
-            found = table.roster.find(identity) if value else ()
-            if len(found) == 1:
-                return found[0], place
+    tried = [
+        (place, kind, value)
+        for place, value in enumerate(values)
+        for kind in ("number", "login", "name")
+        if value
+    ]
+    if LISTS[lms].numbered:
+        # A number of the LMS's own may be somebody else's id in the class: asked so last, and the weakest reason.
+        own = [(len(tried), kind, value) for place, kind, value in tried if place == 0 and kind != "number"]
+        tried = [one for one in tried if one[0] or one[1] == "number"] + own
+    for place, kind, value in tried:
+        found = table.roster.find(Identity(lms, **{kind: value}))
+        if len(found) == 1:
+            return found[0], place
     return None

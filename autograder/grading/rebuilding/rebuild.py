@@ -8,6 +8,7 @@ cells show are the master's, and each of them is there no more often than in the
 
 from __future__ import annotations
 
+import itertools
 import re  # noqa: TID251  (a class of characters each, nothing repeated: there is nothing to try twice)
 from collections import Counter
 from typing import TYPE_CHECKING
@@ -118,8 +119,8 @@ class _Sorting:
         found = []
         if len(places) > 1 and is_answer(master):
             found.append(
-                f"The cell {_quoted(name)} was there {len(places)} times. The last one that you changed "
-                "counts as your answer; the others run as cells of your own."
+                f"The cell {_quoted(name)} was there {len(places)} times. The last one that you changed before its "
+                "check counts as your answer; the others run as cells of your own."
             )
         elif len(places) > 1:
             found.append(f"The cell {_quoted(name)} was there {len(places)} times. It runs once.")
@@ -134,10 +135,20 @@ class _Sorting:
         return found
 
     def _choose(self, name: str, places: list[int]) -> int:
-        """The last submitted cell of that name, as when all are run; a copy of the untouched stub does not count."""
+        """The last submitted cell of that name before its check, as the check sees it when all cells are run.
+
+        A copy of the untouched stub does not count, and one behind the check only where there is no other.
+        """
         stub = self._master[name].source.strip()
-        answered = [place for place in places if self._submitted[place].source.strip() != stub]
-        return (answered or places)[-1]
+        answered = [place for place in places if self._submitted[place].source.strip() != stub] or places
+        check = self._place_of_next_check(name)
+        return ([place for place in answered if place < check] or answered)[-1]
+
+    def _place_of_next_check(self, name: str) -> int:
+        """The last place of the first check behind a cell of the master that is in the submission."""
+        behind = itertools.dropwhile(lambda other: other != name, self._master)
+        checks = (self._places[one] for one in behind if is_check(self._master[one]) and one in self._places)
+        return max(next(checks, [len(self._submitted)]))
 
     def _extras_by_anchor(self) -> dict[str, list[SubmittedCell]]:
         """The student's own cells, by the named cell that they follow."""

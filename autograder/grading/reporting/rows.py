@@ -99,6 +99,16 @@ class Row:
         return self.state in _NOTHING_JUDGED and self.by_hand is None and not self.extra
 
     @property
+    def is_unchecked(self) -> bool:
+        """True if it was handed in and nothing is known of it: the next run may have its points."""
+        return self.is_blank and self.state in (NOT_GRADED, State.NOT_CHECKED)
+
+    @property
+    def is_to_come(self) -> bool:
+        """True if its points are still to come: from the next run, or from a person."""
+        return self.is_unchecked or self.state == WAITS
+
+    @property
     def shown_score(self) -> float | None:
         """The points; None where there are none to be had."""
         return None if self.is_blank else self.score

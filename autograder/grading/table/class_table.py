@@ -92,8 +92,13 @@ class ClassTable:
         )
 
     def score(self, student: str, assignment: str = "") -> float | None:
-        """A student's points as the gradebook has them, less what being late costs; None where there are none."""
-        return self.points(self.of(student, assignment))
+        """A student's points as the gradebook has them, less what being late costs.
+
+        None where there are none, and for an assignment with a check that could not be made: without that one, its
+        points are a number that somebody might take for the last word.
+        """
+        rows = self.of(student, assignment)
+        return None if assignment and any(row.is_unchecked for row in rows) else self.points(rows)
 
     def points(self, rows: Sequence[Row]) -> float | None:
         """The points of some of a student's rows together, by the same rule."""

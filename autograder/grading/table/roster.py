@@ -183,9 +183,11 @@ class Roster:
         return exact or self._all(lambda one: login == _folded(one.email.partition("@")[0]))
 
     def _by_name(self, identity: Identity) -> tuple[Student, ...]:
-        words = sorted(_words(identity.name))
-        if words:
-            return self._all(lambda one: sorted(_words(one.name)) == words or _words(one.id) == words)
+        if words := _words(identity.name):
+            forms = _forms(identity.name)
+            return self._all(
+                lambda one: not forms.isdisjoint(_forms(one.name)) or _words(one.id) == sorted(words)
+            )
         login = "".join(_words(identity.login))
         return self._all(lambda one: bool(login) and login in _joined_names(one))
 
@@ -315,6 +317,14 @@ def _in_gradebook(url: str) -> list[Student]:
 
 def _folded(text: str) -> str:
     return unicodedata.normalize("NFC", text).casefold().strip()
+
+
+_APOSTROPHES = str.maketrans(dict.fromkeys("'’‘ʼ`´"))
+
+
+def _forms(name: str) -> set[tuple[str, ...]]:
+    """A name's words in the order of the alphabet, as systems write them that drop an apostrophe or make it a blank."""
+    return {tuple(sorted(_words(form))) for form in (name, name.translate(_APOSTROPHES))}
 
 
 def _words(name: str) -> list[str]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import msgspec
 
 from autograder.grading.errors import GradingError
-from autograder.grading.reporting.rows import DROPPED, LATE, NOT_SUBMITTED, Row, total
+from autograder.grading.reporting.rows import DROPPED, LATE, Row, total
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -63,7 +63,7 @@ class WhatCounts:
             by_assignment.setdefault(row.assignment, []).append(row)
         worth = {name: sum(row.max_score for row in own) for name, own in by_assignment.items()}
         points = {name: total(own) for name, own in by_assignment.items() if worth[name]}
-        to_come = any(row.is_blank and row.max_score and row.state != NOT_SUBMITTED for row in rows)
+        to_come = any(row.is_to_come and row.max_score for row in rows)
         if to_come or total(rows) is None:
             return list(rows)
         shares = {name: -1.0 if own is None else own / worth[name] for name, own in points.items()}

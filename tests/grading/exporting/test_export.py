@@ -105,6 +105,13 @@ def test_canvas_takes_the_pages_under_the_names_of_its_files(graded: TinyClass) 
     for name in ("lovelaceada_101_9001_lab_1_2-2.html", "nunezjose_LATE_103_9002_lab_1_2.html"):
         found = read_path((name,), "canvas", lambda _: False)
         assert found is not None
+    pages = graded.path / "feedback" / "ada" / "lab_1_2"
+    shutil.copy(pages / "lab_1_2.html", pages / "second.html")
+    export(graded.path, "canvas")
+    (pages / "second.html").unlink()
+    with zipfile.ZipFile(graded.path / "export" / "feedback-canvas-lab_1_2.zip") as archive:
+        of_ada = [name for name in archive.namelist() if name.startswith("lovelaceada_101_9001_")]
+    assert len(set(of_ada)) == 2
 
 
 def test_no_name_in_an_unpacked_zip_sends_a_page_to_somebody_else(

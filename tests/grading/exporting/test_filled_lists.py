@@ -77,6 +77,21 @@ def test_points_that_somebody_gave_in_the_lms_stay_where_the_class_has_none(
         assert rows(klass.path / "export" / "list.csv")[1][place] == "0"
 
 
+def test_a_number_of_canvas_is_no_students_number_where_anything_else_says_who_it_is(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    (klass.path / "students.csv").write_text("id,first_name,last_name\n101,Zoe,Zander\nbob,Bob,Bell\n")
+    for student, points in (("101", 4), ("bob", 9)):
+        klass.submit(student, points, 0)
+    klass.grade()
+    into = tmp_path / "list.csv"
+    into.write_text(
+        'Student,ID,SIS User ID,SIS Login ID,Section,lab_1_2\n"Bell, Bob",101,,,A,\n"Zander, Zoe",7,,,A,\n'
+    )
+    export(klass.path, "canvas", into=into)
+    assert [row[-1] for row in rows(klass.path / "export" / "list.csv")] == ["lab_1_2", "9", "4"]
+
+
 @pytest.mark.parametrize(("to", "excused"), [("canvas", "EX"), ("moodle", "")])
 def test_who_is_excused_has_the_systems_word_for_it(
     klass: TinyClass, tmp_path: Path, to: str, excused: str

@@ -113,6 +113,28 @@ def test_of_a_duplicated_answer_the_last_changed_one_counts_and_all_run(master: 
     assert "3 times" in " ".join(rebuilt.metadata.autograder.remarks)
 
 
+def test_a_copy_behind_its_check_is_an_experiment_and_stays_there(master: NotebookNode) -> None:
+    cells = as_submitted(master, **ANSWERS)
+    copy = SubmittedCell(CellType.CODE, "class Talker: 'an experiment'", "Talker")
+    cells += [copy, SubmittedCell(CellType.CODE, "while True: ...")]
+    assert sources(rebuild(master, cells))[1:] == [*WHOLE, copy.source, "while True: ..."]
+
+
+def test_a_copy_with_a_copy_of_its_check_behind_it_counts(master: NotebookNode) -> None:
+    cells = as_submitted(master, **ANSWERS)
+    cells.append(SubmittedCell(CellType.CODE, "class Talker: 'better'", "Talker"))
+    cells.append(SubmittedCell(CellType.CODE, "check(Talker)", "check-talker"))
+    found = sources(rebuild(master, cells))
+    assert found.index("class Talker: 'better'") < found.index("check(Talker)")
+
+
+def test_an_answer_that_is_only_behind_its_check_counts(master: NotebookNode) -> None:
+    cells = as_submitted(master, **ANSWERS)
+    cells.append(cells.pop(2))
+    found = sources(rebuild(master, cells))
+    assert found.index("class Talker: ...") < found.index("check(Talker)")
+
+
 def test_a_duplicated_check_runs_once(master: NotebookNode) -> None:
     cells = as_submitted(master, **ANSWERS)
     cells.insert(4, SubmittedCell(CellType.CODE, "check(Talker)", "check-talker"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
@@ -71,6 +72,17 @@ def test_the_points_that_can_be_had_are_those_of_who_can_have_most() -> None:
     assert [both.max_score(name) for name in ("lab_1", "lab_2", "", "lab_9")] == [10, 10, 10, 0]
     assert [both.only([one]).max_score("lab_1") for one in ("ada", "ben")] == [0, 10]
     assert ClassTable((), Roster([]), {}).max_score() == 0
+
+
+def test_an_assignment_of_which_one_check_could_not_be_made_has_no_points_yet() -> None:
+    rows = (
+        Row("ada", "lab_1", "lab_1.a", 10, 10, "passed"),
+        Row("ada", "lab_1", "lab_1.b", 0, 10, "not_checked"),
+    )
+    unchecked = ClassTable(rows, Roster([Student("ada")]), {})
+    assert unchecked.score("ada", "lab_1") is None
+    by_hand = replace(unchecked, rows=(rows[0], replace(rows[1], score=6.0, by_hand=6.0)))
+    assert by_hand.score("ada", "lab_1") == 16
 
 
 def test_who_is_excused_from_half_is_where_their_share_is() -> None:
