@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory
 from autograder.grading.classes.timestamps import TIMESTAMP, timestamp_text
+from autograder.grading.collecting.handed_out import HandedOut
 from autograder.grading.collecting.outcomes import Outcome, State
 from autograder.grading.collecting.records import Collected, CollectedRecords, History, repository_of
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
@@ -47,6 +48,7 @@ class Candidate:
         number: The number that a browser or a system has added to its name.
         is_named: Whether it is called as the notebook is.
         is_sure: Whether the system's number says whose it is, and not a name that students may choose.
+        has_work: Whether it has more than what was handed out; only looked into where another one may count.
     """
 
     student: str
@@ -58,6 +60,7 @@ class Candidate:
     number: int
     is_named: bool
     is_sure: bool
+    has_work: bool = True
 
     @property
     def data(self) -> bytes:
@@ -90,6 +93,7 @@ class Placing:
     def __init__(self, directory: ClassDirectory) -> None:
         self._directory = directory
         self._records = CollectedRecords(directory.state)
+        self._handed_out = HandedOut(directory)
 
     def place(self, candidates: Iterable[Candidate]) -> Iterator[Outcome]:
         """Put the newest of each student and notebook into ``submitted``, and give the outcome of each.
@@ -101,7 +105,7 @@ class Placing:
         for candidate in candidates:
             groups[candidate.assignment, candidate.student, candidate.collected.notebook].append(candidate)
         for key in sorted(groups):
-            newest, others = _newest(groups[key])
+            newest, others = _newest(self._looked_into(groups[key]))
             for other, outcome in others:
                 if outcome.state == State.EARLIER:
                     self._keep(other)
@@ -137,6 +141,18 @@ class Placing:
             if now != history.now:
                 self._write(student, assignment, replace(history, now=now))
                 yield student, assignment, when
+
+    def _looked_into(self, group: list[Candidate]) -> list[Candidate]:
+        """The files of a group, each with whether it has work; of one file alone nobody has to know."""
+        if len({one.content for one in group}) == 1:
+            return group
+        return [
+            replace(
+                one,
+                has_work=self._handed_out.has_work(one.assignment, one.collected.notebook, one.data),
+            )
+            for one in group
+        ]
 
     def _put(self, newest: Candidate) -> Outcome:
         notebook = newest.collected.notebook
@@ -190,9 +206,9 @@ class Placing:
 def _newest(group: list[Candidate]) -> tuple[Candidate | None, _Others]:
     """The file of a student's that counts, and the outcomes of the others; None where nothing says which.
 
-    Of files that were handed in together the one counts that is called as the notebook is. What is in a folder of
-    another name, from which the student may only have been guessed, is not together with it: no number that its owner
-    gave to a file puts it before.
+    Of files that were handed in together one with work goes before one that is as it was handed out, and then the one
+    counts that is called as the notebook is. What is in a folder of another name, from which the student may only have
+    been guessed, is not together with it: no number that its owner gave to a file puts it before.
     """
     outcomes: _Others = []
     by_name = [one for one in group if _is_by_name(one)]
@@ -208,7 +224,9 @@ def _newest(group: list[Candidate]) -> tuple[Candidate | None, _Others]:
         together[one.download, one.collected.when, one.found.readings[:1]].append(one)
     firsts: list[Candidate] = []
     for files in together.values():
-        first, others = _best(files, lambda one: (one.is_named, one.collected.order, one.number))
+        first, others = _best(
+            files, lambda one: (one.has_work, one.is_named, one.collected.order, one.number)
+        )
         outcomes += others
         firsts += [first] if first else []
     timed = all(one.collected.when is not None for one in firsts)
@@ -216,7 +234,7 @@ def _newest(group: list[Candidate]) -> tuple[Candidate | None, _Others]:
     newest, others = _best(
         firsts,
         lambda one: (
-            one.collected.when.timestamp() if timed and one.collected.when else 0.0,
+            one.collected.when.timestamp() if timed and one.collected.when else float(one.has_work),
             one.collected.order,
             one.number if alike else 0,
         ),
@@ -258,15 +276,19 @@ def _best(
     for one in files:
         if one is not best:
             same = one.content == best.content
-            place = f"submitted/{best.student}/{best.assignment}/{best.collected.notebook}{SUFFIX}"
-            counts = (
-                "is newer and counts; this one is kept"
-                if best.is_named <= one.is_named
-                else f"has the notebook's own name and counts; this one is kept: to let it count, put it at {place}"
-            )
-            reason = "" if same else f"{best.label} {counts}"
+            reason = "" if same else f"{best.label} {_why_it_counts(best, one)}"
             others.append((one, one.outcome(State.UNCHANGED if same else State.EARLIER, reason)))
     return best, others
+
+
+def _why_it_counts(best: Candidate, other: Candidate) -> str:
+    """The reason why a file counts and another one of the same student does not."""
+    if best.has_work > other.has_work:
+        return "has answers and counts; this one is as it was handed out, or cannot be read, and is kept"
+    if best.is_named <= other.is_named:
+        return "is newer and counts; this one is kept"
+    place = f"submitted/{best.student}/{best.assignment}/{best.collected.notebook}{SUFFIX}"
+    return f"has the notebook's own name and counts; this one is kept: to let it count, put it at {place}"
 
 
 def _has_news(newest: Collected, known: Collected) -> bool:

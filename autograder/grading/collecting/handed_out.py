@@ -1,0 +1,57 @@
+"""A notebook as the class hands it out, to tell it from a student's work: who has two files may send both."""
+
+from __future__ import annotations
+
+import functools
+from typing import TYPE_CHECKING
+
+from autograder.grading.classes.class_directory import SUFFIX
+from autograder.grading.errors import GradingError
+from autograder.grading.rebuilding.rebuild import grade_id, is_answer
+from autograder.grading.rebuilding.submission import UnreadableSubmission, parse, read_bytes
+
+if TYPE_CHECKING:
+    from autograder.grading.classes.class_directory import ClassDirectory
+
+
+class HandedOut:
+    """Knows what of a notebook is the class's, and what is a student's.
+
+    Args:
+        directory: The class.
+    """
+
+    def __init__(self, directory: ClassDirectory) -> None:
+        self._directory = directory
+        self._texts = functools.cache(self._read)
+
+    def has_work(self, assignment: str, notebook: str, data: bytes) -> bool:
+        """True if a file has an answer, or a cell of the student's own, that was not handed out.
+
+        Where the class's notebook cannot be read, every notebook may be work. What cannot be read is none.
+        """
+        try:
+            cells, _ = parse(data)
+        except UnreadableSubmission:
+            return False
+        given, theirs = self._texts(assignment, notebook)
+        return not given or any(
+            cell.source.strip() not in given for cell in cells if cell.grade_id not in theirs
+        )
+
+    def _read(self, assignment: str, notebook: str) -> tuple[set[str], set[str]]:
+        """The texts of its cells, and the names of the cells that no student changes."""
+        try:
+            cells = self._directory.master(assignment, notebook).cells
+        except GradingError:
+            return set(), set()
+        given = {"", *(cell.source.strip() for cell in cells), *self._released(assignment, notebook)}
+        return given, {grade_id(cell) for cell in cells if not is_answer(cell)} - {""}
+
+    def _released(self, assignment: str, notebook: str) -> set[str]:
+        """The texts of the notebook in ``release``, which may be older than its source."""
+        path = self._directory.path / "release" / assignment / f"{notebook}{SUFFIX}"
+        try:
+            return {cell.source.strip() for cell in parse(read_bytes(path))[0]}
+        except UnreadableSubmission:
+            return set()

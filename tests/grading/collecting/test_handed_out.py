@@ -1,0 +1,97 @@
+"""A hand-out that a student never wrote in takes the place of no work, whatever either of them is called."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import nbformat
+import pytest
+from downloads import ROSTER, write_zip, zipped
+from test_collect import kept, lies, why, work
+
+from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.outcomes import CollectReport, State
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import TinyClass
+
+COPY = "lab_1_2 (your copy, 2026-11-21).ipynb"
+
+
+@pytest.fixture
+def klass(tiny: TinyClass) -> TinyClass:
+    """A tiny class with a roster."""
+    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
+    return tiny
+
+
+def untouched(klass: TinyClass, own: str = "") -> str:
+    """The hand-out, run once and saved, perhaps with a cell of the student's own at its end."""
+    notebook = klass.released()
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            cell.execution_count = 1
+    notebook.cells.append(nbformat.v4.new_code_cell(own))
+    text: str = nbformat.writes(notebook)
+    return text
+
+
+def gathered(klass: TinyClass, folder: Path, files: dict[str, str], *, inner: bool = False) -> CollectReport:
+    """Collect what Ada handed in at once, in a zip of her own or file by file."""
+    ada = "Ada Lovelace_1_assignsubmission_file_{}"
+    held: dict[str, bytes | str] = {ada.format(name): text for name, text in files.items()}
+    if inner:
+        held = {ada.format("work.zip"): zipped(files)}
+    return collect(klass.path, [write_zip(folder / "m.zip", held)])
+
+
+@pytest.mark.parametrize("inner", [False, True])
+@pytest.mark.parametrize(
+    ("fresh", "worked_on"),
+    [
+        ("lab_1_2.ipynb", "lab_1_2_ada.ipynb"),
+        ("lab_1_2 (1).ipynb", "lab_1_2.ipynb"),
+        ("lab_1_2.ipynb", COPY),
+        ("lab_1_2.ipynb", "homework.ipynb"),
+    ],
+)
+def test_work_goes_before_a_hand_out(
+    klass: TinyClass, tmp_path: Path, fresh: str, worked_on: str, *, inner: bool
+) -> None:
+    files = {fresh: untouched(klass), worked_on: work(klass, 3)}
+    report = gathered(klass, tmp_path, files, inner=inner)
+    assert (why(report), lies(klass, "ada")) == ("", work(klass, 3))
+    (earlier,) = report.having(State.EARLIER)
+    assert earlier.label.endswith(fresh)
+    assert "has answers and counts; this one is as it was handed out" in earlier.reason
+    assert kept(klass) == [files[fresh]]
+
+
+def test_what_cannot_be_read_goes_behind_work(klass: TinyClass, tmp_path: Path) -> None:
+    cut = work(klass, 4)[:-100]
+    report = gathered(klass, tmp_path, {"lab_1_2.ipynb": cut, "lab_1_2_ada.ipynb": work(klass, 3)})
+    assert (why(report), lies(klass, "ada")) == ("", work(klass, 3))
+    assert kept(klass) == [cut]
+
+
+def test_a_cell_of_the_students_own_is_work(klass: TinyClass, tmp_path: Path) -> None:
+    mine = untouched(klass, "def Talker():\n    return 7")
+    gathered(klass, tmp_path, {"lab_1_2.ipynb": mine, "lab_1_2_old.ipynb": work(klass, 3)})
+    assert lies(klass, "ada") == mine
+
+
+def test_a_stub_of_an_older_release_is_no_work(klass: TinyClass, tmp_path: Path) -> None:
+    """The source was changed since, and the notebook that students have was not."""
+    source = klass.path / "source" / "lab_1_2" / "lab_1_2.ipynb"
+    source.write_text(source.read_text().replace("The talker's points", "What the talker earns"))
+    gathered(klass, tmp_path, {"lab_1_2.ipynb": untouched(klass), "lab_1_2_ada.ipynb": work(klass, 3)})
+    assert lies(klass, "ada") == work(klass, 3)
+
+
+def test_where_the_source_is_damaged_the_exact_name_counts(klass: TinyClass, tmp_path: Path) -> None:
+    files = {"lab_1_2.ipynb": untouched(klass), "lab_1_2_ada.ipynb": work(klass, 3)}
+    (klass.path / "source" / "lab_1_2" / "lab_1_2.ipynb").write_text("<<<<<<< HEAD")
+    gathered(klass, tmp_path, files, inner=True)
+    assert lies(klass, "ada") == files["lab_1_2.ipynb"]
