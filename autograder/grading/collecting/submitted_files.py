@@ -320,17 +320,19 @@ def _older(newest: Candidate, known: Collected, history: History) -> Outcome | N
             at = f"{known.when:%Y-%m-%d %H:%M} UTC"
             return newest.outcome(State.EARLIER, f"the one that is there was handed in later ({at})")
         return None
-    if new.order and known.order and new.order != known.order:
-        if new.order < known.order:
-            return newest.outcome(State.EARLIER, "the one that is there was handed in later")
+    if new.order and known.order and new.order < known.order:
+        return newest.outcome(State.EARLIER, "the one that is there was handed in later")
+    # A number says that it is newer, not when: late work would count as if it had been handed in on time.
+    is_newer = bool(new.order and known.order) and new.order > known.order
+    if is_newer and (new.when is not None or known.when is None):
         return None
-    if any(one.content == newest.content for one in history.before):
+    if not is_newer and any(one.content == newest.content for one in history.before):
         return newest.outcome(State.EARLIER, "it was collected before, and a newer one after it")
     if known.when is not None:
-        at = f"{known.when:%Y-%m-%d %H:%M}"
+        unknown = "when it was handed in, which is known of" if is_newer else "whether it is newer than"
         return newest.outcome(
             State.NOT_PLACED,
-            f"nothing says whether it is newer than the one that is there, handed in {at} UTC: say when, with "
+            f"nothing says {unknown} the one that is there, handed in {known.when:%Y-%m-%d %H:%M} UTC: say when, with "
             "--handed-in TIME or --times FILE",
         )
     return None

@@ -314,6 +314,27 @@ def test_what_came_without_a_time_does_not_replace_what_has_one(klass: TinyClass
     assert lies(klass, "ada") == work(klass, 1)
 
 
+def test_a_newer_file_of_canvas_without_a_time_does_not_replace_what_has_one(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    """It may be late, and would count as if it had been handed in on time."""
+    canvas = "lovelaceada_LATE_101_{}_lab_1_2.ipynb"
+    gathered(klass, tmp_path, {canvas.format(9002): work(klass, 2)}, handed_in=datetime(2025, 10, 3, 14))
+    for number, points in ((9003, 3), (9004, 1)):
+        report = gathered(klass, tmp_path, {canvas.format(number): work(klass, points)})
+        assert "nothing says when it was handed in, which is known of the one that is there" in why(report)
+        assert (lies(klass, "ada"), stamp(klass, "ada")[:10]) == (work(klass, 2), "2025-10-03")
+    report = gathered(klass, tmp_path, {canvas.format(9001): work(klass, 1)})
+    assert [one.state for one in report.outcomes] == [State.EARLIER]
+    late = {canvas.format(9003): work(klass, 3)}
+    gathered(klass, tmp_path, late, handed_in=datetime(2025, 10, 9, 14))
+    assert (lies(klass, "ada"), stamp(klass, "ada")[:10]) == (work(klass, 3), "2025-10-09")
+    report = gathered(klass, tmp_path, {canvas.format(9005): work(klass, 2)})
+    assert [one.state for one in report.outcomes] == [State.NOT_PLACED], (
+        "the first again, at a time that is unknown"
+    )
+
+
 # -- whatever is collected, in any order and again
 # --------------------------------------------------------------------
 
