@@ -17,7 +17,18 @@ Target = tuple[str, str]
 
 
 class NoTarget(ValueError):
-    """It is not clear which notebook a file is, or it is one that was not asked for; the message says what to do."""
+    """It is not clear which notebook a file is, or it is one that was not asked for; the message says what to do.
+
+    Args:
+        message: The reason, and what to type.
+        assignment: The assignment that its cells are of; empty where they do not say it.
+        is_left_out: Whether the instructor has asked for another assignment, so that it is left out on purpose.
+    """
+
+    def __init__(self, message: str, assignment: str = "", *, is_left_out: bool = False) -> None:
+        super().__init__(message)
+        self.assignment = assignment
+        self.is_left_out = is_left_out
 
 
 def is_notebook(name: str, data: bytes) -> bool:
@@ -74,7 +85,8 @@ class AssignmentOf:
             other = held[0][0]
             raise NoTarget(
                 f"its name says {named[0]} and its cells are those of {other}: ask for the right notebook, or collect "
-                f"it alone and say --assignment {other}"
+                f"it alone and say --assignment {other}",
+                other if all(assignment == other for assignment, _ in held) else "",
             )
         else:
             target = named or (held[0] if len(held) == 1 else None)
@@ -92,7 +104,8 @@ class AssignmentOf:
             other = said[0][0]
             raise NoTarget(
                 f"it is not for {self._asked}: it is the notebook of {other}; to have it there, collect it and say "
-                f"--assignment {other}"
+                f"--assignment {other}",
+                is_left_out=True,
             )
         here = [target for target in said if target[0] == self._asked]
         notebooks = self._directory.notebooks(self._asked)

@@ -272,7 +272,7 @@ class _Collecting:
             try:
                 (assignment, notebook), is_named = self._assignment_from.target(name, data)
             except NoTarget as error:
-                self._outcomes.append(self._soft(file, str(error), Owners(found, ((student,),))))
+                self._outcomes.append(self._without_target(file, error, Owners(found, ((student,),))))
                 continue
             if found.time and found.when is None:
                 self._unread.append(found.time)
@@ -307,6 +307,14 @@ class _Collecting:
     def _when(self, way: Found, student: str, assignment: str) -> datetime | None:
         when = way.when or self._student_of.time(student, assignment, way.identity)
         return self._in_utc(when) or self._handed_in
+
+    def _without_target(self, file: File, error: NoTarget, owners: Owners) -> Outcome:
+        """The outcome of a notebook without a place: it may be work, whatever else of its student's has come."""
+        if error.is_left_out:
+            return self._soft(file, str(error), owners)
+        if error.assignment:
+            return replace(self._soft(file, str(error), owners), assignment=error.assignment)
+        return self._outcome(file, State.NOT_PLACED, str(error), owners)
 
     def _no_notebook(self, file: File, owners: Owners) -> Outcome:
         """The outcome of a file that holds no notebook: a picture, a page of the LMS, or the work in another form."""

@@ -236,6 +236,29 @@ def test_the_cells_say_which_assignment_it_is(klass: TinyClass, tmp_path: Path) 
     assert [one.assignment for one in report.having(State.PLACED)] == ["lab_1_3"]
 
 
+def test_a_notebook_without_a_place_is_named_whatever_else_its_student_has_handed_in(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    other, inner = other_lab(klass), {"lab_1_2.ipynb": work(klass, 3)}
+    nameless = work(klass).replace('"grade_id"', '"nobody"')
+    odd = {"lab_1_2 (1).ipynb": other, "lab_1_3_ada.ipynb": other[:-9], "homework.ipynb": nameless}
+    for name, text in odd.items():
+        held = zipped(inner | {name: text})
+        report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "work.zip"): held})
+        assert [one.assignment for one in report.having(State.PLACED)] in ([], ["lab_1_2"])
+        (waits,) = report.having(State.NOT_PLACED)
+        assert (report.exit_code, waits.label.endswith(f"work.zip/{name}")) == (2, True)
+        assert waits.label in {one.label for one in WaitingList(ClassDirectory(klass.path)).read()}
+
+
+def test_a_second_copy_is_beside_the_notebook_whose_cells_it_has(klass: TinyClass, tmp_path: Path) -> None:
+    other = other_lab(klass)
+    held = zipped({"lab_1_2 (1).ipynb": other, "lab_1_3.ipynb": other})
+    report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "work.zip"): held})
+    (beside,) = report.having(State.BESIDE)
+    assert (report.exit_code, beside.assignment) == (0, "lab_1_3")
+
+
 def test_a_notebook_of_another_assignment_that_was_put_there_by_hand_is_refused_with_its_page(
     klass: TinyClass, fake_engine: FakeEngine
 ) -> None:
