@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import functools
+import itertools
+from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import SUFFIX
@@ -10,6 +12,8 @@ from autograder.grading.collecting.forms import base_and_number
 from autograder.grading.rebuilding.submission import UnreadableSubmission, parse
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
     from autograder.grading.classes.class_directory import ClassDirectory
 
 Target = tuple[str, str]
@@ -44,6 +48,15 @@ def stem_of(name: str) -> tuple[str, int]:
     return base_and_number(name[:end] if end > 0 else name.rpartition(".")[0] or name)
 
 
+def notebooks_by_name(notebooks: Mapping[str, Iterable[str]]) -> dict[str, list[Target]]:
+    """The assignments and notebooks of a class by the notebook's name, without regard to capitals."""
+    found: dict[str, list[Target]] = defaultdict(list)
+    for assignment, names in notebooks.items():
+        for name in names:
+            found[name.casefold()].append((assignment, name))
+    return dict(found)
+
+
 class AssignmentOf:
     """Knows the notebooks of a class by their names and by their cells.
 
@@ -65,7 +78,8 @@ class AssignmentOf:
     def named(self, name: str) -> str:
         """The assignment that the name of any file speaks of, or the instructor does; empty where neither does."""
         stem = base_and_number(name.partition(".")[0])[0]
-        return self._asked or self._notebooks.get(stem.casefold(), ("", ""))[0]
+        assignments = {assignment for assignment, _ in self._notebooks.get(stem.casefold(), ())}
+        return self._asked or (assignments.pop() if len(assignments) == 1 else "")
 
     def target(self, name: str, data: bytes) -> tuple[Target, bool]:
         """The notebook that a file is, and whether its name says so, too.
@@ -77,41 +91,48 @@ class AssignmentOf:
         Raises:
             NoTarget: Nothing says which; or its cells are those of another one than its name or the instructor says.
         """
-        named = self._notebooks.get(stem_of(name)[0].casefold())
+        named = self._notebooks.get(stem_of(name)[0].casefold(), [])
         held = self._by_its_cells(data)
+        agreed = [target for target in named if not held or target in held]
         if self._asked:
-            target = self._of_asked(named, held)
-        elif named is not None and held and named not in held:
-            other = held[0][0]
-            raise NoTarget(
-                f"its name says {named[0]} and its cells are those of {other}: ask for the right notebook, or collect "
-                f"it alone and say --assignment {other}",
-                other if all(assignment == other for assignment, _ in held) else "",
-            )
+            target = self._of_asked(agreed or held)
         else:
-            target = named or (held[0] if len(held) == 1 else None)
+            if named and not agreed:
+                raise _contradiction(named, held)
+            target = _only(agreed or held)
         if target is None:
-            known = ", ".join(self._directory.assignments())
-            raise NoTarget(
-                f"it is not clear which assignment it is for (the class has: {known}): say --assignment NAME"
-            )
-        return target, target == named
+            raise NoTarget(self._unclear(agreed or held))
+        return target, target in named
 
-    def _of_asked(self, named: Target | None, held: list[Target]) -> Target | None:
-        """The notebook of the assignment that was asked for; None where it has several and nothing says which."""
-        said = [named] if named and (not held or named in held) else held
-        if said and self._asked not in {assignment for assignment, _ in said}:
+    def _unclear(self, meant: list[Target]) -> str:
+        """The reason why nothing says which notebook a file is: one of these, or of all where there are none."""
+        assignments = sorted({self._asked} if self._asked else {assignment for assignment, _ in meant})
+        if len(assignments) == 1:
+            names = ", ".join(self._directory.notebooks(assignments[0]))
+            return (
+                f"it is not clear which notebook of {assignments[0]} it is ({names}): rename it to that one, and "
+                "collect it again"
+            )
+        known = f"the class has: {', '.join(self._directory.assignments())}"
+        if assignments:
+            known = f"notebooks of {' and '.join(assignments)} are called so, or have its cells"
+        return f"it is not clear which assignment it is for ({known}): say --assignment NAME"
+
+    def _of_asked(self, said: list[Target]) -> Target | None:
+        """The notebook of the assignment that was asked for; None where it has several and nothing says which.
+
+        Args:
+            said: The notebooks that it may be, by its name and its cells; none where neither says anything.
+        """
+        here = [target for target in said if target[0] == self._asked]
+        if said and not here:
             other = said[0][0]
             raise NoTarget(
                 f"it is not for {self._asked}: it is the notebook of {other}; to have it there, collect it and say "
                 f"--assignment {other}",
                 is_left_out=True,
             )
-        here = [target for target in said if target[0] == self._asked]
-        notebooks = self._directory.notebooks(self._asked)
-        if named in here or len(here) == 1:
-            return named if named in here else here[0]
-        return (self._asked, notebooks[0]) if len(notebooks) == 1 else None
+        return _only(here) or _only([(self._asked, one) for one in self._directory.notebooks(self._asked)])
 
     def _by_its_cells(self, data: bytes) -> list[Target]:
         """The notebooks that have most of its named cells; none where its cells have no names of the class."""
@@ -124,19 +145,17 @@ class AssignmentOf:
         return [target for target, count in shared.items() if most and count == most]
 
     @functools.cached_property
-    def _notebooks(self) -> dict[str, Target]:
-        """Assignment and notebook by the notebook's name."""
-        return {
-            notebook.casefold(): (assignment, notebook)
-            for assignment in self._directory.assignments()
-            for notebook in self._directory.notebooks(assignment)
-        }
+    def _notebooks(self) -> dict[str, list[Target]]:
+        """Assignments and notebooks by the notebook's name, which several assignments may have."""
+        return notebooks_by_name(
+            {name: self._directory.notebooks(name) for name in self._directory.assignments()}
+        )
 
     @functools.cached_property
     def _grade_ids(self) -> dict[Target, set[str]]:
         """The names of the cells of each notebook, as they are handed out; none of one that cannot be read."""
         found: dict[Target, set[str]] = {}
-        for assignment, notebook in self._notebooks.values():
+        for assignment, notebook in itertools.chain.from_iterable(self._notebooks.values()):
             path = self._directory.path / "source" / assignment / f"{notebook}{SUFFIX}"
             try:
                 cells, _ = parse(path.read_bytes())
@@ -147,3 +166,18 @@ class AssignmentOf:
                 )
             found[assignment, notebook] = {cell.grade_id for cell in cells} - {""}
         return found
+
+
+def _only(targets: Sequence[Target]) -> Target | None:
+    """The one target that there is; None where there is none, or several."""
+    return targets[0] if len(targets) == 1 else None
+
+
+def _contradiction(named: list[Target], held: list[Target]) -> NoTarget:
+    """What a file is refused for whose name says one assignment and whose cells say others."""
+    says, other = " or ".join(assignment for assignment, _ in named), held[0][0]
+    return NoTarget(
+        f"its name says {says} and its cells are those of {other}: ask for the right notebook, or collect it alone "
+        f"and say --assignment {other}",
+        other if all(assignment == other for assignment, _ in held) else "",
+    )

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, Refused
+from autograder.grading.collecting.assignment_of import notebooks_by_name
 from autograder.grading.collecting.forms import base_and_number
 
 if TYPE_CHECKING:
@@ -91,16 +92,14 @@ def _composed(folder: Path, found: Tidied) -> Path:
 
 
 def _tidy_student(student: Path, notebooks: dict[str, list[str]], found: Tidied) -> None:
-    targets = {
-        name.casefold(): (assignment, name) for assignment, names in notebooks.items() for name in names
-    }
+    targets = notebooks_by_name(notebooks)
     entries = _entries(student)
     for entry in entries:
         if entry.name in notebooks and _is_folder(entry):
             _tidy_assignment(entry, notebooks[entry.name], found)
     for entry in _first(list(filter(_is_work, entries)), found):
-        target = targets.get(base_and_number(entry.stem)[0].casefold())
-        place = student / target[0] / f"{target[1]}{SUFFIX}" if target else None
+        meant = targets.get(base_and_number(entry.stem)[0].casefold(), [])
+        place = student / meant[0][0] / f"{meant[0][1]}{SUFFIX}" if len(meant) == 1 else None
         # A link in the folder's place may lead to somebody else's; that it is one is said of it.
         if place is None or place.parent.is_symlink() or place.exists() or entry.suffix.lower() != SUFFIX:
             beside = f"; {place} is graded" if place and place.exists() else ""
