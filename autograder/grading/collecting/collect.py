@@ -113,20 +113,14 @@ class _Collecting:
         placing = Placing(self._directory)
         self._outcomes += placing.place(self._candidates)
         work = {(one.student, one.assignment) for one in self._directory.submissions()[0]}
-        asked = [key for key in sorted(work) if self._assignment in ("", key[1])]
-        told = (
-            (student, name, self._in_utc(self._student_of.time(student, name))) for student, name in asked
-        )
-        noted = placing.note_times((student, name, when) for student, name, when in told if when is not None)
-        notes = [f"{student}/{name} was handed in {when:%Y-%m-%d %H:%M} UTC" for student, name, when in noted]
+        notes = self._note_times(placing, sorted(key for key in work if self._assignment in ("", key[1])))
         notes += [
             f"{name} is in the list of times, and nobody is called so" for name in self._student_of.strangers
         ]
         if several := self._student_of.of_several_times:
-            named = ", ".join(several[:_MOST_NAMED]) + (" …" if several[_MOST_NAMED:] else "")
             notes.append(
-                f"lists have several times for {named}, and nothing says which is of what, so none counts: collect "
-                "each assignment in a command of its own, with its list"
+                f"lists have several times for {_some(several)}, and nothing says which is of what, so none counts: "
+                "collect each assignment in a command of its own, with its list"
             )
         notes += self._roster.excused_from_nothing(self._directory.assignments(), self._roster.students)
         notes += self._assignment_from.notes
@@ -141,6 +135,31 @@ class _Collecting:
         ]
         WaitingList(self._directory).note(self._outcomes)
         return self._report(work, notes)
+
+    def _note_times(self, placing: Placing, work: Sequence[tuple[str, str]]) -> list[str]:
+        """Write down what lists say of work that is there, and give back a sentence on each time, new or left out.
+
+        An entry without an assignment may be meant for the one that is collected now: another's known time stays.
+        """
+        records = CollectedRecords(self._directory.state)
+        here = {(one.student, one.assignment) for one in self._candidates}
+        is_clear = bool(self._assignment) or len(self._directory.assignments()) == 1
+        told, kept = [], defaultdict(list)
+        for student, name in work:
+            when = self._in_utc(self._student_of.time(student, name))
+            known = history.when if (history := records.get(name, student)) else None
+            is_meant = is_clear or (student, name) in here or self._student_of.has_time_of(student, name)
+            if when is not None and (is_meant or known is None):
+                told.append((student, name, when))
+            elif when not in (None, known):
+                kept[name].append(student)
+        noted = placing.note_times(told)
+        notes = [f"{student}/{name} was handed in {when:%Y-%m-%d %H:%M} UTC" for student, name, when in noted]
+        return notes + [
+            f"the list of times names no assignment, so the times that are known of {name} stay ({_some(students)}): "
+            f"where it is about {name}, say --assignment {name}"
+            for name, students in kept.items()
+        ]
 
     def _report(self, work: set[tuple[str, str]], notes: Sequence[str]) -> CollectReport:
         records = CollectedRecords(self._directory.state)
@@ -361,6 +380,11 @@ class _Collecting:
             return when.astimezone(UTC)
         except (OverflowError, ValueError):
             return None  # the year 1 or 9999, beyond which a zone leads
+
+
+def _some(names: Sequence[str]) -> str:
+    """The first of these names."""
+    return ", ".join(names[:_MOST_NAMED]) + (" …" if names[_MOST_NAMED:] else "")
 
 
 def _alone(one: Outcome) -> Outcome:

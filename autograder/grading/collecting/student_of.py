@@ -238,6 +238,10 @@ class StudentOf:
         times = next((self._times[key] for key in keys if key in self._times), ())
         return next(iter(times)) if len(times) == 1 else None
 
+    def has_time_of(self, student: str, assignment: str) -> bool:
+        """True if the instructor's lists name this very assignment of a student's."""
+        return ("", student, assignment) in self._times
+
     @property
     def of_several_times(self) -> list[str]:
         """Those of whom lists have several times, so that none counts."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import random
 import zipfile
-from datetime import datetime
 from typing import TYPE_CHECKING, Any
 from zoneinfo import ZoneInfo
 
@@ -21,7 +20,6 @@ from autograder.grading.collecting import outcomes, records, submitted_files
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.outcomes import CollectReport, State, WaitingList
 from autograder.grading.collecting.records import CollectedRecords
-from autograder.grading.errors import GradingError
 from autograder.grading.exporting.export_files import export
 from autograder.grading.report_page.page import write_report
 from autograder.regular_files import write_whole
@@ -278,84 +276,6 @@ def test_a_notebook_of_another_assignment_that_was_put_there_by_hand_is_refused_
     page = (klass.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html").read_text()
     assert reason in page
     assert "was missing. It was put back" not in page
-
-
-# -- when
-# ------------------------------------------------------------------------------------------------------
-
-
-def test_times_come_from_a_list_of_ones_own_also_later(klass: TinyClass, tmp_path: Path) -> None:
-    late = {
-        "lovelaceada_LATE_101_9001_lab_1_2.ipynb": work(klass),
-        "bärben_102_9002_lab_1_2.ipynb": work(klass),
-    }
-    report = gathered(klass, tmp_path, late)
-    assert report.untimed == {"lab_1_2": ("ada", "ben")}
-    klass.submit("zoe")
-    times = tmp_path / "times.csv"
-    times.write_text(
-        "id,handed_in\nada,2025-10-03T14:05\nzoe@uni.example,2025-10-04 10:00:00 +0200\nzack,2025-10-04\n"
-    )
-    nothing = write_zip(tmp_path / "empty.zip", {})
-    report = collect(klass.path, [nothing], times=[times], zone=UTC)
-    assert report.notes == (
-        "ada/lab_1_2 was handed in 2025-10-03 14:05 UTC",
-        "zoe/lab_1_2 was handed in 2025-10-04 08:00 UTC",
-        "zack is in the list of times, and nobody is called so",
-        f"{nothing} holds no file, or only what programs leave beside a work",
-    )
-    assert stamp(klass, "ada") == "2025-10-03 14:05:00.000000 UTC"
-    assert stamp(klass, "zoe") == "2025-10-04 08:00:00.000000 UTC"
-    assert not (klass.path / "submitted" / "ben" / "lab_1_2" / "timestamp.txt").exists()
-    mine = lies(klass, "zoe")
-    gathered(klass, tmp_path, {"zusezoe_105_9002_lab_1_2.ipynb": work(klass, 2)})
-    assert lies(klass, "zoe") == mine, "what the instructor has put there is not overwritten for it"
-    with pytest.raises(GradingError, match="cannot be read"):
-        collect(klass.path, [], times=[tmp_path])
-    times.write_text("who,when\nada,today\n")
-    with pytest.raises(GradingError, match="columns id and handed_in"):
-        collect(klass.path, [], times=[times])
-
-
-def test_handed_in_says_it_of_what_nothing_else_does(klass: TinyClass, tmp_path: Path) -> None:
-    gathered(
-        klass,
-        tmp_path,
-        {"lovelaceada_LATE_101_9001_lab_1_2.ipynb": work(klass)},
-        handed_in=datetime(2025, 10, 3, 14, 5),
-    )
-    assert stamp(klass, "ada") == "2025-10-03 14:05:00.000000 UTC"
-    archive = str(tmp_path / "c.zip")
-    said = CliRunner().invoke(cli, ["collect", str(klass.path), archive, "--handed-in", "noon"])
-    assert (said.exit_code, "--handed-in noon is no time" in said.output) == (2, True)
-
-
-def test_what_came_without_a_time_does_not_replace_what_has_one(klass: TinyClass, tmp_path: Path) -> None:
-    gathered(klass, tmp_path, {"Lab_ada_attempt_2025-10-03-14-00-00_lab_1_2.ipynb": work(klass, 1)})
-    report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "lab_1_2.ipynb"): work(klass, 2)})
-    assert "say when, with --handed-in TIME or --times FILE" in why(report)
-    assert lies(klass, "ada") == work(klass, 1)
-
-
-def test_a_newer_file_of_canvas_without_a_time_does_not_replace_what_has_one(
-    klass: TinyClass, tmp_path: Path
-) -> None:
-    """It may be late, and would count as if it had been handed in on time."""
-    canvas = "lovelaceada_LATE_101_{}_lab_1_2.ipynb"
-    gathered(klass, tmp_path, {canvas.format(9002): work(klass, 2)}, handed_in=datetime(2025, 10, 3, 14))
-    for number, points in ((9003, 3), (9004, 1)):
-        report = gathered(klass, tmp_path, {canvas.format(number): work(klass, points)})
-        assert "nothing says when it was handed in, which is known of the one that is there" in why(report)
-        assert (lies(klass, "ada"), stamp(klass, "ada")[:10]) == (work(klass, 2), "2025-10-03")
-    report = gathered(klass, tmp_path, {canvas.format(9001): work(klass, 1)})
-    assert [one.state for one in report.outcomes] == [State.EARLIER]
-    late = {canvas.format(9003): work(klass, 3)}
-    gathered(klass, tmp_path, late, handed_in=datetime(2025, 10, 9, 14))
-    assert (lies(klass, "ada"), stamp(klass, "ada")[:10]) == (work(klass, 3), "2025-10-09")
-    report = gathered(klass, tmp_path, {canvas.format(9005): work(klass, 2)})
-    assert [one.state for one in report.outcomes] == [State.NOT_PLACED], (
-        "the first again, at a time that is unknown"
-    )
 
 
 # -- whatever is collected, in any order and again
