@@ -8,6 +8,7 @@ a reason.
 from __future__ import annotations
 
 import functools
+import hashlib
 import io
 import itertools
 import os
@@ -75,18 +76,24 @@ class File:
             handed in, the path of that archive.
         read: Reads it, up to the limit of a notebook; raises :class:`NotTaken`.
         inner: The path within an archive that a student has handed in: the student chose it.
+        content: The hash of its bytes; empty where nobody has read them.
     """
 
     source: Path
     parts: tuple[str, ...]
     read: Callable[[], bytes]
     inner: tuple[str, ...] = ()
+    content: str = ""
 
     @property
     def label(self) -> str:
         """Its name in messages."""
         parts = (*self.parts, *self.inner)
         return "/".join(parts if self.source.is_dir() else (name_as_text(self.source.name), *parts))
+
+    def holding(self, data: bytes) -> File:
+        """The same file, and what it holds is known."""
+        return replace(self, content=hashlib.sha256(data).hexdigest())
 
     @property
     def name(self) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import zlib
 from collections import defaultdict
 from dataclasses import replace
@@ -252,16 +251,16 @@ class _Collecting:
                 self._not_taken(file, str(error), owners)
                 continue
             if not is_zip(file.name, data):
-                self._take_file(file, data, owners, source.download)
+                self._take_file(file.holding(data), data, owners, source.download)
             elif reason := self._student_of.reason_against(owners):
-                self._refuse(file, reason, owners)
+                self._refuse(file.holding(data), reason, owners)
             else:
                 ids = tuple(one.id for students in owners.members for one in students)
                 for inner, held in within(file, data, self._rooms[source.download, ids]):
                     if isinstance(held, NotTaken):
                         self._not_taken(inner, str(held), owners)
                     else:
-                        self._take_file(inner, held, owners, source.download)
+                        self._take_file(inner.holding(held), held, owners, source.download)
 
     def _not_taken(self, file: File, reason: str, owners: Owners) -> None:
         """Say why a file cannot be read."""
@@ -285,8 +284,7 @@ class _Collecting:
         """Note a notebook for each of its students, or say why it is for no assignment."""
         # Of what is in a student's own zip the name says which notebook it is, though not whose.
         name = file.name if file.inner else found.file
-        content, packed = hashlib.sha256(data).hexdigest(), zlib.compress(data, 1)
-        identity = found.identity
+        packed, identity = zlib.compress(data, 1), found.identity
         for (student,) in owners.members:
             try:
                 (assignment, notebook), is_named = self._assignment_from.target(name, data)
@@ -297,7 +295,7 @@ class _Collecting:
                 self._unread.append(found.time)
             collected = Collected(
                 notebook,
-                content,
+                file.content,
                 source=file.label if len(owners.members) == 1 else f"{file.label} ({student.id})",
                 collected=datetime.now(tz=UTC),
                 when=self._when(found, student.id, assignment),
@@ -361,10 +359,9 @@ class _Collecting:
         return outcome if outcome.student else _alone(outcome)
 
     def _outcome(self, file: File, state: State, reason: str, owners: Owners) -> Outcome:
-        student = owners.only
-        return Outcome(
-            file.label, state, reason, student.id if student else "", self._assignment_of(file, owners)
-        )
+        student = owners.only.id if owners.only else ""
+        assignment = self._assignment_of(file, owners)
+        return Outcome(file.label, state, reason, student, assignment, content=file.content)
 
     def _assignment_of(self, file: File, owners: Owners) -> str:
         """The assignment that a file's name, as the student gave it, speaks of."""

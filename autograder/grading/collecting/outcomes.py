@@ -16,7 +16,7 @@ from autograder.grading.rebuilding.submission import UnreadableSubmission, read_
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
     from datetime import datetime
     from pathlib import Path
 
@@ -52,6 +52,7 @@ class Outcome:
         late: Whether the LMS marks it as late.
         replaced: Whether another one lay at its place, which is kept.
         what_to_do: The advice if its student's notebook has not come; empty where the reason says it.
+        content: The hash of its bytes; empty where nobody could read them.
     """
 
     label: str
@@ -63,6 +64,7 @@ class Outcome:
     late: bool = False
     replaced: bool = False
     what_to_do: str = ""
+    content: str = ""
 
 
 @dataclass(frozen=True)
@@ -107,6 +109,7 @@ class Waiting:
         student: The student's id; empty where it is not known.
         assignment: The assignment's name; empty where it is not known.
         there: A digest of what lay at its place then: when something else does, it is settled.
+        content: The hash of its bytes; empty where nobody could read them.
     """
 
     label: str
@@ -114,6 +117,7 @@ class Waiting:
     student: str
     assignment: str
     there: str
+    content: str = ""
 
 
 class WaitingList:
@@ -137,16 +141,23 @@ class WaitingList:
         return [one for one in known if not one.assignment or one.there == there(one.student, one.assignment)]
 
     def note(self, outcomes: Sequence[Outcome]) -> None:
-        """Write down the files that have no place now; what was written of the same files before is replaced.
+        """Write down the files that have no place now, in place of what was written of the same ones before.
 
         Raises:
             OSError: It could not be written.
         """
-        again = {one.label for one in outcomes}
-        kept = [one for one in self.read() if one.label not in again]
+        again = {key for one in outcomes for key in _keys(one)}
+        kept = [one for one in self.read() if not again.intersection(_keys(one))]
         there = functools.cache(self._there)
         new = [
-            Waiting(one.label, one.reason, one.student, one.assignment, there(one.student, one.assignment))
+            Waiting(
+                one.label,
+                one.reason,
+                one.student,
+                one.assignment,
+                there(one.student, one.assignment),
+                one.content,
+            )
             for one in outcomes
             if one.state == State.NOT_PLACED
         ]
@@ -178,3 +189,16 @@ class WaitingList:
     def _write(self, waiting: list[Waiting]) -> None:
         if waiting or self._path.exists():
             write_whole(self._path, msgspec.json.encode(waiting))
+
+
+def _keys(one: Outcome | Waiting) -> Iterator[tuple[str, ...]]:
+    """What makes two files the same file, or the one come in the place of the other: they share one of these.
+
+    Downloads of every week have files of one name: what is only called alike may be another assignment's work.
+    """
+    if one.content:
+        yield "of one name", one.label, one.content
+    if one.content and one.student:
+        yield "of one student", one.student, one.content
+    if one.assignment or not one.content:
+        yield "again", one.label, one.student, one.assignment

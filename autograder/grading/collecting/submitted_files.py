@@ -80,7 +80,17 @@ class Candidate:
     def outcome(self, state: State, reason: str = "", *, replaced: bool = False) -> Outcome:
         """Its outcome."""
         when, late = self.collected.when, self.collected.late
-        return Outcome(self.label, state, reason, self.student, self.assignment, when, late, replaced)
+        return Outcome(
+            self.label,
+            state,
+            reason,
+            self.student,
+            self.assignment,
+            when,
+            late,
+            replaced,
+            content=self.content,
+        )
 
 
 class Placing:

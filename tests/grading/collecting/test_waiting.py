@@ -1,0 +1,87 @@
+"""A file without a place is repeated until it has one, though next week's file is called just as it is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from downloads import ROSTER, write_zip
+from test_collect import work
+from test_where_it_goes import other_lab
+
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.outcomes import State, WaitingList
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import TinyClass
+
+    from autograder.grading.collecting.outcomes import CollectReport, Waiting
+
+
+@pytest.fixture
+def klass(tiny: TinyClass) -> TinyClass:
+    """A tiny class of two assignments with a roster."""
+    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
+    other_lab(tiny)
+    return tiny
+
+
+def week(klass: TinyClass, folder: Path, text: str, name: str = "ada/homework.ipynb") -> CollectReport:
+    """Collect the download of a week, which is called as that of every week."""
+    return collect(klass.path, [write_zip(folder / "submissions.zip", {name: text})])
+
+
+def waiting(klass: TinyClass) -> list[Waiting]:
+    return WaitingList(ClassDirectory(klass.path)).read()
+
+
+def nameless(klass: TinyClass, points: int) -> str:
+    return work(klass, points).replace('"grade_id"', '"nobody"')
+
+
+def test_what_is_only_called_alike_does_not_settle_it(klass: TinyClass, tmp_path: Path) -> None:
+    week(klass, tmp_path, nameless(klass, 1))
+    report = week(klass, tmp_path, work(klass, 2))
+    assert [one.state for one in report.outcomes] == [State.PLACED]
+    assert [one.label for one in waiting(klass)] == ["submissions.zip/ada/homework.ipynb"]
+    week(klass, tmp_path, nameless(klass, 3))
+    assert len(waiting(klass)) == 2, "neither says what it is: both may be work"
+
+
+def test_collected_again_it_is_repeated_once(klass: TinyClass, tmp_path: Path) -> None:
+    for name in ("ada/homework.ipynb", "guest/homework.ipynb", "ada/lab_1_2.rar"):
+        for _ in range(2):
+            week(klass, tmp_path, nameless(klass, 1) if name.endswith("ipynb") else "Rar!", name)
+    assert len(waiting(klass)) == 3
+
+
+def test_the_same_file_at_its_place_settles_it(klass: TinyClass, tmp_path: Path) -> None:
+    week(klass, tmp_path, nameless(klass, 1))
+    alone = tmp_path / "ada.ipynb"
+    alone.write_text(nameless(klass, 1))
+    collect(klass.path, [alone], assignment="lab_1_2")
+    assert waiting(klass) == []
+
+
+def test_the_same_bytes_from_somebody_else_do_not(klass: TinyClass, tmp_path: Path) -> None:
+    week(klass, tmp_path, work(klass, 1), "guest/lab_1_2.ipynb")
+    week(klass, tmp_path, work(klass, 1), "ben/lab_1_2.ipynb")
+    assert [one.label for one in waiting(klass)] == ["submissions.zip/guest/lab_1_2.ipynb"]
+
+
+def test_who_is_known_now_has_it_settled(klass: TinyClass, tmp_path: Path) -> None:
+    week(klass, tmp_path, work(klass, 1), "guest/lab_1_2.ipynb")
+    (klass.path / "students.csv").write_text(f"{ROSTER}guest,Guy,Est,,,\n", encoding="utf-8")
+    week(klass, tmp_path, work(klass, 1), "guest/lab_1_2.ipynb")
+    assert waiting(klass) == []
+
+
+def test_a_newer_one_of_the_same_name_and_assignment_takes_its_place(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    for text in ("Rar! one", "Rar! two"):
+        week(klass, tmp_path, text, "ada/lab_1_2.rar")
+    assert len(waiting(klass)) == 1
