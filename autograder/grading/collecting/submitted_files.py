@@ -156,13 +156,11 @@ class Placing:
         """The files of a group, each with whether it has work; of one file alone nobody has to know."""
         if len({one.content for one in group}) == 1:
             return group
-        return [
-            replace(
-                one,
-                has_work=self._handed_out.has_work(one.assignment, one.collected.notebook, one.data),
-            )
-            for one in group
-        ]
+        return [replace(one, has_work=self._has_work(one, one.data)) for one in group]
+
+    def _has_work(self, one: Candidate, data: bytes) -> bool:
+        """True if a notebook of a file's student has more than what was handed out."""
+        return self._handed_out.has_work(one.assignment, one.collected.notebook, data)
 
     def _put(self, newest: Candidate) -> Outcome:
         notebook = newest.collected.notebook
@@ -184,7 +182,7 @@ class Placing:
                     f"{path} is another notebook, which nobody collected: move it away first",
                 )
             if known is not None and known.content != newest.content:
-                refused = _older(newest, known, history)
+                refused = _older(newest, known, history) or self._mere_hand_out(newest, known, there)
                 if refused is not None and refused.state == State.EARLIER:
                     self._keep(newest)
                 if refused is not None:
@@ -198,6 +196,17 @@ class Placing:
         if content != newest.content:
             write_whole(path, newest.data)
         return newest.outcome(State.PLACED, replaced=there is not None and content != newest.content)
+
+    def _mere_hand_out(self, newest: Candidate, known: Collected, there: bytes) -> Outcome | None:
+        """The outcome of a hand-out without answers that came after work; None of all else, and of what is newer."""
+        if _is_said_newer(newest.collected, known) or not self._has_work(newest, there):
+            return None
+        if self._has_work(newest, newest.data):
+            return None
+        reason = (
+            "the one that is there has answers, and this one is as it was handed out, or cannot be read: kept"
+        )
+        return newest.outcome(State.EARLIER, reason)
 
     def _write(self, student: str, assignment: str, history: History) -> None:
         """Write down what is at its place, and when it was handed in as nbgrader reads it."""
@@ -304,6 +313,15 @@ def _why_it_counts(best: Candidate, other: Candidate) -> str:
 def _has_news(newest: Collected, known: Collected) -> bool:
     """True if the same notebook comes with a later time, or has its first one now."""
     return newest.when is not None and (known.when is None or newest.when > known.when)
+
+
+def _is_said_newer(new: Collected, known: Collected) -> bool:
+    """True if a time or a number says that a file goes before the one that is there."""
+    if new.lms == known.lms == "canvas" and new.number != known.number:
+        return True  # what is there is of somebody else
+    if new.when is not None and known.when is not None and new.when != known.when:
+        return new.when > known.when
+    return bool(new.order and known.order) and new.order > known.order
 
 
 def _older(newest: Candidate, known: Collected, history: History) -> Outcome | None:

@@ -95,3 +95,23 @@ def test_where_the_source_is_damaged_the_exact_name_counts(klass: TinyClass, tmp
     (klass.path / "source" / "lab_1_2" / "lab_1_2.ipynb").write_text("<<<<<<< HEAD")
     gathered(klass, tmp_path, files, inner=True)
     assert lies(klass, "ada") == files["lab_1_2.ipynb"]
+
+
+def test_also_where_it_comes_in_a_download_of_its_own(klass: TinyClass, tmp_path: Path) -> None:
+    zips = [
+        write_zip(tmp_path / f"{name}.zip", {"ada/lab_1_2.ipynb": text})
+        for name, text in (("one", untouched(klass)), ("two", work(klass, 3)), ("three", untouched(klass)))
+    ]
+    report = collect(klass.path, zips[:2])
+    assert (why(report), lies(klass, "ada")) == ("", work(klass, 3))
+    (late,) = collect(klass.path, zips[2:]).outcomes
+    assert (late.state, lies(klass, "ada")) == (State.EARLIER, work(klass, 3))
+    assert "the one that is there has answers, and this one is as it was handed out" in late.reason
+    assert len(kept(klass)) == 2
+
+
+def test_what_a_time_says_to_be_newer_counts_whatever_it_holds(klass: TinyClass, tmp_path: Path) -> None:
+    for day, text in (("03", work(klass, 3)), ("04", untouched(klass))):
+        files = {f"Lab_ada_attempt_2025-10-{day}-14-00-00_lab_1_2.ipynb": text}
+        collect(klass.path, [write_zip(tmp_path / "b.zip", files)])
+        assert lies(klass, "ada") == text
