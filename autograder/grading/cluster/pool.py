@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import bisect
 import itertools
+import operator
 import time
 from collections import deque
 from dataclasses import dataclass, field, replace
@@ -26,11 +28,13 @@ from autograder.grading.cluster.messages import (
 )
 from autograder.grading.errors import GradingError
 from autograder.grading.rebuilding.course_version import course_version
+from autograder.grading.running.alone import ordered, says_nothing
 from autograder.grading.running.engine import Done
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator
 
+    from autograder.boxes.execution import Execution
     from autograder.grading.cluster.link import Link
     from autograder.grading.task import Task
 
@@ -70,6 +74,10 @@ class _Job:
     task: Task
     attempts: int = 0
     tried: set[str] = field(default_factory=set)
+    alone: bool = False
+    """It has said nothing: now its worker executes nothing else meanwhile."""
+    cpu_seconds: float = 0.0
+    """What it used when it said nothing."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +115,8 @@ class Pool:
         self._workers: dict[str, _Worker] = {}
         self._refused: dict[str, str] = {}
         self._new: deque[_Job] = deque()
-        self._again: deque[_Job] = deque()
+        self._again: list[_Job] = []
+        self._alone: list[_Job] = []
         self._flights: dict[int, _Flight] = {}
         self._done: list[Done] = []
         self._number = 0
@@ -142,7 +151,7 @@ class Pool:
         alone_until: float | None = None
         while True:
             self._give_out(jobs, on_start)
-            if not (self._flights or self._again or self._new):
+            if not (self._flights or self._again or self._new or self._alone):
                 return
             if self._workers:
                 alone_until = None
@@ -163,7 +172,7 @@ class Pool:
                 job = self._next_for(address, worker, jobs)
                 if job is None:
                     break
-                if not job.tried:
+                if not (job.tried or job.alone):
                     on_start(job.task)
                 self._send(job, address, worker)
         self._look_ahead(jobs)
@@ -171,15 +180,26 @@ class Pool:
     def _next_for(self, address: str, worker: _Worker, jobs: Iterator[_Job]) -> _Job | None:
         """The next task of a worker. Of tasks that were lost before only one at a time, and rather not those it lost.
 
-        One of them may be what ends workers, and the other one must not be lost with it again.
+        One of them may be what ends workers, and the other one must not be lost with it again. What is executed alone
+        comes when there is nothing else for this worker: it is empty then without anybody waiting for it.
         """
-        if not any(self._flights[number].job.attempts > 1 for number in worker.flights):
-            for job in self._again:
-                if address not in job.tried or job.tried >= self._workers.keys():
-                    self._again.remove(job)
-                    return job
+        held = [self._flights[number].job for number in worker.flights]
+        if any(job.alone for job in held):
+            return None
+        if not any(job.attempts > 1 for job in held) and (job := self._taken_from(self._again, address)):
+            return job
         self._look_ahead(jobs)
-        return self._new.popleft() if self._new else None
+        if self._new:
+            return self._new.popleft()
+        return None if held else self._taken_from(self._alone, address)
+
+    def _taken_from(self, waiting: list[_Job], address: str) -> _Job | None:
+        """The first one that this worker has not tried, or that all have."""
+        for job in waiting:
+            if address not in job.tried or job.tried >= self._workers.keys():
+                waiting.remove(job)
+                return job
+        return None
 
     def _look_ahead(self, jobs: Iterator[_Job]) -> None:
         """Have the next new task at hand, or know that there is none."""
@@ -192,7 +212,8 @@ class Pool:
         self._number += 1
         self._flights[self._number] = _Flight(job, address, time.monotonic() + _most_seconds(job.task))
         worker.flights.add(self._number)
-        self._link.say(Give(self._number, address, self._order(job.task)))
+        order = self._order(ordered(job.task, beside=worker.slots > 1 and not job.alone))
+        self._link.say(Give(self._number, address, order))
 
     def _seconds_to_wait(self, alone_until: float | None) -> float | None:
         deadlines = [flight.deadline for flight in self._flights.values()]
@@ -268,9 +289,12 @@ class Pool:
             return
         worker = self._workers[flight.worker]
         self._land(number)
-        worker.troubles = worker.troubles + 1 if execution.trouble else 0
-        if execution.trouble and self._others_may_do(flight.job):
-            self._again.append(flight.job)
+        if (
+            not flight.job.alone
+        ):  # else the trouble may be the notebook's, and its like come one after the other
+            worker.troubles = worker.troubles + 1 if execution.trouble else 0
+        if self._comes_again(flight.job, execution):
+            self._do_alone(flight, execution)
         else:
             self._done.append(Done(flight.job.task, execution))
         if worker.troubles >= _MOST_TROUBLES and len(self._workers) > 1:
@@ -278,6 +302,27 @@ class Pool:
             self._turn_out(
                 flight.worker, f"it had trouble with {worker.troubles} notebooks: {execution.trouble}"
             )
+
+    def _comes_again(self, job: _Job, execution: Execution) -> bool:
+        """What says nothing comes once more. Trouble that stays also goes to others: it may be a worker's."""
+        if not job.alone:
+            return says_nothing(execution)
+        return bool(execution.trouble) and self._others_may_do(job)
+
+    def _do_alone(self, flight: _Flight, execution: Execution) -> None:
+        job = flight.job
+        if not execution.trouble:  # its worker is as good as any, and has not lost it
+            job.attempts -= 1
+            job.tried.discard(flight.worker)
+        job.alone, job.cpu_seconds = True, execution.cpu_seconds
+        self._wait(job)
+
+    def _wait(self, job: _Job) -> None:
+        """A job waits for its next worker; of those that are executed alone, who was busiest comes last."""
+        if job.alone:
+            bisect.insort(self._alone, job, key=operator.attrgetter("cpu_seconds"))
+        else:
+            self._again.append(job)
 
     def _others_may_do(self, job: _Job) -> bool:
         return job.attempts < ATTEMPTS and not job.tried >= self._workers.keys()
@@ -303,7 +348,7 @@ class Pool:
         job = self._land(number).job
         self._link.say(Drop(number))
         if job.attempts < ATTEMPTS:
-            self._again.append(job)
+            self._wait(job)
         else:
             self._done.append(Done(job.task, job.task.in_trouble(reason)))
 

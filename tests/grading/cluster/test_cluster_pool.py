@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections import deque
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 import pytest
 from conftest import FakeEngine, TinyClass
+from fake_link import HERE, FakeLink, honest, joined, make_pool, students, task_in, tasks_of_six, troubled
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.cluster import pool as pool_module
@@ -16,71 +16,21 @@ from autograder.grading.cluster.messages import (
     Answered,
     Asked,
     Broken,
-    Command,
     Failed,
     Give,
     Joined,
     Left,
     News,
     Offer,
-    Order,
     Unfit,
 )
-from autograder.grading.cluster.pool import ATTEMPTS, NoWorkers, Pool, SchedulerGone
-from autograder.grading.rebuilding.task_making import tasks_of
-from autograder.grading.task import Task
+from autograder.grading.cluster.pool import ATTEMPTS, NoWorkers, SchedulerGone
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from autograder.grading.running.engine import Done
+    from autograder.grading.task import Task
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
-
-HERE = Offer("here", slots=2, obstacle="")
-
-
-class FakeLink:
-    """Plays the client process: hands out news, and answers what it is given as the test says."""
-
-    def __init__(self, *news: News) -> None:
-        self.news = deque(news)
-        self.given: list[Give] = []
-        self.in_flight: set[int] = set()
-        self.most_in_flight = 0
-        self.answer: Callable[[Give, Task], News | None] = honest
-
-    def say(self, command: Command) -> None:
-        if not isinstance(command, Give):
-            self.in_flight.discard(command.number)
-            return
-        self.given.append(command)
-        self.in_flight.add(command.number)
-        self.most_in_flight = max(self.most_in_flight, len(self.in_flight))
-        news = self.answer(command, task_in(command))
-        if news is not None:
-            self.news.append(news)
-
-    def hear(self, within: float | None) -> News | None:
-        if not self.news:
-            assert within is not None, "nothing would ever happen"
-            return None
-        news = self.news.popleft()
-        if isinstance(news, Answered):
-            self.in_flight.discard(news.number)
-        return news
-
-
-def task_in(give: Give) -> Task:
-    return msgspec.json.decode(msgspec.json.decode(give.order, type=Order).task, type=Task)
-
-
-def honest(give: Give, task: Task) -> News:
-    return Answered(give.number, msgspec.json.encode(FakeEngine().execute(task)))
-
-
-def joined(address: str, offer: Offer = HERE) -> Joined:
-    return Joined(address, f"name-{address}", msgspec.json.encode(offer))
 
 
 @pytest.fixture(autouse=True)
@@ -90,20 +40,7 @@ def _version(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def tasks(tiny: TinyClass) -> list[Task]:
-    tiny.submit("ada", 6)
-    directory = ClassDirectory(tiny.path)
-    task = tasks_of(directory, directory.submissions()[0][0])[0]
-    return [replace(task, student=f"student-{number}") for number in range(6)]
-
-
-def make_pool(link: FakeLink, told: list[str] | None = None, **options: Any) -> Pool:
-    tell = (told if told is not None else []).append
-    settings = {"judge": "a:B", "boxed": True, "return_seconds": 0.05, **options}
-    return Pool(link, "tcp://x:1", tell=tell, **settings)  # type: ignore[arg-type]
-
-
-def students(done: list[Done]) -> list[str]:
-    return sorted(one.task.student for one in done if not one.execution.trouble)
+    return tasks_of_six(tiny)
 
 
 def test_every_task_is_executed_once_and_its_own_result_comes_back(tasks: list[Task]) -> None:
@@ -144,7 +81,8 @@ def test_a_worker_learns_no_name_and_no_secret(tasks: list[Task], tiny: TinyClas
         assert b"student-" not in give.order
         assert secret.hex().encode() not in give.order
         assert str(tiny.path).encode() not in give.order
-        assert task_in(give) == replace(tasks[0], student="")
+        limits = replace(tasks[0].limits, beside=True)
+        assert task_in(give) == replace(tasks[0], student="", limits=limits)
 
 
 def test_a_worker_that_leaves_costs_only_its_tasks_again(tasks: list[Task]) -> None:
@@ -201,12 +139,6 @@ def test_what_a_worker_cannot_run_does_not_come_back_to_it(tasks: list[Task]) ->
     assert students(list(pool.execute_all(tasks))) == [task.student for task in tasks]
 
 
-def troubled(give: Give, task: Task) -> News:
-    return Answered(
-        give.number, msgspec.json.encode(replace(FakeEngine().execute(task), trouble="no space left"))
-    )
-
-
 def test_a_worker_that_is_sick_does_not_swallow_the_class(tasks: list[Task]) -> None:
     told: list[str] = []
     link = FakeLink(joined("sick"), joined("good"), Asked())
@@ -226,7 +158,7 @@ def test_trouble_that_is_the_notebooks_own_is_told_and_turns_nobody_out(tasks: l
     pool.await_workers()
     done = list(pool.execute_all(tasks))
     assert [one.execution.trouble for one in done] == ["no space left"] * len(tasks)
-    assert len(link.given) == len(tasks)
+    assert len(link.given) == 2 * len(tasks)
     assert told == []
 
 

@@ -1,0 +1,90 @@
+"""A client process of a cluster that the test plays itself, a pool that speaks with it, and what workers may say."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+from tiny_class import FakeEngine, TinyClass
+
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.cluster.messages import Answered, Command, Give, Joined, News, Offer, Order
+from autograder.grading.cluster.pool import Pool
+from autograder.grading.rebuilding.task_making import tasks_of
+from autograder.grading.task import Task
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.grading.running.engine import Done
+
+HERE = Offer("here", slots=2, obstacle="")
+
+
+class FakeLink:
+    """Plays the client process: hands out news, and answers what it is given as the test says."""
+
+    def __init__(self, *news: News) -> None:
+        self.news = deque(news)
+        self.given: list[Give] = []
+        self.in_flight: set[int] = set()
+        self.most_in_flight = 0
+        self.answer: Callable[[Give, Task], News | None] = honest
+
+    def say(self, command: Command) -> None:
+        if not isinstance(command, Give):
+            self.in_flight.discard(command.number)
+            return
+        self.given.append(command)
+        self.in_flight.add(command.number)
+        self.most_in_flight = max(self.most_in_flight, len(self.in_flight))
+        news = self.answer(command, task_in(command))
+        if news is not None:
+            self.news.append(news)
+
+    def hear(self, within: float | None) -> News | None:
+        if not self.news:
+            assert within is not None, "nothing would ever happen"
+            return None
+        news = self.news.popleft()
+        if isinstance(news, Answered):
+            self.in_flight.discard(news.number)
+        return news
+
+
+def task_in(give: Give) -> Task:
+    return msgspec.json.decode(msgspec.json.decode(give.order, type=Order).task, type=Task)
+
+
+def honest(give: Give, task: Task) -> News:
+    return Answered(give.number, msgspec.json.encode(FakeEngine().execute(task)))
+
+
+def joined(address: str, offer: Offer = HERE) -> Joined:
+    return Joined(address, f"name-{address}", msgspec.json.encode(offer))
+
+
+def troubled(give: Give, task: Task) -> News:
+    return Answered(
+        give.number, msgspec.json.encode(replace(FakeEngine().execute(task), trouble="no space left"))
+    )
+
+
+def tasks_of_six(tiny: TinyClass) -> list[Task]:
+    """The same work of six students."""
+    tiny.submit("ada", 6)
+    directory = ClassDirectory(tiny.path)
+    task = tasks_of(directory, directory.submissions()[0][0])[0]
+    return [replace(task, student=f"student-{number}") for number in range(6)]
+
+
+def make_pool(link: FakeLink, told: list[str] | None = None, **options: Any) -> Pool:
+    tell = (told if told is not None else []).append
+    settings = {"judge": "a:B", "boxed": True, "return_seconds": 0.05, **options}
+    return Pool(link, "tcp://x:1", tell=tell, **settings)  # type: ignore[arg-type]
+
+
+def students(done: list[Done]) -> list[str]:
+    return sorted(one.task.student for one in done if not one.execution.trouble)
