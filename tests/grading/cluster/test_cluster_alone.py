@@ -108,7 +108,9 @@ def test_a_worker_with_one_place_gives_all_limits_at_once(tasks: list[Task]) -> 
 def test_trouble_comes_once_more_alone_also_where_there_is_one_worker(tasks: list[Task]) -> None:
     link = CrowdedLink(joined("a"), Asked())
     link.answer = lambda give, task: (
-        troubled(give, task) if link.crowd(give, task) and task.limits.beside else honest(give, task)
+        troubled(give, task)
+        if link.crowd(give, task) and len(link.seen) <= len(tasks)
+        else honest(give, task)
     )
     assert students(executed(link, tasks)) == [task.student for task in tasks]
     assert all((beside, together) == (False, 1) for _, beside, together in link.seen[6:])
