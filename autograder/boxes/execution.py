@@ -117,3 +117,8 @@ class Execution:
     crowded_out: bool = False
     cpu_seconds: float = 0.0
     evidence: dict[str, bytes] = field(default_factory=dict)
+
+    @property
+    def says_nothing(self) -> bool:
+        """True if it is to be executed once more, alone: others have perhaps used up what it was short of."""
+        return bool(self.trouble) or self.crowded_out

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping  # noqa: TC003  (msgspec reads the annotations)
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import msgspec
 
@@ -45,6 +45,10 @@ class Task:
     files: Mapping[str, bytes] = field(default_factory=dict)
     problem: str = ""
     boxed: bool = True
+
+    def beside_others(self, beside: bool) -> Task:
+        """The task as a worker gets it: with its share of memory where others are beside it, else with all limits."""
+        return replace(self, limits=replace(self.limits, beside=beside))
 
     @property
     def label(self) -> str:

@@ -28,7 +28,6 @@ from autograder.grading.cluster.messages import (
 )
 from autograder.grading.errors import GradingError
 from autograder.grading.rebuilding.course_version import course_version
-from autograder.grading.running.alone import ordered, says_nothing
 from autograder.grading.running.engine import Done
 
 if TYPE_CHECKING:
@@ -212,7 +211,7 @@ class Pool:
         self._number += 1
         self._flights[self._number] = _Flight(job, address, time.monotonic() + _most_seconds(job.task))
         worker.flights.add(self._number)
-        order = self._order(ordered(job.task, beside=worker.slots > 1 and not job.alone))
+        order = self._order(job.task.beside_others(worker.slots > 1 and not job.alone))
         self._link.say(Give(self._number, address, order))
 
     def _seconds_to_wait(self, alone_until: float | None) -> float | None:
@@ -306,7 +305,7 @@ class Pool:
     def _comes_again(self, job: _Job, execution: Execution) -> bool:
         """What says nothing comes once more. Trouble that stays also goes to others: it may be a worker's."""
         if not job.alone:
-            return says_nothing(execution)
+            return execution.says_nothing
         return bool(execution.trouble) and self._others_may_do(job)
 
     def _do_alone(self, flight: _Flight, execution: Execution) -> None:

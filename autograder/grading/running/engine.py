@@ -16,7 +16,6 @@ import psutil
 
 from autograder.boxes.limits import Limits
 from autograder.boxes.scratch import remove_tree
-from autograder.grading.running.alone import ordered, says_nothing
 from autograder.grading.running.worker import JUDGE
 from autograder.grading.running.worker_process import GOODBYE_SECONDS, WorkerProcess
 from autograder.workspaces.boxed_jobs import BUILD_LIMITS
@@ -214,8 +213,8 @@ class _WorkerThread(threading.Thread):
         try:
             if first:
                 self._on_start(task)
-            execution = self.worker.execute(ordered(task, beside=self._beside and first))
-            if says_nothing(execution) and first and not self.worker.stopping:
+            execution = self.worker.execute(task.beside_others(self._beside and first))
+            if execution.says_nothing and first and not self.worker.stopping:
                 again = (execution.cpu_seconds, task)
             else:
                 self._done.put(Done(task, execution))
