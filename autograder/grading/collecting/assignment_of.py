@@ -26,7 +26,8 @@ class NoTarget(ValueError):
     Args:
         message: The reason, and what to type.
         assignment: The assignment that its cells are of; empty where they do not say it.
-        is_left_out: Whether the instructor has asked for another assignment, so that it is left out on purpose.
+        is_left_out: Whether it is none that is collected here: the instructor has asked for another assignment, or the
+            class has none with its cells.
     """
 
     def __init__(self, message: str, assignment: str = "", *, is_left_out: bool = False) -> None:
@@ -101,7 +102,9 @@ class AssignmentOf:
                 raise _contradiction(named, held)
             target = _only(agreed or held)
         if target is None:
-            raise NoTarget(self._unclear(agreed or held))
+            meant = agreed or held
+            # Cells with names, and none of this class: another notebook of the course, such as its summary.
+            raise NoTarget(self._unclear(meant), is_left_out=not meant and bool(_names(data)))
         return target, target in named
 
     def _unclear(self, meant: list[Target]) -> str:
@@ -136,10 +139,7 @@ class AssignmentOf:
 
     def _by_its_cells(self, data: bytes) -> list[Target]:
         """The notebooks that have most of its named cells; none where its cells have no names of the class."""
-        try:
-            names = {cell.grade_id for cell in parse(data)[0] if cell.grade_id}
-        except UnreadableSubmission:
-            return []
+        names = _names(data)
         shared = {target: len(names & own) for target, own in self._grade_ids.items()}
         most = max(shared.values(), default=0)
         return [target for target, count in shared.items() if most and count == most]
@@ -166,6 +166,14 @@ class AssignmentOf:
                 )
             found[assignment, notebook] = {cell.grade_id for cell in cells} - {""}
         return found
+
+
+def _names(data: bytes) -> set[str]:
+    """The names of a notebook's cells; none of what cannot be read."""
+    try:
+        return {cell.grade_id for cell in parse(data)[0] if cell.grade_id}
+    except UnreadableSubmission:
+        return set()
 
 
 def _only(targets: Sequence[Target]) -> Target | None:

@@ -8,6 +8,7 @@ import zipfile
 from typing import TYPE_CHECKING, Any
 from zoneinfo import ZoneInfo
 
+import nbformat
 import pytest
 from click.testing import CliRunner
 from downloads import ROSTER, write_zip, zipped
@@ -255,6 +256,18 @@ def test_a_second_copy_is_beside_the_notebook_whose_cells_it_has(klass: TinyClas
     report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "work.zip"): held})
     (beside,) = report.having(State.BESIDE)
     assert (report.exit_code, beside.assignment) == (0, "lab_1_3")
+
+
+def test_a_notebook_of_the_course_that_is_no_assignment_here_is_beside_the_work(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    summary = nbformat.v4.new_notebook(cells=[nbformat.v4.new_markdown_cell("# Summary")])
+    summary.cells[0].metadata["nbgrader"] = {"grade_id": "summary-1", "solution": False, "grade": False}
+    work = nbformat.writes(klass.released())
+    held = zipped({"summary.ipynb": nbformat.writes(summary), "lab_1_2.ipynb": work})
+    report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "work.zip"): held})
+    assert report.exit_code == 0
+    assert [one.label.rpartition("/")[2] for one in report.having(State.BESIDE)] == ["summary.ipynb"]
 
 
 def test_a_notebook_of_another_assignment_that_was_put_there_by_hand_is_refused_with_its_page(
