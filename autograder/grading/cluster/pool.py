@@ -288,9 +288,8 @@ class Pool:
             return
         worker = self._workers[flight.worker]
         self._land(number)
-        if (
-            not flight.job.alone
-        ):  # else the trouble may be the notebook's, and its like come one after the other
+        # Of one executed alone the trouble may be the notebook's, and its like come one after the other.
+        if not flight.job.alone:
             worker.troubles = worker.troubles + 1 if execution.trouble else 0
         if self._comes_again(flight.job, execution):
             self._do_alone(flight, execution)

@@ -93,7 +93,8 @@ class AssignmentOf:
             NoTarget: Nothing says which; or its cells are those of another one than its name or the instructor says.
         """
         named = self._notebooks.get(stem_of(name)[0].casefold(), [])
-        held = self._by_its_cells(data)
+        names = _names(data)
+        held = self._by_its_cells(names)
         agreed = [target for target in named if not held or target in held]
         if self._asked:
             target = self._of_asked(agreed or held)
@@ -104,7 +105,7 @@ class AssignmentOf:
         if target is None:
             meant = agreed or held
             # Cells with names, and none of this class: another notebook of the course, such as its summary.
-            raise NoTarget(self._unclear(meant), is_left_out=not meant and bool(_names(data)))
+            raise NoTarget(self._unclear(meant), is_left_out=not meant and bool(names))
         return target, target in named
 
     def _unclear(self, meant: list[Target]) -> str:
@@ -137,9 +138,8 @@ class AssignmentOf:
             )
         return _only(here) or _only([(self._asked, one) for one in self._directory.notebooks(self._asked)])
 
-    def _by_its_cells(self, data: bytes) -> list[Target]:
-        """The notebooks that have most of its named cells; none where its cells have no names of the class."""
-        names = _names(data)
+    def _by_its_cells(self, names: set[str]) -> list[Target]:
+        """The notebooks that have most of these cells; none where they have no names of the class."""
         shared = {target: len(names & own) for target, own in self._grade_ids.items()}
         most = max(shared.values(), default=0)
         return [target for target, count in shared.items() if most and count == most]

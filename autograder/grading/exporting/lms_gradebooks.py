@@ -17,7 +17,7 @@ from autograder.grading.reporting.spreadsheet import blank, csv_text, original
 from autograder.grading.table.roster import Identity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from autograder.grading.collecting.records import Collected, CollectedRecords
     from autograder.grading.table.class_table import ClassTable
@@ -234,6 +234,8 @@ def _told_apart(meant: Mapping[str, Sequence[_Meant]]) -> tuple[dict[str, list[s
     return certain, doubtful
 
 
+_KINDS = ("number", "login", "name")
+"""What a value may be of a student's, the surest first."""
 _EXCUSED = {"canvas": "EX"}
 """The word that an LMS reads as excused."""
 
@@ -249,20 +251,15 @@ def _column(header: Sequence[str], called: str) -> int:
     )
 
 
-def _who(table: ClassTable, lms: str, values: Iterable[str]) -> tuple[Student, int] | None:
+def _who(table: ClassTable, lms: str, values: Sequence[str]) -> tuple[Student, int] | None:
     """The student of a line, and the place of the value that says so: those that say it best come first."""
-    tried = [
-        (place, kind, value)
-        for place, value in enumerate(values)
-        for kind in ("number", "login", "name")
-        if value
-    ]
+    columns: list[tuple[str, tuple[str, ...]]] = [(value, _KINDS) for value in values]
     if LISTS[lms].numbered:
-        # A number of the LMS's own may be somebody else's id in the class: asked so last, and the weakest reason.
-        own = [(len(tried), kind, value) for place, kind, value in tried if place == 0 and kind != "number"]
-        tried = [one for one in tried if one[0] or one[1] == "number"] + own
-    for place, kind, value in tried:
-        found = table.roster.find(Identity(lms, **{kind: value}))
-        if len(found) == 1:
-            return found[0], place
+        # A number of the LMS's own may be somebody else's id in the class: as one it is asked last.
+        columns = [(values[0], _KINDS[:1]), *columns[1:], (values[0], _KINDS[1:])]
+    for place, (value, kinds) in enumerate(columns):
+        for kind in kinds if value else ():
+            found = table.roster.find(Identity(lms, **{kind: value}))
+            if len(found) == 1:
+                return found[0], place
     return None
