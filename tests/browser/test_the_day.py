@@ -61,6 +61,8 @@ ANSWERS = {
     "def add(a, b:": 0.0,
 }
 """What is written into the instructor's own assignment, and its points by nbgrader's rules."""
+WAITING = tuple(oddity for oddity in UNPLACED if oddity != "other lab")
+"""What still has no place once the own assignment is collected. Until then a notebook of it waits, too."""
 
 
 def points(pupil: Pupil) -> tuple[int, int]:
@@ -135,7 +137,7 @@ def collect(tiny: TinyClass, class_: list[Pupil], folder: Path) -> list[Path]:
     assert "not placed   moodle.zip/Guest User_999" in said
     for reason in ("its name leads out of the archive", "it is a link", "unpacks to 60 MB"):
         assert said.count(reason) == 1, reason
-    check_unplaced(said, class_)
+    check_unplaced(said, class_, UNPLACED)
     missing = sorted(pupil.id for pupil in class_ if not (pupil.is_collected or pupil.oddity == "excused"))
     assert f"nothing of   lab_1_2: {', '.join(missing)}" in said
     missing = sorted(pupil.id for pupil in class_ if not pupil.lms)
@@ -147,13 +149,15 @@ def collect(tiny: TinyClass, class_: list[Pupil], folder: Path) -> list[Path]:
     return [*archives, *others]
 
 
-def check_unplaced(said: str, class_: list[Pupil]) -> None:
-    """Each file without a place is named with its student, the reason and what to type."""
+def check_unplaced(said: str, class_: list[Pupil], waiting: tuple[str, ...] = WAITING) -> None:
+    """Each file that waits for a place is named with its student, the reason and what to type."""
     what_to_type = {"py": "ask for the notebook", "other lab": "say --assignment own"}
     for pupil in class_:
-        if pupil.oddity in UNPLACED:
+        if pupil.oddity in waiting:
             words = what_to_type.get(pupil.oddity, f"unpack it into a folder named {pupil.id}")
             assert re.search(rf"canvas\.zip/\S+lab_1_2\S*[ :].*\b{pupil.id}\b.*{words}", said), said
+        elif pupil.oddity in UNPLACED:
+            assert "say --assignment own" not in said, said
 
 
 def grade_by_hand(formgrader: Formgrader, class_: list[Pupil], expected: dict[str, float]) -> dict[str, str]:
