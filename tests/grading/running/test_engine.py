@@ -18,10 +18,16 @@ if TYPE_CHECKING:
 
 
 class WorkerProcesses:
-    """In place of processes with worker processes: an answer for each execution, and what was seen of them."""
+    """In place of processes with worker processes: an answer for each execution, and what was seen of them.
 
-    def __init__(self, answer: Callable[[Task, int], Execution]) -> None:
+    Args:
+        answer: Gives the result of an execution, of which it is told how often the student's work was executed before.
+        together: Each execution goes on once so many are at work.
+    """
+
+    def __init__(self, answer: Callable[[Task, int], Execution], together: int = 1) -> None:
         self._answer = answer
+        self._together = threading.Barrier(together, timeout=60)
         self._lock = threading.Lock()
         self._running = 0
         self.seen: list[tuple[str, bool, int]] = []
@@ -37,6 +43,7 @@ class WorkerProcesses:
             self._running += 1
             times = sum(student == task.student for student, _, _ in self.seen)
             self.seen.append((task.student, task.limits.beside, self._running))
+        self._together.wait()
         time.sleep(0.05)
         with self._lock:
             self._running -= 1
@@ -49,8 +56,10 @@ class WorkerProcesses:
 
 @pytest.fixture
 def run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
-    def made(answer: Callable[[Task, int], Execution], students: str, workers: int | None = 3) -> Any:
-        processes = WorkerProcesses(answer)
+    def made(
+        answer: Callable[[Task, int], Execution], students: str, workers: int | None = 3, together: int = 1
+    ) -> Any:
+        processes = WorkerProcesses(answer, together)
         monkeypatch.setattr(engine, "WorkerProcess", processes)
         tasks = [Task(student, "lab", "lab", (), "0", "1") for student in students]
         done = list(engine.execute_all(tasks, tmp_path / "scratch" / "x", workers))
@@ -131,5 +140,5 @@ def test_there_are_never_more_at_once_than_have_room_if_each_takes_its_share(gib
 
 def test_so_many_are_at_work_at_once_and_no_more(run: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(engine, "cores", lambda: 1)
-    _, seen, _ = run(lambda task, times: Execution(()), "abcdefghijkl", None)
+    _, seen, _ = run(lambda task, times: Execution(()), "abcdefghijkl", None, together=4)
     assert max(together for _, _, together in seen) == 4
