@@ -96,17 +96,22 @@ def faults_of_text(exercise: Exercise, said: str) -> Iterator[str]:
 
 
 def _of_linters(lab: Path) -> Iterator[str]:
-    """The lines of ruff and mypy about the files of a lab, where they are installed and the course has settings."""
+    """The lines of ruff and mypy about the files of a lab, or that it is not installed; none without settings."""
+    if not _SETTINGS.is_file():
+        return
+    programs = {name: Path(sys.executable).with_name(name) for name in ("ruff", "mypy")}
+    for name, program in programs.items():
+        if not program.is_file():
+            yield f"{name}: not installed, so nothing was looked at: `./course setup --tests` installs it"
     files = [str(file) for file in sorted(lab.glob("*.py"))]
     for name, *words in (
         ("ruff", "check", "--quiet", "--output-format=concise", f"--config={_SETTINGS}"),
         ("ruff", "format", "--check", "--quiet", f"--config={_SETTINGS}"),
         ("mypy", "--no-error-summary", f"--config-file={_SETTINGS}"),
     ):
-        program = Path(sys.executable).with_name(name)
-        if program.is_file() and _SETTINGS.is_file():
+        if programs[name].is_file():
             done = subprocess.run(
-                [program, *words, *files],
+                [programs[name], *words, *files],
                 cwd=_PACKAGE,
                 env=os.environ | {"MYPYPATH": str(lab.parent)},
                 capture_output=True,

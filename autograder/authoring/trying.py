@@ -190,7 +190,8 @@ def _is_in_step(exercise_id: str, tell: Callable[[str], object]) -> bool:
     if not (there and changed):
         return True
     tell(
-        f"The solution in the master does something else now. If that is meant, run `./course record {exercise_id}`, "
+        "The recording is of another solution or another scenario. "
+        f"If the change is meant, run `./course record {exercise_id}`, "
         "look at the difference, and try again."
     )
     return False

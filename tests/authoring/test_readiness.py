@@ -111,3 +111,8 @@ def test_a_rule_that_is_broken_is_named(lab: Path, file: str, old: str, new: str
     (lab / file).write_text(text.replace(old, new, 1))
     forget()
     assert any(line.startswith(rule) for line in told()), told()
+
+
+def test_what_is_not_installed_is_told(lab: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "executable", str(lab / "python3"))
+    assert [line.partition(",")[0] for line in told()] == ["ruff: not installed", "mypy: not installed"]
