@@ -40,6 +40,12 @@ def test_each_endpoint_of_a_role_counts(services: dict[str, str], key: str, word
     assert RECIPE.has("service")(evidence).passed is not bool(key)
 
 
+def test_a_services_callback_that_returns_nothing_is_named_in_a_notebook_too() -> None:
+    raised = Event(0.5, "subject", "raised", {"traceback": "TypeError"})
+    evidence = Evidence([Part("counting", {}, [raised])], REFERENCE)
+    assert next(one.key for one in RECIPE.ladder if one.recognise(evidence)) == "callback_returned_none"
+
+
 def test_what_is_expected_has_the_references_endpoints() -> None:
     evidence = seen(COUNT)
     assert RECIPE.expected(evidence).endpoints("service") == COUNT | RESET

@@ -10,6 +10,7 @@ from autograder.kit.draft import OWN, OWN_LATE, SeenAsItIs
 from autograder.kit.evidence import Event
 from autograder.kit.hangs import HANGS
 from autograder.kit.model import Finding
+from autograder.kit.recipes.service_server import RETURNED_NONE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -121,6 +122,7 @@ class OwnScenario:
         on_topics = [role for role in self.roles if role in ("publisher", "subscription")]
         return (
             *common.CRASHES,
+            *([RETURNED_NONE] if "service" in self.roles else []),
             common.NEVER_CONSTRUCTED,
             *map(common.endpoint_name, self.roles),
             *map(common.message_type, self.roles),

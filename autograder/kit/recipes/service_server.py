@@ -178,7 +178,7 @@ class Asks:
             # Before any crash: a wrong answer may not fit into its field, and rclpy's server dies of that.
             OWN,
             *common.CRASHES,
-            Mistake("callback_returned_none", _returned_none, certain=True),
+            RETURNED_NONE,
             common.endpoint_name("service"),
             common.message_type("service"),
             *common.OTHER_CRASHES,
@@ -218,3 +218,7 @@ def _returned_none(evidence: Evidence) -> Advice | None:
         "with `return` and the whole response, such as `return response`, also after an `if` or an `except`.",
         traceback,
     )
+
+
+RETURNED_NONE = Mistake("callback_returned_none", _returned_none, certain=True)
+"""A service's callback did not return the response, seen in a notebook; of a program its traceback tells."""
