@@ -16,6 +16,7 @@ from autograder.grading.running import engine
 sys.path.insert(0, str(Path(__file__).parent))
 sys.path.insert(0, str(Path(__file__).parent / "collecting"))
 sys.path.insert(0, str(Path(__file__).parent / "day"))
+from downloads import ROSTER
 from tiny_class import LISTENER, MASTER, QUIET, TALKER, FakeEngine, TinyClass, make_tiny_class, write_master
 
 if TYPE_CHECKING:
@@ -34,6 +35,13 @@ def tiny(_made: Path, tmp_path: Path) -> TinyClass:
     """A fresh class without submissions."""
     shutil.copytree(_made, tmp_path / "class")
     return TinyClass(tmp_path / "class")
+
+
+@pytest.fixture
+def klass(tiny: TinyClass) -> TinyClass:
+    """A tiny class with a roster."""
+    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
+    return tiny
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -321,6 +321,11 @@ def _is_said_newer(new: Collected, known: Collected) -> bool:
         return True  # what is there is of somebody else
     if new.when is not None and known.when is not None and new.when != known.when:
         return new.when > known.when
+    return _is_later_in_order(new, known)
+
+
+def _is_later_in_order(new: Collected, known: Collected) -> bool:
+    """True if both files have an order, and the new one comes later in it."""
     return bool(new.order and known.order) and new.order > known.order
 
 
@@ -351,7 +356,7 @@ def _older(newest: Candidate, known: Collected, history: History) -> Outcome | N
     if new.order and known.order and new.order < known.order:
         return newest.outcome(State.EARLIER, "the one that is there was handed in later")
     # A number says that it is newer, not when: late work would count as if it had been handed in on time.
-    is_newer = bool(new.order and known.order) and new.order > known.order
+    is_newer = _is_later_in_order(new, known)
     if is_newer and (new.when is not None or known.when is None):
         return None
     if not is_newer and any(one.content == newest.content for one in history.before):

@@ -26,13 +26,6 @@ IN_BOTH = "mallory_777_5003_x_ben_attempt_2031-01-01-10-00-00_lab_1_2.ipynb"
 """Canvas's name of a file of somebody whom nobody knows; its end, which she chose, looks like Blackboard's."""
 
 
-@pytest.fixture
-def klass(tiny: TinyClass) -> TinyClass:
-    """A tiny class with a roster."""
-    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
-    return tiny
-
-
 def folder(path: Path, files: dict[str, str]) -> Path:
     for name, content in files.items():
         (path / name).parent.mkdir(parents=True, exist_ok=True)

@@ -33,13 +33,6 @@ if TYPE_CHECKING:
 BERLIN = ZoneInfo("Europe/Berlin")
 
 
-@pytest.fixture
-def klass(tiny: TinyClass) -> TinyClass:
-    """A tiny class with a roster."""
-    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
-    return tiny
-
-
 def work(klass: TinyClass, talker: object = 10, listener: object = 10) -> str:
     path = klass.submit("nobody", talker, listener)
     text = path.read_text()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from conftest import LISTENER, TALKER
-from downloads import ROSTER, write_zip, zipped
+from downloads import write_zip, zipped
 from test_collect import placed, why, work
 
 from autograder.grading.collecting import archives
@@ -28,13 +28,6 @@ if TYPE_CHECKING:
 
 NO_TEXT = os.fsdecode(b"lab_1_2 \xff.ipynb")
 MB = 1_000_000
-
-
-@pytest.fixture
-def klass(tiny: TinyClass) -> TinyClass:
-    """A tiny class with a roster."""
-    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
-    return tiny
 
 
 @pytest.fixture

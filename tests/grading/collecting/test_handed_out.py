@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import nbformat
 import pytest
-from downloads import ROSTER, write_zip, zipped
+from downloads import write_zip, zipped
 from test_collect import kept, lies, why, work
 
 from autograder.grading.collecting.collect import collect
@@ -18,13 +18,6 @@ if TYPE_CHECKING:
     from conftest import TinyClass
 
 COPY = "lab_1_2 (your copy, 2026-11-21).ipynb"
-
-
-@pytest.fixture
-def klass(tiny: TinyClass) -> TinyClass:
-    """A tiny class with a roster."""
-    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
-    return tiny
 
 
 def untouched(klass: TinyClass, own: str = "") -> str:

@@ -18,13 +18,6 @@ if TYPE_CHECKING:
     from conftest import TinyClass
 
 
-@pytest.fixture
-def klass(tiny: TinyClass) -> TinyClass:
-    """A tiny class with a roster."""
-    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
-    return tiny
-
-
 def test_a_students_zip_is_no_download_whose_names_are_believed(klass: TinyClass, tmp_path: Path) -> None:
     """Ada's zip holds a file that is called as Canvas calls a newer one of Ben's."""
     forged = {"barben_102_99999_lab_1_2.ipynb": work(klass, 1), "lab_1_2.ipynb": work(klass, 2)}

@@ -18,13 +18,6 @@ if TYPE_CHECKING:
     from conftest import TinyClass
 
 
-@pytest.fixture
-def klass(tiny: TinyClass) -> TinyClass:
-    """A tiny class with a roster."""
-    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
-    return tiny
-
-
 @pytest.mark.parametrize(
     "hers", ["_777_5003_", "123_777_5003_", "_LATE_777_5003_", "1_1_1_777_5003_", "mallory_777_5003_\n"]
 )

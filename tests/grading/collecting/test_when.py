@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from click.testing import CliRunner
-from downloads import ROSTER, write_zip
+from downloads import write_zip
 from test_collect import lies, stamp, why, work
 from test_where_it_goes import MOODLE, UTC, gathered, other_lab
 
@@ -20,13 +20,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from conftest import TinyClass
-
-
-@pytest.fixture
-def klass(tiny: TinyClass) -> TinyClass:
-    """A tiny class with a roster."""
-    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
-    return tiny
 
 
 def test_times_come_from_a_list_of_ones_own_also_later(klass: TinyClass, tmp_path: Path) -> None:

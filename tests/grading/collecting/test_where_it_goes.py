@@ -11,7 +11,7 @@ from zoneinfo import ZoneInfo
 import nbformat
 import pytest
 from click.testing import CliRunner
-from downloads import ROSTER, write_zip, zipped
+from downloads import write_zip, zipped
 from test_collect import kept, lies, stamp, why, work
 from test_forms import add_assignment
 
@@ -33,13 +33,6 @@ if TYPE_CHECKING:
 
 UTC = ZoneInfo("UTC")
 MOODLE = "{}_1_assignsubmission_file_{}"
-
-
-@pytest.fixture
-def klass(tiny: TinyClass) -> TinyClass:
-    """A tiny class with a roster."""
-    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
-    return tiny
 
 
 def gathered(
