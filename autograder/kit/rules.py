@@ -60,15 +60,17 @@ class Rule:
     made: Callable[[Part], Row] = HEARD
 
     def finding(self, seen: Part, expected: Part) -> Finding:
-        """A criterion: it was given something, and made of it what the rule makes.
+        """A criterion: it was given as much as the reference solution, and made of all of it what the rule makes.
 
-        Where it was given nothing, the card says what the reference solution makes, in place of "expected: nothing".
+        Who ends in the middle is given less, so a scenario gives the same number of things in each run. Where the
+        subject was given nothing, the card says what the reference solution makes, in place of "expected: nothing".
         """
-        given, made = self.given(seen), self.made(seen)
+        given, made, usual = self.given(seen), self.made(seen), self.given(expected)
         if not given:
-            usual = self.rule(self.given(expected))
-            return Finding(False, f"such as {_in_words(usual)}", _in_words(made))
+            return Finding(False, f"such as {_in_words(self.rule(usual))}", _in_words(made))
         due = self.rule(given)
+        if len(given) < len(usual):
+            return Finding(False, f"{_in_words(due)}, and more after that", _in_words(made))
         return Finding(_same(made, due), _in_words(due), _in_words(made))
 
     def taken_for(self, *wrong: Callable[[Row], Row]) -> Callable[[Part, Part], bool]:

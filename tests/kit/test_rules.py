@@ -60,6 +60,11 @@ def test_where_nothing_was_given_the_card_says_what_the_reference_made() -> None
     assert (finding.passed, finding.expected, finding.seen) == (False, "such as 4, 6", "nothing")
 
 
+def test_who_ended_in_the_middle_has_not_followed_the_rule() -> None:
+    finding = RULE.finding(run([2, 3], [4, 6]), run([5, 6, 7], [10, 12, 14]))
+    assert (finding.passed, finding.expected, finding.seen) == (False, "4, 6, and more after that", "4, 6")
+
+
 @pytest.mark.parametrize(
     ("made", "due", "passes"),
     [
