@@ -11,7 +11,7 @@ from autograder import exercises
 from autograder.authoring.answer_tables import WORKSPACE, Listed, listed, settings
 from autograder.authoring.edits import unpack
 from autograder.boxes.scratch import HeldFolder
-from autograder.verdict import to_json
+from autograder.verdict import State, to_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -98,11 +98,13 @@ class Answer:
 
     def objection(self, verdict: Verdict) -> str:
         """The difference from the expected verdict, or an empty string."""
+        if verdict.state == State.NOT_CHECKED:
+            return f"could not be checked: {verdict.detail}"
         key = verdict.diagnosis.key if verdict.diagnosis else ""
         missed = "; ".join(f"{c.name}: {c.seen}" for c in verdict.criteria if not c.passed)
         if not self.diagnoses:
             return "" if verdict.passed else f"a correct answer got {verdict.score:g} ({key}: {missed})"
-        if verdict.state != "failed":
+        if verdict.state != State.FAILED:
             return f"a wrong answer is {verdict.state}"
         if verdict.score >= verdict.max_score:
             return "a wrong answer got full marks"

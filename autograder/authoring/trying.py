@@ -80,6 +80,7 @@ def try_exercise(
     *,
     only: Sequence[str] = (),
     jobs: int = JOBS,
+    repeat: int = 1,
     transcript: Path | None = None,
     tell: Callable[[str], object],
 ) -> bool:
@@ -92,7 +93,8 @@ def try_exercise(
         exercise_id: Such as ``"lab_1_2.talker"``.
         only: Parts of the names of answers; all answers where empty. The reference output is not compared then.
         jobs: Answers that are judged at once.
-        transcript: A folder that gets what was seen of each answer; None where nobody wants it.
+        repeat: How many times each answer is judged, each time with other random inputs.
+        transcript: A folder that gets what was seen of each answer, the last time; None where nobody wants it.
         tell: Called with each line, or card, for the author.
 
     Returns:
@@ -111,10 +113,11 @@ def try_exercise(
         return False
     if transcript is not None:
         wanted = [Transcribed(**vars(answer), folder=transcript) for answer in wanted]
-    surprises = judged(wanted, jobs=jobs, tell=tell)
+    surprises = judged(wanted, jobs=jobs, repeat=repeat, tell=tell)
     for surprise in surprises:
         tell(f"\n{surprise.name}: {surprise.objection}\n{textwrap.indent(surprise.card, '    ')}")
-    count = f"{len(wanted)} answer{'s' * (len(wanted) != 1)}"
+    times = f", each judged {repeat} times" if repeat > 1 else ""
+    count = f"{len(wanted)} answer{'s' * (len(wanted) != 1)}{times}"
     tell(f"\n{count}, {len(surprises) or 'none'} not as expected")
     if not only:
         for line in still_to_do(exercise_id, wanted):
@@ -147,17 +150,21 @@ def chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:
     return wanted
 
 
-def judged(wanted: Sequence[Answer], *, jobs: int = JOBS, tell: Callable[[str], object]) -> list[Surprise]:
+def judged(
+    wanted: Sequence[Answer], *, jobs: int = JOBS, repeat: int = 1, tell: Callable[[str], object]
+) -> list[Surprise]:
     """Judge answers and tell of each as it comes.
 
     Args:
         wanted: What to judge.
         jobs: How many at once.
+        repeat: How many times each, each time with other random inputs.
         tell: Called with a line for each.
 
     Returns:
-        What is not as expected, in the order of the answers.
+        What is not as expected, in the order of the answers: of each answer the first time that it was not.
     """
+    turns = [Turn(answer, f"try {lap}" if lap else "try") for lap in range(repeat) for answer in wanted]
     surprises: dict[str, Surprise] = {}
     done = 0
 
@@ -167,19 +174,20 @@ def judged(wanted: Sequence[Answer], *, jobs: int = JOBS, tell: Callable[[str], 
         answer, objection = turn.subject, turn.subject.objection(verdict)
         sign, points = ("✗" if objection else "✓"), f"{verdict.score:g} of {verdict.max_score:g}"
         key = verdict.diagnosis.key if verdict.diagnosis else ""
-        tell(f"{done:>3}/{len(wanted)} {sign} {answer.short_name:<40} {points:>8}  {key}".rstrip())
+        tell(f"{done:>3}/{len(turns)} {sign} {answer.short_name:<40} {points:>8}  {key}".rstrip())
         if objection:
-            surprises[answer.name] = Surprise(answer.short_name, objection, card_text(verdict))
+            surprises.setdefault(answer.name, Surprise(answer.short_name, objection, card_text(verdict)))
 
     def fail(turn: Turn[Answer], trouble: str) -> None:
         nonlocal done
         done += 1
         name = turn.subject.short_name
-        tell(f"{done:>3}/{len(wanted)} ✗ {name:<40} no verdict")
-        surprises[turn.subject.name] = Surprise(name, f"no verdict: {trouble}", "The error stands above.")
+        tell(f"{done:>3}/{len(turns)} ✗ {name:<40} no verdict")
+        surprise = Surprise(name, f"no verdict: {trouble}", "The error stands above.")
+        surprises.setdefault(turn.subject.name, surprise)
 
     warm_up()
-    judge_all([Turn(answer, "try") for answer in wanted], jobs=jobs, done=take, failed=fail)
+    judge_all(turns, jobs=jobs, done=take, failed=fail)
     return [surprises[answer.name] for answer in wanted if answer.name in surprises]
 
 

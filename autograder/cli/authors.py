@@ -96,11 +96,19 @@ def new_exercise(exercise: str, recipe: str, chapter: str | None, interfaces: tu
 )
 @click.option("--jobs", type=click.IntRange(min=1), default=4, show_default=True, help="Answers at once.")
 @click.option(
+    "--repeat",
+    type=click.IntRange(min=1),
+    default=1,
+    help="Judge each answer so many times, each time with other random inputs.",
+)
+@click.option(
     "--transcript",
     type=click.Path(path_type=Path, file_okay=False),
     help="Write all that was seen of each answer into this folder.",
 )
-def try_exercise(exercise: str, only: tuple[str, ...], jobs: int, transcript: Path | None) -> None:
+def try_exercise(
+    exercise: str, only: tuple[str, ...], jobs: int, repeat: int, transcript: Path | None
+) -> None:
     """Record EXERCISE where it is new, judge its right and wrong answers, and show what is not as expected."""
     from autograder import exercises
     from autograder.authoring import recording, trying
@@ -109,7 +117,12 @@ def try_exercise(exercise: str, only: tuple[str, ...], jobs: int, transcript: Pa
 
     try:
         fits = trying.try_exercise(
-            exercise, only=only, jobs=jobs, transcript=transcript and transcript.absolute(), tell=click.echo
+            exercise,
+            only=only,
+            jobs=jobs,
+            repeat=repeat,
+            transcript=transcript and transcript.absolute(),
+            tell=click.echo,
         )
     except (
         BadTable,

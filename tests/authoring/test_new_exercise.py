@@ -185,12 +185,15 @@ def test_a_new_exercise_works_and_shows_what_its_author_got_wrong(root: Path) ->
     assert f"{ID}: recorded in solutions/01_first/lab_9_1/battery_of_mine.reference.json" in tried.stdout
     table = root / "solutions/01_first/lab_9_1/battery_of_mine.answers/wrong/answers.toml"
     table.write_text(table.read_text().replace('diagnosis = "topic_name"', 'diagnosis = "message_type"'))
-    chosen = ("--only", "topic_name", "--only", "no_class", "--transcript", str(root / "seen"))
+    seen_of_each = ("--transcript", str(root / "seen"))
+    chosen = ("--only", "topic_name", "--only", "no_class", "--repeat", "2", *seen_of_each)
     tried = autograder(root, "try-exercise", ID, *chosen)
     assert tried.returncode == 1, tried.stdout + tried.stderr
     assert "wrong/topic_name.py: diagnosed as topic_name, not as message_type" in tried.stdout
     assert "Your node publishes on /batery; the topic is called /battery." in tried.stdout
-    assert "2 answers, 1 not as expected" in tried.stdout
+    assert tried.stdout.count("wrong/topic_name.py: diagnosed as") == 1
+    assert "  4/4 " in tried.stdout
+    assert "2 answers, each judged 2 times, 1 not as expected" in tried.stdout
     seen = {path.name: path.read_text() for path in (root / "seen").rglob("*.txt")}
     assert set(seen) == {"topic_name.py.txt", "no_class.py.txt"}
     assert " message /battery {'fields': {'data': 99}" in seen["no_class.py.txt"]

@@ -270,5 +270,6 @@ def main(options: argparse.Namespace) -> int:
     listed = bank.chosen(options.only)
     wanted = [one for one in listed if options.anew or not _is_up_to_date(one)]
     troubles = make(wanted, jobs=options.jobs)
-    print(*troubles, f"{len(wanted)} of {len(listed)} judged, {len(troubles)} not as expected", sep="\n")
+    print(*troubles, f"{len(wanted)} judged, {len(troubles)} not as expected", sep="\n")
+    print(f"{len(listed) - len(wanted)} had evidence that is up to date")
     return 1 if troubles else 0
