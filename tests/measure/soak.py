@@ -101,7 +101,6 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of this program."""
     bank.of_answers(parser, jobs=8)
     parser.add_argument("--judgements", type=int, default=1_000, help="how many there are in all")
-    parser.add_argument("--repeat", type=int, help="judge each answer so often, instead of a number in all")
     parser.add_argument("--busy", type=int, default=2, help="busy loops beside them")
     parser.add_argument("--seed", type=int, default=0, help="what answers, order and inputs are drawn from")
     parser.add_argument("--same-inputs", action="store_true", help="the same inputs for an answer each time")
@@ -111,8 +110,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Soak; 1 where something changed or is not as expected."""
     wanted = bank.chosen(options.only)
-    number = options.repeat * len(wanted) if options.repeat else options.judgements
-    turns = drawn(wanted, number, options.seed, same_inputs=options.same_inputs)
+    turns = drawn(wanted, options.judgements, options.seed, same_inputs=options.same_inputs)
     found = soak(turns, jobs=options.jobs, busy=options.busy)
     print(msgspec.json.encode(found).decode() if options.json else found.text())
     return 1 if found.changed or found.unexpected else 0
