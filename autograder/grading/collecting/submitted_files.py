@@ -324,9 +324,9 @@ def _is_said_newer(new: Collected, known: Collected) -> bool:
     return _is_later_in_order(new, known)
 
 
-def _is_later_in_order(new: Collected, known: Collected) -> bool:
-    """True if both files have an order, and the new one comes later in it."""
-    return bool(new.order and known.order) and new.order > known.order
+def _is_later_in_order(one: Collected, other: Collected) -> bool:
+    """True if both files have an order, and the first one comes later in it."""
+    return bool(one.order and other.order) and one.order > other.order
 
 
 def _older(newest: Candidate, known: Collected, history: History) -> Outcome | None:
@@ -353,7 +353,7 @@ def _older(newest: Candidate, known: Collected, history: History) -> Outcome | N
             at = f"{known.when:%Y-%m-%d %H:%M} UTC"
             return newest.outcome(State.EARLIER, f"the one that is there was handed in later ({at})")
         return None
-    if new.order and known.order and new.order < known.order:
+    if _is_later_in_order(known, new):
         return newest.outcome(State.EARLIER, "the one that is there was handed in later")
     # A number says that it is newer, not when: late work would count as if it had been handed in on time.
     is_newer = _is_later_in_order(new, known)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
-from downloads import ROSTER, write_zip
+from downloads import write_zip
 from test_collect import why, work
 
 from autograder.grading.classes.class_directory import ClassDirectory
@@ -22,17 +22,16 @@ NAME = "Ada Lovelace_1_assignsubmission_file_{}"
 
 
 @pytest.fixture
-def klass(tiny: TinyClass) -> TinyClass:
+def klass(klass: TinyClass) -> TinyClass:
     """A class whose assignments ps1 and ps2 have a notebook problem1 each, with cells of their own."""
-    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
-    source = tiny.path / "source" / "lab_1_2" / "lab_1_2.ipynb"
+    source = klass.path / "source" / "lab_1_2" / "lab_1_2.ipynb"
     for name in ("ps1", "ps2"):
-        folder = tiny.path / "source" / name
+        folder = klass.path / "source" / name
         folder.mkdir()
         (folder / "problem1.ipynb").write_text(
             source.read_text().replace('"grade_id": "', f'"grade_id": "{name}-')
         )
-    return tiny
+    return klass
 
 
 def of(klass: TinyClass, assignment: str) -> str:

@@ -22,11 +22,10 @@ if TYPE_CHECKING:
 
 
 @pytest.fixture
-def klass(tiny: TinyClass) -> TinyClass:
-    """A tiny class of two assignments with a roster."""
-    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
-    other_lab(tiny)
-    return tiny
+def klass(klass: TinyClass) -> TinyClass:
+    """The tiny class with a roster, of two assignments."""
+    other_lab(klass)
+    return klass
 
 
 def week(klass: TinyClass, folder: Path, text: str, name: str = "ada/homework.ipynb") -> CollectReport:
