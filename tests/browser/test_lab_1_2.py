@@ -71,7 +71,9 @@ def test_a_student_errs_reads_the_card_mends_it_and_validates(page: Page, lab: s
     listener = notebook.cell(LISTENER_CHECK)
     expect(listener.locator(".agc-passed")).to_contain_text("10 of 10 points")
     look(page, "listener")
-    expect(notebook.cell(TALKER_CHECK).locator(".agc-passed")).to_contain_text("10 of 10 points")
+    passed = notebook.cell(TALKER_CHECK).locator(".agc-passed")
+    expect(passed).to_contain_text("10 of 10 points")
+    passed.evaluate("card => card.scrollIntoView()")
     look(page, "passed")
 
     programs = notebook.cell(PROGRAMS_CHECK)
