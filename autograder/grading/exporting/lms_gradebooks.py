@@ -12,6 +12,9 @@ import csv
 import io
 from typing import TYPE_CHECKING, NamedTuple
 
+import re2
+from rapidfuzz import fuzz
+
 from autograder.grading.errors import GradingError
 from autograder.grading.reporting.spreadsheet import blank, csv_text, original
 from autograder.grading.table.roster import Identity
@@ -162,7 +165,8 @@ def filled_in(
         line names as well or better: in an LMS, people name themselves.
 
     Raises:
-        GradingError: It cannot be read, is none of these or of another system, or has no column for an assignment.
+        GradingError: It cannot be read, is none of these or of another system, or has no column for an assignment that
+            takes points.
     """
     try:
         rows = list(csv.reader(io.StringIO(data.decode("utf-8-sig"))))
@@ -183,7 +187,9 @@ def filled_in(
     if lms == "moodle":
         places = {name: header.index("Grade") for name in assignments}
     else:
-        places = {name: _column(header, columns.get(name, name)) for name in assignments}
+        open_columns = _open_columns(header, rows[1:], lms)
+        places = {name: _column(header, open_columns, name, columns.get(name, name)) for name in assignments}
+        _check_one_each(places, header)
     names = (*LISTS[lms].sure, *LISTS[lms].called)
     strangers = []
     meant: dict[str, list[_Meant]] = {}
@@ -240,15 +246,70 @@ _EXCUSED = {"canvas": "EX"}
 """The word that an LMS reads as excused."""
 
 
-def _column(header: Sequence[str], called: str) -> int:
-    """The place of a column; Canvas writes an assignment's number behind its name: ``lab_1_2 (815)``."""
-    for place, name in enumerate(header):
-        if name == called or (name.startswith(f"{called} (") and name.endswith(")")):
-            return place
-    raise GradingError(
-        f"The list has no column for {called}. It has: {', '.join(header)}. Say which one it is, for example: "
-        f'--column "{called}={header[-1]}"'
+def _open_columns(header: Sequence[str], rows: Sequence[Sequence[str]], lms: str) -> list[int]:
+    """Return the indexes of the columns that take points for an assignment.
+
+    Canvas writes ``(read only)`` in the line *Points Possible* of each column that it computes itself. Gradescope
+    writes a column ``… - Max Points`` for each assignment.
+    """
+    known = {*LISTS[lms].has, *LISTS[lms].sure, *LISTS[lms].called, *CANVAS, *GRADESCOPE}
+    possible: Sequence[str] = next((row for row in rows if row and row[0].strip() == "Points Possible"), ())
+    computed = {
+        index for index, cell in enumerate(possible) if cell.strip() and not any(map(str.isdigit, cell))
+    }
+    found = [index for index, name in enumerate(header) if name not in known and index not in computed]
+    scored = [index for index in found if f"{header[index]} - Max Points" in header]
+    return scored or found
+
+
+def _column(header: Sequence[str], open_columns: Sequence[int], assignment: str, called: str) -> int:
+    """Return the index of the column for an assignment. Canvas writes a number after a name: ``lab_1_2 (815)``.
+
+    Raises:
+        GradingError: The list has no such column, or the system computes that column itself.
+    """
+    named = [i for i, name in enumerate(header) if name == called or _without_number(name) == called]
+    for index in named:
+        if index in open_columns:
+            return index
+    problem = (
+        f"The column {called} takes no points for an assignment: the system computes it, or it names the student."
+        if named
+        else f"The list has no column for {called}."
     )
+    names = [header[index] for index in open_columns]
+    if not names:
+        raise GradingError(f"{problem} No column of this list takes points: export it from the LMS again.")
+    raise GradingError(
+        f"{problem} These take points: {', '.join(names)}. Name one, for example: "
+        f'--column "{assignment}={_likeliest(assignment, names)}"'
+    )
+
+
+def _without_number(name: str) -> str:
+    """Return the name of a Canvas column without the number after it."""
+    return re2.sub(r" \([^()]*\)$", "", name)
+
+
+def _likeliest(assignment: str, names: Sequence[str]) -> str:
+    """Return the column name that is most similar to an assignment's name; case and punctuation do not count."""
+
+    def similarity(name: str) -> tuple[float, float]:
+        one, other = (re2.sub(r"[\W_]+", "", text).casefold() for text in (assignment, _without_number(name)))
+        return fuzz.partial_ratio(one, other), fuzz.ratio(one, other)
+
+    return max(names, key=similarity)
+
+
+def _check_one_each(places: Mapping[str, int], header: Sequence[str]) -> None:
+    """Raise GradingError if two assignments would write into one column."""
+    for name, index in places.items():
+        others = [other for other, place in places.items() if place == index and other != name]
+        if others:
+            raise GradingError(
+                f"{name} and {others[0]} would both be written into {header[index]}: give each its own --column, "
+                "or choose one with --assignment."
+            )
 
 
 def _who(table: ClassTable, lms: str, values: Sequence[str]) -> tuple[Student, int] | None:

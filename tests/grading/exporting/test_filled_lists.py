@@ -145,3 +145,57 @@ def test_a_line_without_its_empty_cells_is_filled_in_too(klass: TinyClass, tmp_p
     into.write_text("Name,SID,Email,lab_1_2\nBen Bar,ben,ben@uni.example\n")
     export(klass.path, "gradescope", into=into)
     assert rows(klass.path / "export" / "list.csv")[1] == ["Ben Bar", "ben", "ben@uni.example", "17"]
+
+
+GRADEBOOK = (
+    "Student,ID,SIS User ID,SIS Login ID,Section,{columns},Current Score,Final Score\n"
+    '    Points Possible,,,,,{possible},(read only),(read only)\n"Lovelace, Ada",101,,al,A,{cells},7.0,7.0\n'
+)
+
+
+@pytest.mark.parametrize(
+    "name", ["Lab 1.2 (9001)", "LAB-1_2: talker, listener (9001)", "Woche 3 - lab 1.2 (9001)"]
+)
+def test_the_likeliest_column_is_advised_and_what_canvas_computes_is_never_written(
+    klass: TinyClass, tmp_path: Path, name: str
+) -> None:
+    klass.submit("ada", 8, 10)
+    klass.grade()
+    into = tmp_path / "list.csv"
+    into.write_text(
+        GRADEBOOK.format(columns=f'"{name}",Exam 12 (9002)', possible="20,30.5", cells=","), encoding="utf-8"
+    )
+    command = ["export", str(klass.path), "--to", "canvas", "--into", str(into)]
+    said = CliRunner().invoke(cli, command)
+    assert (said.exit_code, f'--column "lab_1_2={name}"' in said.output) == (2, True), said.output
+    for wrong in ("Final Score", "Section", "Student", "Current Score"):
+        said = CliRunner().invoke(cli, [*command, "--column", f"lab_1_2={wrong}"])
+        assert (said.exit_code, f'--column "lab_1_2={name}"' in said.output) == (2, True), said.output
+    assert not (klass.path / "export").exists()
+    said = CliRunner().invoke(cli, [*command, "--column", f"lab_1_2={name}"])
+    assert said.exit_code == 0, said.output
+    assert rows(klass.path / "export" / "list.csv")[2][5:] == ["18", "", "7.0", "7.0"]
+
+
+def test_gradescopes_own_columns_take_no_points(klass: TinyClass, tmp_path: Path) -> None:
+    klass.submit("ada", 8, 10)
+    klass.grade()
+    into = tmp_path / "list.csv"
+    into.write_text(
+        "First Name,Last Name,SID,Email,Sections,Lab 12,Lab 12 - Max Points,Total Lateness (H:M:S)\n"
+        "Ada,Lovelace,ada,ada.love@uni.example,A,,20,\n"
+    )
+    command = ["export", str(klass.path), "--to", "gradescope", "--into", str(into), "--column"]
+    for wrong in ("Lab 12 - Max Points", "Total Lateness (H:M:S)", "Sections"):
+        said = CliRunner().invoke(cli, [*command, f"lab_1_2={wrong}"])
+        assert (said.exit_code, '--column "lab_1_2=Lab 12"' in said.output) == (2, True), said.output
+    assert CliRunner().invoke(cli, [*command, "lab_1_2=Lab 12"]).exit_code == 0
+
+
+def test_a_gradebook_without_an_assignment_says_so(klass: TinyClass, tmp_path: Path) -> None:
+    klass.submit("ada", 8, 10)
+    klass.grade()
+    into = tmp_path / "list.csv"
+    into.write_text("Student,ID,Section,Final Score\n    Points Possible,,,(read only)\n")
+    said = CliRunner().invoke(cli, ["export", str(klass.path), "--to", "canvas", "--into", str(into)])
+    assert (said.exit_code, "No column of this list takes points" in said.output) == (2, True), said.output
