@@ -24,6 +24,14 @@ _only_sections = click.option(
 )
 
 
+def _known_zone(_context: click.Context, _option: click.Parameter, name: str) -> ZoneInfo | None:
+    """Return the time zone of that name; None if the option was not given."""
+    try:
+        return ZoneInfo(name) if name else None
+    except (ValueError, OSError, LookupError):
+        fail(f"There is no time zone {name!r}. A name looks like Europe/Berlin.")
+
+
 @click.command("hand-out")
 @click.argument("place", type=click.Path(path_type=Path))
 @_only_assignments
@@ -52,13 +60,20 @@ def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solut
 @click.command("new-class")
 @_class_folder
 @_only_assignments
-def new_class(folder: Path, assignments: tuple[str, ...]) -> None:
+@click.option(
+    "--timezone",
+    default="",
+    callback=_known_zone,
+    metavar="Europe/Berlin",
+    help="The time zone of due dates; this machine's by default.",
+)
+def new_class(folder: Path, assignments: tuple[str, ...], timezone: ZoneInfo | None) -> None:
     """Make an nbgrader course directory in FOLDER, ready for submissions."""
     from autograder import course
     from autograder.grading.classes import new_class as classes
 
     with grading_errors():
-        made = classes.new_class(folder, course.root(), assignments=assignments)
+        made = classes.new_class(folder, course.root(), assignments=assignments, timezone=str(timezone or ""))
     click.echo(made.summary())
 
 
@@ -82,7 +97,11 @@ def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
     "--assignment", default="", help="What all of it is for; told from names and contents where not given."
 )
 @click.option(
-    "--timezone", default="", metavar="Europe/Berlin", help="Of times in names and lists; this machine's."
+    "--timezone",
+    default="",
+    callback=_known_zone,
+    metavar="Europe/Berlin",
+    help="The time zone of times in names and lists; the time zone of the class by default.",
 )
 @click.option(
     "--from",
@@ -108,7 +127,7 @@ def collect(
     folder: Path,
     files: tuple[Path, ...],
     assignment: str,
-    timezone: str,
+    timezone: ZoneInfo | None,
     form: str | None,
     times: tuple[Path, ...],
     handed_in: str,
@@ -130,10 +149,6 @@ def collect(
     when = read_time(handed_in) if handed_in else None
     if handed_in and when is None:
         fail(f"--handed-in {handed_in} is no time. One looks like 2026-01-31T12:00.")
-    try:
-        zone = ZoneInfo(timezone) if timezone else None
-    except (ValueError, OSError, LookupError):
-        fail(f"There is no time zone {timezone!r}. A name looks like Europe/Berlin.")
     with grading_errors():
         unknown = collecting.settle(folder, settled) if settled else []
         if unknown:
@@ -141,7 +156,7 @@ def collect(
         if not (files or times):
             return
         report = collecting.collect(
-            folder, files, assignment=assignment, zone=zone, form=form or "", times=times, handed_in=when
+            folder, files, assignment=assignment, zone=timezone, form=form or "", times=times, handed_in=when
         )
         show(report)
     sys.exit(report.exit_code)

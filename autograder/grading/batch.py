@@ -12,6 +12,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import time
+from datetime import UTC
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,6 +27,7 @@ from autograder.grading.collecting.tidying import Tidied, tidy
 from autograder.grading.entering.gradebook_reading import (
     SubmissionEntry,
     gradebook_file,
+    read_due_dates,
     read_entries,
     read_entry,
 )
@@ -47,6 +49,7 @@ from autograder.grading.work import AskedFor, Work, find_work, without_grade, wo
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+    from datetime import datetime
 
     from autograder.boxes.execution import Execution
     from autograder.grading.class_records import Entered
@@ -279,6 +282,7 @@ class _Batch:
             works,
             excused=self._roster.excused,
             what_counts=self._what_counts,
+            zone=self._directory.time_zone,
         )
         changes: list[Difference] = []
         if self._dry_run:
@@ -300,7 +304,17 @@ class _Batch:
             timings=self._timings,
             note=sandboxing.NOTE if sandboxing.switched_off(self._directory) else "",
             gradebook=gradebook_file(url),
+            due=self._due_dates(url),
         )
+
+    def _due_dates(self, url: str) -> dict[str, datetime]:
+        """Return the due dates of the assignments that were asked for, in the time zone of the class."""
+        zone, asked = self._directory.time_zone, self._asked.assignments or self._cells
+        return {
+            name: due.replace(tzinfo=UTC).astimezone(zone)
+            for name, due in sorted(read_due_dates(url).items())
+            if name in asked
+        }
 
     def _settle(self, work: Work) -> None:
         """Mark a submission as written if the gradebook has the grades of exactly this work."""

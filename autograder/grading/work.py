@@ -211,7 +211,9 @@ def would_change(
             then = replace(then, penalties={name: cost or 0.0 for name, cost in costs.items()})
             if then.taken_off != entry.taken_off:
                 before, after = (-one.taken_off if one.taken_off else None for one in (entry, then))
-                found.append(Difference(*work.key, LATE, before, after, note=then.why_late))
+                found.append(
+                    Difference(*work.key, LATE, before, after, note=then.why_late(directory.time_zone))
+                )
     return found
 
 

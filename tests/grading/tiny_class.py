@@ -157,7 +157,7 @@ def write_master(course: Path, lab: str, text: str) -> None:
 def make_tiny_class(folder: Path) -> Path:
     """A class without submissions in a folder of that one."""
     write_master(folder / "course", "lab_1_2", MASTER)
-    new_class(folder / "tiny-class", folder / "course")
+    new_class(folder / "tiny-class", folder / "course", timezone="UTC")
     return folder / "tiny-class"
 
 

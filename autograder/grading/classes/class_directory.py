@@ -12,6 +12,7 @@ import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
+from zoneinfo import ZoneInfo
 
 from traitlets.config.loader import PyFileConfigLoader
 
@@ -115,6 +116,24 @@ class ClassDirectory:
             )
         config.CourseDirectory.root = str(self.path)
         return config
+
+    @property
+    def time_zone(self) -> ZoneInfo:
+        """The time zone in which formgrader takes due dates, and in which this package shows times.
+
+        It is nbgrader's own option, ``c.NbGraderAPI.timezone``, whose default is UTC.
+
+        Raises:
+            ClassIncomplete: There is no such zone.
+        """
+        name = self._as_written.NbGraderAPI.get("timezone") or "UTC"
+        try:
+            return ZoneInfo(str(name))
+        except (ValueError, OSError, LookupError) as error:
+            raise ClassIncomplete(
+                f"{self.path / CONFIG_NAME} sets c.NbGraderAPI.timezone to {name!r}, and there is no such time zone. "
+                "A name looks like Europe/Berlin."
+            ) from error
 
     @functools.cached_property
     def _as_written(self) -> Config:

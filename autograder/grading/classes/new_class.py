@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import copy
+import os
 import shutil
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
+from zoneinfo import available_timezones
 
 from alembic.config import Config
 from alembic.script import ScriptDirectory
@@ -57,6 +59,9 @@ c.Autograde.autograde_preprocessors = ["autograder.grading.nbgrader_commands.Wir
 c.GenerateFeedback.exporter_class = "autograder.grading.nbgrader_commands.FeedbackExporter"
 c.HTMLExporter.filters = {{"markdown2html": "autograder.grading.returning.page_exporter.markdown_to_html"}}
 
+# The time zone of due dates in formgrader, and of the times that `./course grade` shows.
+c.NbGraderAPI.timezone = "{timezone}"
+
 # `nbgrader export` and `./course grade` each write a table: give nbgrader's a name of its own. In neither does
 # a spreadsheet find a formula.
 c.ExportApp.plugin_class = "autograder.grading.export.SafeCsvExport"
@@ -81,16 +86,19 @@ class NewClass:
     Attributes:
         path: The class directory.
         assignments: Its assignments; ``release/`` has their notebooks as students get them.
+        timezone: The name of its time zone.
     """
 
     path: Path
     assignments: tuple[str, ...]
+    timezone: str
 
     def summary(self) -> str:
         """The new class and the next steps, in a few lines."""
         return "\n".join(
             (
                 f"{self.path} is a class with these assignments: {', '.join(self.assignments)}.",
+                f"Due dates in formgrader are times in {self.timezone}: see {CONFIG_NAME}.",
                 "Hand out       what ./course hand-out FOLDER makes: the notebooks with all that they need",
                 f"Put work into  {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
                 f"Then           {course_command('grade', self.path)}",
@@ -103,6 +111,7 @@ def new_class(
     course_root: Path,
     *,
     assignments: Sequence[str] = (),
+    timezone: str = "",
     cell_seconds: float = Limits.cell_seconds,
     notebook_seconds: float = Limits.notebook_seconds,
 ) -> NewClass:
@@ -112,6 +121,7 @@ def new_class(
         path: A folder that is not there yet, or an empty one; outside of the course's repository.
         course_root: The folder that holds ``solutions``.
         assignments: The names of the masters; all with a graded cell by default.
+        timezone: The name of the time zone of due dates, such as ``Europe/Berlin``; this machine's by default.
         cell_seconds: Wall time of one cell.
         notebook_seconds: Wall time of a notebook.
 
@@ -122,11 +132,13 @@ def new_class(
     path = path.absolute()
     _check_place(path, course_root)
     sources = sources_of(course_root, assignments)
+    timezone = timezone or machine_timezone()
+    config = CONFIG.format(timezone=timezone, cell_seconds=cell_seconds, notebook_seconds=notebook_seconds)
     made_folder = not path.exists()
     try:
         with clear_disk_errors(path):
             path.mkdir(parents=True, exist_ok=True)
-            _fill(path, sources, CONFIG.format(cell_seconds=cell_seconds, notebook_seconds=notebook_seconds))
+            _fill(path, sources, config)
     except BaseException:
         # Half a class would only be in the way of the next try.
         for entry in path.iterdir() if path.is_dir() else ():
@@ -134,7 +146,14 @@ def new_class(
         if made_folder and path.is_dir():
             path.rmdir()
         raise
-    return NewClass(path, tuple(sources))
+    return NewClass(path, tuple(sources), timezone)
+
+
+def machine_timezone() -> str:
+    """Return the name of this machine's time zone, ``UTC`` if it has none with a name (see ``man 5 localtime``)."""
+    linked = os.path.realpath("/etc/localtime").partition("/zoneinfo/")[2]
+    name = os.environ.get("TZ", "").removeprefix(":") or linked
+    return name if name in available_timezones() else "UTC"
 
 
 def _check_place(path: Path, course_root: Path) -> None:

@@ -52,7 +52,7 @@ def collect(
         path: The class directory.
         sources: Zips, folders, notebooks, and lists that say who a number is.
         assignment: The assignment that all of it is for; told from names and contents by default.
-        zone: The time zone of times in names and lists; this machine's by default.
+        zone: The time zone of times in names and lists; the time zone of the class by default.
         form: The LMS that it is from, as in ``--from``; told from the names by default.
         times: Lists of times; they count for all work of the students in them, also for work that was collected before.
         handed_in: The time of all work for which nothing else says one; in ``zone`` where it has no zone.
@@ -67,7 +67,7 @@ def collect(
             raise GradingError(f"There is no {source}.")
     with directory.lock():
         enter_roster(directory)
-        collecting = _Collecting(directory, assignment, zone, form, handed_in)
+        collecting = _Collecting(directory, assignment, zone or directory.time_zone, form, handed_in)
         return collecting.run(sources, times)
 
 
@@ -87,7 +87,7 @@ class _Collecting:
         self,
         directory: ClassDirectory,
         assignment: str,
-        zone: tzinfo | None,
+        zone: tzinfo,
         form: str,
         handed_in: datetime | None,
     ) -> None:
@@ -372,9 +372,7 @@ class _Collecting:
         if when is None:
             return None
         try:
-            if when.tzinfo is None:
-                when = when.replace(tzinfo=self._zone) if self._zone else when.astimezone()
-            return when.astimezone(UTC)
+            return (when if when.tzinfo else when.replace(tzinfo=self._zone)).astimezone(UTC)
         except (OverflowError, ValueError):
             return None  # the year 1 or 9999, beyond which a zone leads
 

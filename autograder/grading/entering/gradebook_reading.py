@@ -10,7 +10,7 @@ import functools
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from datetime import datetime  # noqa: TC003  (msgspec reads the annotations)
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,6 +20,7 @@ from sqlalchemy.pool import NullPool
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
+    from datetime import tzinfo
 
     from sqlalchemy import Connection, Engine, TextClause
 
@@ -122,14 +123,17 @@ class SubmissionEntry:
         """Points that being late costs; as with nbgrader, nobody has fewer than none."""
         return min(self.penalty, max(0.0, self.raw))
 
-    @property
-    def why_late(self) -> str:
-        """The reason why points are taken off; empty where none are."""
+    def why_late(self, zone: tzinfo) -> str:
+        """Return the reason why points are taken off, with times in this zone; empty if none are taken off."""
         if not self.taken_off:
             return ""
         # A due date may have been removed after the penalty was entered.
         times = (("handed in", self.handed_in), ("due", self.due))
-        return ", ".join(f"{word} {at:%Y-%m-%d %H:%M} UTC" for word, at in times if at)
+        return ", ".join(
+            f"{word} {at.replace(tzinfo=UTC).astimezone(zone):%Y-%m-%d %H:%M} {zone}"
+            for word, at in times
+            if at
+        )
 
     def judged(self, notebook: str, cell: str) -> float | None:
         """The points that a cell was given automatically; None where there are none."""

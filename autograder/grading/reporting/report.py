@@ -14,6 +14,8 @@ from autograder.regular_files import name_as_text
 from autograder.verdict import State
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from datetime import datetime
     from pathlib import Path
 
     from autograder.grading.classes.class_directory import Refused
@@ -41,6 +43,7 @@ class GradeReport:
         timings: The parts of that time.
         note: A warning for readers of the points, where the class was graded without boxes; else empty.
         gradebook: The file of nbgrader's gradebook; None where that is in a database server.
+        due: The due date of each assignment that has one, in the time zone of the class.
     """
 
     path: Path
@@ -56,6 +59,7 @@ class GradeReport:
     timings: Timings = field(default_factory=Timings)
     note: str = ""
     gradebook: Path | None = None
+    due: Mapping[str, datetime] = field(default_factory=dict)
 
     @property
     def csv(self) -> Path:
@@ -88,6 +92,7 @@ def report_json(report: GradeReport) -> bytes:
                 for refused in report.refused
             ],
             "problems": [name_as_text(text) for text in report.problems],
+            "due": report.due,
             "notices": [name_as_text(text) for text in report.notices],
             "would_change": report.would_change,
             "totals": {

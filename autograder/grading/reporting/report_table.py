@@ -63,6 +63,8 @@ def show(report: GradeReport, console: Console | None = None) -> None:
         )
     for where, reason in _unreadable(report):
         plain_line(console, f"unreadable   {printable(where)}: {printable(reason)}", "yellow")
+    for name, due in report.due.items():
+        plain_line(console, f"due          {name} {due:%Y-%m-%d %H:%M}, time zone {due.tzinfo}")
     for notice in report.notices:
         plain_line(console, f"note         {printable(notice)}")
     for problem in report.problems:

@@ -62,7 +62,7 @@ class FeedbackPages:
             "score": sum(cell.score for cell in cells.values()) - penalty,
             "max_score": sum(cell.max_score for cell in cells.values()),
             "late_penalty": penalty,
-            "why_late": entry.why_late,
+            "why_late": entry.why_late(self._directory.time_zone),
         }
         mark_waiting(notebook, cells)
         return self._exporter.page(notebook, names)

@@ -158,7 +158,14 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
     roster = read_roster(directory)
     what_counts = read_what_counts(directory, cells)
     rows = true_rows(
-        roster.names, cells, judged, entries, found, excused=roster.excused, what_counts=what_counts
+        roster.names,
+        cells,
+        judged,
+        entries,
+        found,
+        excused=roster.excused,
+        what_counts=what_counts,
+        zone=directory.time_zone,
     )
     unplaced = tuple(WaitingList(directory).read())
     others = [Student(row.student) for row in rows if row.student not in roster.students]

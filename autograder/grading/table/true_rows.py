@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import UTC, tzinfo
 from typing import TYPE_CHECKING
 
 from autograder.grading.reporting.rows import BY_HAND, EXCUSED, LATE, NOT_GRADED, NOT_SUBMITTED, WAITS, Row
@@ -27,6 +28,7 @@ def true_rows(
     *,
     excused: Collection[tuple[str, str]] = (),
     what_counts: WhatCounts = WhatCounts(),  # noqa: B008 (it is frozen)
+    zone: tzinfo = UTC,
 ) -> list[Row]:
     """The rows of a class, by student, in the order of the course.
 
@@ -40,6 +42,7 @@ def true_rows(
         handed_in: The content of ``submitted``: students and assignments.
         excused: Students and assignments that they need not do.
         what_counts: The exercises that the instructor leaves out, and the weights.
+        zone: The time zone of the class.
     """
     there = set(handed_in)
     known = sorted({student for student, _ in [*there, *entries]} | students.keys())
@@ -54,7 +57,7 @@ def true_rows(
             else:
                 blank = Row(*key, "", 0.0, 0.0, "", name=name)
                 said, entry = judged.get(key, ()), entries.get(key)
-                own = _rows_of(blank, cells[assignment], said, entry, is_there=key in there)
+                own = _rows_of(blank, cells[assignment], said, entry, zone, is_there=key in there)
             rows += what_counts.applied(own)
         found += what_counts.without_lowest(rows)
     return found
@@ -65,6 +68,7 @@ def _rows_of(
     cells: Sequence[GradedCell],
     judged: Sequence[Row],
     entry: SubmissionEntry | None,
+    zone: tzinfo,
     *,
     is_there: bool,
 ) -> list[Row]:
@@ -82,7 +86,8 @@ def _rows_of(
             row = replace(row, state=_state(cell, kept))
         found.append(row if kept is None else _with_points(row, kept))
     if entry and entry.taken_off:
-        found.append(replace(blank, exercise=LATE, score=-entry.taken_off, state=LATE, reason=entry.why_late))
+        why = entry.why_late(zone)
+        found.append(replace(blank, exercise=LATE, score=-entry.taken_off, state=LATE, reason=why))
     return found
 
 

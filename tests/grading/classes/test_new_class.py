@@ -12,7 +12,8 @@ from conftest import MASTER, TinyClass, write_master
 from nbgrader import api
 
 from autograder.course import root
-from autograder.grading.classes.new_class import new_class
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.classes.new_class import machine_timezone, new_class
 from autograder.grading.errors import ClassExists, DiskFull, GradingError
 
 
@@ -42,6 +43,18 @@ def test_only_notebooks_with_a_check_become_assignments(course: Path, tmp_path: 
     assert made.assignments == ("lab_1_2",)
     assert "./course grade" in made.summary()
     nbformat.validate(nbformat.read(made.path / "release" / "lab_1_2" / "lab_1_2.ipynb", as_version=4))
+
+
+def test_a_class_has_the_time_zone_of_its_instructor(
+    course: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("TZ", ":America/Lima")
+    for asked, zone in (("", "America/Lima"), ("Asia/Tokyo", "Asia/Tokyo")):
+        made = new_class(tmp_path / (asked[:4] or "class"), course, timezone=asked)
+        assert str(ClassDirectory(made.path).time_zone) == zone
+        assert zone in made.summary()
+    monkeypatch.setenv("TZ", "LMT+5")
+    assert machine_timezone() == "UTC"
 
 
 def test_links_between_notebooks_lead_to_those_of_the_class_and_to_no_others(tmp_path: Path) -> None:

@@ -588,6 +588,13 @@ def test_the_command_says_everything(klass: TinyClass, tmp_path: Path) -> None:
         collect(klass.path, [Path("nowhere.zip")])
 
 
+def test_times_of_a_download_are_in_the_zone_of_the_class(klass: TinyClass, tmp_path: Path) -> None:
+    klass.configure('c.NbGraderAPI.timezone = "Europe/Berlin"')
+    name = "Lab_ada_attempt_2025-07-01-14-00-00_lab_1_2.ipynb"
+    report = collect(klass.path, [write_zip(tmp_path / "b.zip", {name: work(klass)})])
+    assert report.having(State.PLACED)[0].when == datetime(2025, 7, 1, 12, tzinfo=UTC)
+
+
 def test_the_time_is_kept_in_utc(klass: TinyClass, tmp_path: Path) -> None:
     report = collect(
         klass.path,

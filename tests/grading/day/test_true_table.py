@@ -4,15 +4,21 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
 import pytest
 from conftest import LISTENER, TALKER, FakeEngine, TinyClass
 from instructor import add_question, book, by_person, due, penalty
+from nbgrader.apps.api import NbGraderAPI
+from nbgrader.coursedir import CourseDirectory
 from rich.console import Console
 
 from autograder.grading.classes import timestamps
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.errors import ClassIncomplete
+from autograder.grading.reporting.report import report_json
 from autograder.grading.reporting.report_table import show
 from autograder.grading.returning.feedback import FeedbackPages
 
@@ -49,6 +55,34 @@ def shown(report: GradeReport) -> str:
 
 def page(tiny: TinyClass, student: str) -> str:
     return (tiny.path / "feedback" / student / "lab_1_2" / "lab_1_2.html").read_text()
+
+
+def test_a_due_date_of_formgrader_is_a_time_in_the_zone_of_the_class(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    """Due at 23:59 as an instructor in Kolkata types it; Ada hands in half an hour after midnight there."""
+    tiny.configure('c.NbGraderAPI.timezone = "Asia/Kolkata"')
+    penalty(tiny)
+    directory = ClassDirectory(tiny.path)
+    formgrader = NbGraderAPI(CourseDirectory(config=directory.config), config=directory.config)
+    offset = formgrader.get_assignment("lab_1_2")["duedate_timezone"]
+    with book(tiny) as gradebook:
+        gradebook.update_or_create_assignment("lab_1_2", duedate=f"2026-01-10T23:59 {offset}")
+    for student, at in (("ada", "2026-01-10 19:00:00 UTC"), ("ben", "2026-01-10 18:28:00 UTC")):
+        tiny.submit(student, 4, 7).with_name("timestamp.txt").write_text(at)
+    report = tiny.grade(feedback=True)
+    assert (total(tiny, "ada"), total(tiny, "ben")) == (0, 11)
+    assert "due          lab_1_2 2026-01-10 23:59, time zone Asia/Kolkata" in shown(report)
+    assert json.loads(report_json(report))["due"] == {"lab_1_2": "2026-01-10T23:59:00+05:30"}
+    why = "handed in 2026-01-11 00:30 Asia/Kolkata, due 2026-01-10 23:59 Asia/Kolkata"
+    assert next(row for row in rows(tiny) if row["exercise"] == "late")["reason"] == why
+    assert why in page(tiny, "ada")
+
+
+def test_a_zone_that_does_not_exist_is_refused(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.configure('c.NbGraderAPI.timezone = "Berlin"')
+    with pytest.raises(ClassIncomplete, match="there is no such time zone"):
+        tiny.grade()
 
 
 def test_points_by_hand_and_extra_points_are_in_the_table(tiny: TinyClass, fake_engine: FakeEngine) -> None:
